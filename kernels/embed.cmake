@@ -1,0 +1,18 @@
+# Writes OUTPUT: a C++ file that holds the text of FILES as string literals.
+# Each file is cut in pieces, as compilers limit the length of one literal.
+set(text "// Generated from kernels/ by embed.cmake.\n#include \"mcdbn/device/embedded_kernels.hpp\"\n\nnamespace mcdbn {\n\nconst std::map<std::string, std::string>& embedded_kernels() {\n  static const std::map<std::string, std::string> files = {\n")
+foreach(file ${FILES})
+  get_filename_component(name ${file} NAME)
+  file(READ ${file} content)
+  string(APPEND text "      {\"${name}\",\n")
+  string(LENGTH "${content}" length)
+  set(start 0)
+  while(start LESS length)
+    string(SUBSTRING "${content}" ${start} 8000 piece)
+    string(APPEND text "R\"__kernel__(${piece})__kernel__\"\n")
+    math(EXPR start "${start} + 8000")
+  endwhile()
+  string(APPEND text "      },\n")
+endforeach()
+string(APPEND text "  };\n  return files;\n}\n\n}  // namespace mcdbn\n")
+file(WRITE ${OUTPUT} "${text}")
