@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mcdbn/device/opencl.hpp"
+
+namespace mcdbn {
+
+struct DeviceInfo {
+  int platform_index = 0;
+  std::string platform_name;
+  int device_index = 0;  ///< within its platform
+  std::string name, vendor, driver_version, opencl_c_version;
+  bool is_gpu = false;
+  unsigned compute_units = 0;
+  std::uint64_t global_memory_bytes = 0;
+  std::uint64_t local_memory_bytes = 0;
+};
+
+/// Every device of every OpenCL platform; platforms without devices are passed over.
+/// Empty where there is none.
+std::vector<DeviceInfo> list_devices();
+
+/// The list as people read it, one device a line; says what to install where there is none.
+std::string describe_devices(const std::vector<DeviceInfo>& devices);
+
+/// What the user asked for: an index or part of a name (case-insensitive), empty for any.
+struct DeviceSelection {
+  std::string platform;
+  std::string device;
+  /// MCDBN_PLATFORM and MCDBN_DEVICE, as far as set.
+  static DeviceSelection from_environment();
+};
+
+class ProgramCache;
+
+/// An open device with one in-order queue and the programs built for it.
+/// Cheap to pass by reference; everything else on the device refers to it and must not outlive it.
+class Device {
+ public:
+  /// The device that matches; with nothing selected a GPU where there is one, else the CPU.
+  /// @throws DeviceError listing what there is, if nothing matches or no platform exists
+  static Device open(const DeviceSelection& selection = DeviceSelection::from_environment());
+  explicit Device(const DeviceInfo& info);
+  Device(Device&&) noexcept;
+  ~Device();
+
+  const DeviceInfo& info() const { return info_; }
+  const cl::Context& context() const { return context_; }
+  const cl::CommandQueue& queue() const { return queue_; }
+  ProgramCache& programs() { return *programs_; }
+  /// Waits until everything enqueued has run. @throws DeviceError
+  void finish();
+  /// Kernel launches since the device was opened: `bench` reports launches a step.
+  std::uint64_t launch_count() const { return launch_count_; }
+  void count_launch() { ++launch_count_; }
+
+ private:
+  DeviceInfo info_;
+  cl::Device device_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+  std::unique_ptr<ProgramCache> programs_;
+  std::uint64_t launch_count_ = 0;
+};
+
+}  // namespace mcdbn

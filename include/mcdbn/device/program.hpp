@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "mcdbn/device/device.hpp"
+
+namespace mcdbn {
+
+/// The text of one kernel file with its `#include "x.clh"` lines replaced by those files: from the
+/// folder MCDBN_KERNEL_DIR if that is set, else as embedded. @throws DeviceError if there is none
+std::string kernel_source(const std::string& file);
+
+/// Compile-time settings of a kernel file: -D NAME=VALUE each.
+using Defines = std::map<std::string, int>;
+
+/// Programs built for one device, kept in memory and as binaries in the user's cache folder
+/// ($XDG_CACHE_HOME/mcdbn-cl or ~/.cache/mcdbn-cl), keyed by device, driver, source and options.
+/// A binary that does not load is rebuilt silently; an unwritable folder only costs time.
+class ProgramCache {
+ public:
+  ProgramCache(cl::Context context, cl::Device device);
+
+  /// @throws DeviceError with the build log
+  cl::Kernel& kernel(const std::string& file, const std::string& name, const Defines& defines = {});
+
+ private:
+  cl::Program& program(const std::string& file, const Defines& defines);
+  cl::Program build(const std::string& source, const std::string& options);
+
+  cl::Context context_;
+  cl::Device device_;
+  std::string device_key_;
+  std::map<std::string, cl::Program> programs_;
+  std::map<std::string, cl::Kernel> kernels_;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,152 @@
+#include "mcdbn/device/device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+
+#include "mcdbn/device/program.hpp"
+#include "mcdbn/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr const char* kInstallHint =
+    "install an OpenCL driver: pocl-opencl-icd for any CPU, or the GPU vendor's; PoCL also "
+    "vanishes "
+    "where neither HOME nor POCL_CACHE_DIR is a writable folder";
+
+std::string trimmed(std::string text) {
+  while (!text.empty() &&
+         (text.back() == '\0' || std::isspace(static_cast<unsigned char>(text.back()))))
+    text.pop_back();
+  return text;
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool matches(const std::string& wanted, int index, const std::string& name) {
+  if (wanted.empty()) return true;
+  const bool is_index = std::all_of(wanted.begin(), wanted.end(),
+                                    [](unsigned char c) { return std::isdigit(c) != 0; });
+  if (is_index) return wanted == std::to_string(index);
+  return lower(name).find(lower(wanted)) != std::string::npos;
+}
+
+std::vector<cl::Platform> platforms() {
+  std::vector<cl::Platform> found;
+  try {
+    cl::Platform::get(&found);
+  } catch (const cl::Error&) {
+    found.clear();  // the ICD loader reports "no platform" as an error
+  }
+  return found;
+}
+
+std::vector<cl::Device> devices_of(const cl::Platform& platform) {
+  std::vector<cl::Device> found;
+  try {
+    platform.getDevices(CL_DEVICE_TYPE_ALL, &found);
+  } catch (const cl::Error&) {
+    found.clear();
+  }
+  return found;
+}
+
+DeviceInfo describe(const cl::Platform& platform, int platform_index, const cl::Device& device,
+                    int device_index) {
+  DeviceInfo info;
+  info.platform_index = platform_index;
+  info.platform_name = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+  info.device_index = device_index;
+  info.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
+  info.vendor = trimmed(device.getInfo<CL_DEVICE_VENDOR>());
+  info.driver_version = trimmed(device.getInfo<CL_DRIVER_VERSION>());
+  info.opencl_c_version = trimmed(device.getInfo<CL_DEVICE_OPENCL_C_VERSION>());
+  info.is_gpu = (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) != 0;
+  info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  info.global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  info.local_memory_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+  return info;
+}
+
+}  // namespace
+
+std::vector<DeviceInfo> list_devices() {
+  std::vector<DeviceInfo> list;
+  const auto all_platforms = platforms();
+  for (std::size_t p = 0; p < all_platforms.size(); ++p) {
+    const auto devices = devices_of(all_platforms[p]);
+    for (std::size_t d = 0; d < devices.size(); ++d)
+      list.push_back(
+          describe(all_platforms[p], static_cast<int>(p), devices[d], static_cast<int>(d)));
+  }
+  return list;
+}
+
+std::string describe_devices(const std::vector<DeviceInfo>& devices) {
+  if (devices.empty()) return fmt::format("no OpenCL device found: {}", kInstallHint);
+  std::string text;
+  for (const auto& info : devices)
+    text += fmt::format("{}platform {} ({}), device {}: {}", text.empty() ? "" : "\n",
+                        info.platform_index, info.platform_name, info.device_index, info.name);
+  return text;
+}
+
+DeviceSelection DeviceSelection::from_environment() {
+  const auto value = [](const char* name) {
+    const char* text = std::getenv(name);
+    return std::string(text ? text : "");
+  };
+  return {value("MCDBN_PLATFORM"), value("MCDBN_DEVICE")};
+}
+
+Device Device::open(const DeviceSelection& selection) {
+  const auto all = list_devices();
+  if (all.empty()) throw DeviceError(describe_devices(all));
+  std::vector<DeviceInfo> fitting;
+  for (const auto& info : all)
+    if (matches(selection.platform, info.platform_index, info.platform_name) &&
+        matches(selection.device, info.device_index, info.name))
+      fitting.push_back(info);
+  if (fitting.empty())
+    throw DeviceError(
+        fmt::format("no OpenCL device matches platform '{}', device '{}'; there is:\n{}",
+                    selection.platform, selection.device, describe_devices(all)));
+  const auto gpu = std::find_if(fitting.begin(), fitting.end(),
+                                [](const DeviceInfo& info) { return info.is_gpu; });
+  return Device(gpu != fitting.end() ? *gpu : fitting.front());
+}
+
+Device::Device(const DeviceInfo& info) : info_(info) {
+  try {
+    const auto platform = platforms().at(static_cast<std::size_t>(info.platform_index));
+    device_ = devices_of(platform).at(static_cast<std::size_t>(info.device_index));
+    context_ = cl::Context(device_);
+    queue_ = cl::CommandQueue(context_, device_);
+    programs_ = std::make_unique<ProgramCache>(context_, device_);
+  } catch (const cl::Error& error) {
+    throw DeviceError(
+        fmt::format("cannot open {}: {} returned {}", info.name, error.what(), error.err()));
+  } catch (const std::out_of_range&) {
+    throw DeviceError(fmt::format("no such device: {}", info.name));
+  }
+}
+
+Device::Device(Device&&) noexcept = default;
+Device::~Device() = default;
+
+void Device::finish() {
+  try {
+    queue_.finish();
+  } catch (const cl::Error& error) {
+    throw DeviceError(fmt::format("{}: {} returned {}", info_.name, error.what(), error.err()));
+  }
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,113 @@
+#include "mcdbn/device/program.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "mcdbn/device/embedded_kernels.hpp"
+#include "mcdbn/device/user_cache.hpp"
+#include "mcdbn/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string kernel_file_text(const std::string& file) {
+  if (const char* folder = std::getenv("MCDBN_KERNEL_DIR")) {
+    std::ifstream stream(fs::path(folder) / file, std::ios::binary);
+    if (!stream)
+      throw DeviceError(fmt::format("{}/{}: no such kernel file (MCDBN_KERNEL_DIR)", folder, file));
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
+  const auto found = embedded_kernels().find(file);
+  if (found == embedded_kernels().end()) throw DeviceError("no embedded kernel file " + file);
+  return found->second;
+}
+
+std::string options_of(const Defines& defines) {
+  std::string options = "-cl-std=CL1.2";
+  for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value);
+  // For the tests that must also pass unoptimised.
+  if (const char* extra = std::getenv("MCDBN_BUILD_OPTIONS")) options += fmt::format(" {}", extra);
+  return options;
+}
+
+}  // namespace
+
+std::string kernel_source(const std::string& file) {
+  std::istringstream lines(kernel_file_text(file));
+  std::string text, line;
+  const std::string directive = "#include \"";
+  while (std::getline(lines, line)) {
+    if (line.starts_with(directive))
+      text += kernel_source(line.substr(directive.size(), line.rfind('"') - directive.size()));
+    else
+      text += line;
+    text += '\n';
+  }
+  return text;
+}
+
+ProgramCache::ProgramCache(cl::Context context, cl::Device device)
+    : context_(std::move(context)), device_(std::move(device)) {
+  device_key_ = device_.getInfo<CL_DEVICE_NAME>() + '|' + device_.getInfo<CL_DEVICE_VENDOR>() +
+                '|' + device_.getInfo<CL_DRIVER_VERSION>() + '|' +
+                device_.getInfo<CL_DEVICE_VERSION>();
+}
+
+cl::Kernel& ProgramCache::kernel(const std::string& file, const std::string& name,
+                                 const Defines& defines) {
+  const std::string key = file + ' ' + name + ' ' + options_of(defines);
+  auto found = kernels_.find(key);
+  if (found == kernels_.end()) {
+    try {
+      found = kernels_.emplace(key, cl::Kernel(program(file, defines), name.c_str())).first;
+    } catch (const cl::Error& error) {
+      throw DeviceError(
+          fmt::format("kernel {} in {}: {} returned {}", name, file, error.what(), error.err()));
+    }
+  }
+  return found->second;
+}
+
+cl::Program& ProgramCache::program(const std::string& file, const Defines& defines) {
+  const std::string options = options_of(defines);
+  const std::string key = file + ' ' + options;
+  auto found = programs_.find(key);
+  if (found == programs_.end())
+    found = programs_.emplace(key, build(kernel_source(file), options)).first;
+  return found->second;
+}
+
+cl::Program ProgramCache::build(const std::string& source, const std::string& options) {
+  const std::string key = device_key_ + '\n' + options + '\n' + source;
+  if (const auto binary = read_cache_entry("program", key)) {
+    try {
+      cl::Program program(context_, {device_}, {{binary->begin(), binary->end()}});
+      program.build(options.c_str());
+      return program;
+    } catch (const cl::Error&) {
+      // stale or corrupt: built anew below, which overwrites it
+    }
+  }
+  cl::Program program(context_, source);
+  try {
+    program.build(options.c_str());
+  } catch (const cl::Error&) {
+    throw DeviceError(fmt::format("building kernels with {}:\n{}", options,
+                                  program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_)));
+  }
+  const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+  if (!binaries.empty() && !binaries[0].empty())
+    write_cache_entry("program", key, std::string(binaries[0].begin(), binaries[0].end()));
+  return program;
+}
+
+}  // namespace mcdbn
