@@ -1,0 +1,23 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "mcdbn/motion/camera.hpp"
+
+namespace mcdbn::cli {
+
+/// The camera as a command line says it: a file, or where to place one that looks at the clip.
+struct CameraOptions {
+  std::filesystem::path file;
+  CameraPlacement placement;
+
+  /// The camera for this clip. @throws InputError if the file cannot be read
+  Camera camera_for(const Motion& motion) const;
+};
+
+/// --camera FILE, or --camera-azimuth, --camera-elevation, --camera-distance, --camera-fov,
+/// --image-size.
+void add_camera_options(CLI::App& command, CameraOptions& options);
+
+}  // namespace mcdbn::cli

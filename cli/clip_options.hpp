@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "mcdbn/motion/clip.hpp"
+
+namespace mcdbn::cli {
+
+/// --fps and --keep-first-frame.
+void add_clip_options(CLI::App& command, ClipOptions& options);
+
+/// load_clip with its notices printed to stderr.
+Motion load_clip_with_notices(const std::filesystem::path& path, const ClipOptions& options);
+
+}  // namespace mcdbn::cli

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace mcdbn::cli {
+
+/// What every command shares. A command adds the options it obeys with the functions below, and its
+/// callback sets `run`; main calls `run` once the whole command line has been understood.
+struct CommandContext {
+  std::string platform;  ///< name part or index, empty: any (also MCDBN_PLATFORM)
+  std::string device;    ///< name part or index, empty: a GPU if there is one (also MCDBN_DEVICE)
+  std::uint64_t seed = 1;
+  bool quiet = false;
+  bool json = false;
+  std::function<void()> run;
+};
+
+void add_device_options(CLI::App& command, CommandContext& context);  ///< --platform, --device
+void add_seed_option(CLI::App& command, CommandContext& context);     ///< --seed
+void add_quiet_option(CLI::App& command, CommandContext& context);    ///< --quiet
+void add_json_option(CLI::App& command, CommandContext& context);     ///< --json
+
+/// Thrown by a command that stopped, cleanly, on SIGINT: exit code 130.
+class Interrupted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Writes one JSON object and a newline to stdout.
+void print_json(const nlohmann::json& value);
+
+// One for each file cli/NAME.cpp. To add a command: declare it here, list it in main.cpp.
+// Messages for people go through spdlog (info, warn), which writes to stderr.
+void add_devices_command(CLI::App& app, CommandContext& context);
+void add_info_command(CLI::App& app, CommandContext& context);
+void add_project_command(CLI::App& app, CommandContext& context);
+
+}  // namespace mcdbn::cli

@@ -1,0 +1,37 @@
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+
+namespace mcdbn::cli {
+
+void add_device_options(CLI::App& command, CommandContext& context) {
+  command
+      .add_option("--platform", context.platform,
+                  "OpenCL platform: index, or part of its name (see `mcdbn-cl devices`)")
+      ->envname("MCDBN_PLATFORM")
+      ->type_name("NAME|INDEX");
+  command
+      .add_option("--device", context.device,
+                  "OpenCL device: index, or part of its name (default: a GPU, else the CPU)")
+      ->envname("MCDBN_DEVICE")
+      ->type_name("NAME|INDEX");
+}
+
+void add_seed_option(CLI::App& command, CommandContext& context) {
+  command.add_option("--seed", context.seed, "Seed of everything random")->capture_default_str();
+}
+
+void add_quiet_option(CLI::App& command, CommandContext& context) {
+  command.add_flag("--quiet", context.quiet, "Print warnings and errors only");
+}
+
+void add_json_option(CLI::App& command, CommandContext& context) {
+  command.add_flag("--json", context.json, "Print one JSON object to stdout");
+}
+
+void print_json(const nlohmann::json& value) {
+  std::cout << value.dump(2) << '\n';
+}
+
+}  // namespace mcdbn::cli

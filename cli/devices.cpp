@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "mcdbn/device/device.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+constexpr double kBytesPerGib = 1024.0 * 1024.0 * 1024.0;
+
+void print_as_json(const std::vector<DeviceInfo>& devices) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const DeviceInfo& device : devices) {
+    list.push_back({{"platform_index", device.platform_index},
+                    {"platform", device.platform_name},
+                    {"device_index", device.device_index},
+                    {"name", device.name},
+                    {"vendor", device.vendor},
+                    {"driver", device.driver_version},
+                    {"opencl_c_version", device.opencl_c_version},
+                    {"type", device.is_gpu ? "gpu" : "cpu"},
+                    {"compute_units", device.compute_units},
+                    {"global_memory_bytes", device.global_memory_bytes},
+                    {"local_memory_bytes", device.local_memory_bytes}});
+  }
+  print_json({{"devices", list}});
+}
+
+void print_as_text(const std::vector<DeviceInfo>& devices) {
+  for (const DeviceInfo& device : devices) {
+    std::cout << fmt::format(
+        "platform {} {}\n  device {} {}\n    driver {}, {}, {} compute units, {:.1f} GiB\n",
+        device.platform_index, device.platform_name, device.device_index, device.name,
+        device.driver_version, device.opencl_c_version, device.compute_units,
+        static_cast<double>(device.global_memory_bytes) / kBytesPerGib);
+  }
+}
+
+}  // namespace
+
+void add_devices_command(CLI::App& app, CommandContext& context) {
+  CLI::App* command = app.add_subcommand("devices", "Lists the OpenCL platforms and devices");
+  add_json_option(*command, context);
+  command->footer("Example:\n  mcdbn-cl devices\n  mcdbn-cl train data/ -o run/ --device 0");
+  command->callback([&context] {
+    context.run = [&context] {
+      const std::vector<DeviceInfo> devices = list_devices();
+      context.json ? print_as_json(devices) : print_as_text(devices);
+    };
+  });
+}
+
+}  // namespace mcdbn::cli

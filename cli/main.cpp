@@ -1,0 +1,94 @@
+#include <spdlog/cfg/env.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <exception>
+#include <iostream>
+
+#include "commands.hpp"
+#include "mcdbn/errors.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+enum ExitCode {
+  kOk = 0,
+  kFailure = 1,
+  kUsage = 2,
+  kBadInput = 3,
+  kNoDevice = 4,
+  kInterrupted = 130
+};
+
+constexpr std::array kCommands = {
+    add_devices_command,
+    add_project_command,
+    add_info_command,
+};
+
+constexpr const char* kDescription =
+    "Trains multimodal conditional deep belief networks on motion capture and regenerates 3D "
+    "motion\n"
+    "from the 2D joint tracks of one camera, on any OpenCL device.";
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 ok, 1 failure, 2 usage or configuration, 3 bad input, 4 no device, 130 "
+    "interrupted.";
+
+/// People read stderr, programs read stdout: all messages go to stderr as plain lines.
+/// SPDLOG_LEVEL=debug shows more.
+void set_up_messages() {
+  spdlog::set_default_logger(spdlog::stderr_logger_st("mcdbn-cl"));
+  spdlog::set_pattern("mcdbn-cl: %l: %v");
+  spdlog::cfg::load_env_levels();
+}
+
+int report(const std::exception& error, ExitCode code) {
+  spdlog::error("{}", error.what());
+  return code;
+}
+
+int parse_and_run(CLI::App& app, CommandContext& context, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == kOk) return app.exit(error);  // --help and --version
+    spdlog::error("{} (see mcdbn-cl --help)", error.what());
+    return kUsage;
+  }
+  if (context.quiet) spdlog::set_level(spdlog::level::warn);
+  context.run();
+  if (!std::cout.flush()) throw Error("standard output: cannot be written; is the disk full?");
+  return kOk;
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App app{kDescription, "mcdbn-cl"};
+  app.set_version_flag("--version", "mcdbn-cl " MCDBN_VERSION);
+  app.require_subcommand(1);
+  app.footer(kExitCodes);
+  CommandContext context;
+  for (const auto add_command : kCommands) add_command(app, context);
+  try {
+    return parse_and_run(app, context, argc, argv);
+  } catch (const Interrupted& error) {
+    return report(error, kInterrupted);
+  } catch (const InputError& error) {
+    return report(error, kBadInput);
+  } catch (const ConfigError& error) {
+    return report(error, kUsage);
+  } catch (const DeviceError& error) {
+    return report(error, kNoDevice);
+  } catch (const std::exception& error) {
+    return report(error, kFailure);
+  }
+}
+
+}  // namespace
+}  // namespace mcdbn::cli
+
+int main(int argc, char** argv) {
+  mcdbn::cli::set_up_messages();
+  return mcdbn::cli::run_program(argc, argv);
+}
