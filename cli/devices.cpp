@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "mcdbn/device/device.hpp"
+#include "mcdbn/errors.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -48,7 +49,12 @@ void add_devices_command(CLI::App& app, CommandContext& context) {
   command->callback([&context] {
     context.run = [&context] {
       const std::vector<DeviceInfo> devices = list_devices();
-      context.json ? print_as_json(devices) : print_as_text(devices);
+      if (devices.empty()) throw DeviceError(describe_devices(devices));
+      if (context.json) {
+        print_as_json(devices);
+      } else {
+        print_as_text(devices);
+      }
     };
   });
 }

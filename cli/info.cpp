@@ -78,7 +78,11 @@ void add_info_command(CLI::App& app, CommandContext& context) {
   command->callback([&context, path] {
     context.run = [&context, path] {
       const json description = describe(*path);
-      context.json ? print_json(description) : print_for_people(description);
+      if (context.json) {
+        print_json(description);
+      } else {
+        print_for_people(description);
+      }
     };
   });
 }

@@ -5,6 +5,8 @@
 #include <array>
 #include <exception>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "mcdbn/errors.hpp"
@@ -49,12 +51,22 @@ int report(const std::exception& error, ExitCode code) {
   return code;
 }
 
+/// What was wrong with the command line, and where its help is.
+std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
+  const auto chosen = app.get_subcommands();
+  const std::vector<std::string> unknown = app.remaining();
+  const std::string what =
+      chosen.empty() && !unknown.empty() ? "unknown command " + unknown.front() : error.what();
+  return what + " (see mcdbn-cl " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
+         "--help)";
+}
+
 int parse_and_run(CLI::App& app, CommandContext& context, int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == kOk) return app.exit(error);  // --help and --version
-    spdlog::error("{} (see mcdbn-cl --help)", error.what());
+    spdlog::error("{}", usage_message(app, error));
     return kUsage;
   }
   if (context.quiet) spdlog::set_level(spdlog::level::warn);
