@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mcdbn/device/device.hpp"
+#include "mcdbn/matrix_types.hpp"
+
+namespace mcdbn {
+
+/// Columns of a device matrix are padded to this many floats, one vector of the widest kernels.
+inline constexpr std::size_t kColumnPad = 16;
+constexpr std::size_t padded(std::size_t columns) {
+  return (columns + kColumnPad - 1) / kColumnPad * kColumnPad;
+}
+
+/// A row-major float matrix on the device. Padding columns are zero and every kernel keeps them so.
+class Matrix {
+ public:
+  Matrix() = default;
+  /// All zeros. @throws DeviceError
+  Matrix(Device& device, std::size_t rows, std::size_t columns);
+  static Matrix from_host(Device& device, const Eigen::Ref<const MatrixF>& values);
+
+  std::size_t rows() const { return rows_; }
+  std::size_t columns() const { return columns_; }
+  std::size_t stride() const { return padded(columns_); }  ///< floats from row to row
+  std::size_t element_count() const { return rows_ * stride(); }
+  const cl::Buffer& buffer() const { return buffer_; }
+  Device& device() const { return *device_; }
+  bool empty() const { return rows_ == 0 || columns_ == 0; }
+
+  /// Waits for the queue, then reads. @return [rows x columns]
+  MatrixF to_host() const;
+  /// @param values [rows x columns]  @throws ShapeError
+  void upload(const Eigen::Ref<const MatrixF>& values);
+  void set_zero();
+  /// Enqueues a copy of `other`, which has the same shape. @throws ShapeError
+  void copy_from(const Matrix& other);
+
+ private:
+  Device* device_ = nullptr;
+  std::size_t rows_ = 0, columns_ = 0;
+  cl::Buffer buffer_;
+};
+
+/// Frame numbers on the device: which rows of a frame matrix make up each mini-batch.
+class IndexBuffer {
+ public:
+  IndexBuffer() = default;
+  IndexBuffer(Device& device, const std::vector<std::int32_t>& values);
+  std::size_t size() const { return size_; }
+  const cl::Buffer& buffer() const { return buffer_; }
+  /// @throws ShapeError if the size differs
+  void upload(Device& device, const std::vector<std::int32_t>& values);
+
+ private:
+  std::size_t size_ = 0;
+  cl::Buffer buffer_;
+};
+
+/// Some rows of a matrix, as an operand: a block of consecutive rows, or the rows that an index
+/// names. Holds references only.
+struct Rows {
+  const Matrix* matrix = nullptr;
+  std::size_t count = 0;
+  std::size_t columns = 0;  ///< may exceed the matrix's: a window of following frames
+  std::size_t first = 0;    ///< first row of a block (without index)
+  const IndexBuffer* index = nullptr;
+  std::size_t index_first = 0;  ///< first entry of the index to use
+  int shift = 0;                ///< added to every index entry
+
+  Rows(const Matrix& all);  // NOLINT: a matrix is all of its rows
+  Rows(const Matrix& from, std::size_t first_row, std::size_t row_count);
+  /// Row r is row index[index_first + r] + shift; `frames` rows in a row (with their padding) make
+  /// one long row, which is how histories are read in place (eq 15).
+  static Rows indexed(const Matrix& from, const IndexBuffer& index, std::size_t index_first,
+                      std::size_t row_count, int shift = 0, std::size_t frames = 1);
+
+  int offset() const { return static_cast<int>(first * matrix->stride()); }
+  int stride() const { return static_cast<int>(matrix->stride()); }
+};
+
+}  // namespace mcdbn

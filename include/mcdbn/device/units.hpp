@@ -1,0 +1,20 @@
+#pragma once
+
+#include "mcdbn/device/gemm.hpp"
+#include "mcdbn/device/matrix.hpp"
+
+namespace mcdbn {
+
+/// Bias, activation and sampling of GemmOptions on values that are already in `c`.
+void apply_epilogue(const Rows& c, const GemmOptions& options);
+/// Copies indexed rows (history windows too) into consecutive ones. @param out [rows.count x
+/// rows.columns]
+void gather(const Rows& rows, const Rows& out);
+/// out = scale · (x − y), all of one shape, none indexed.
+void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& out);
+/// @param out [in.columns x in.rows]
+void transpose(const Matrix& in, Matrix& out);
+/// out = beta · out + scale · (sum over rows). @param out [1 x in.columns]
+void column_sum(const Rows& in, float scale, float beta, Matrix& out);
+
+}  // namespace mcdbn

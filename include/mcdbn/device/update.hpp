@@ -1,0 +1,29 @@
+#pragma once
+
+#include "mcdbn/device/matrix.hpp"
+
+namespace mcdbn {
+
+/// velocity ← momentum·velocity + rate·(gradient − decay·parameter); parameter += velocity.
+/// `gradient` points uphill (eq 36). All [rows x columns] alike. @throws ShapeError
+struct MomentumRule {
+  float rate = 1e-3F;
+  float momentum = 0.0F;
+  float weight_decay = 0.0F;
+};
+void momentum_update(Matrix& parameter, Matrix& velocity, const Matrix& gradient,
+                     const MomentumRule& rule);
+
+/// Adam (Kingma and Ba 2015) with decoupled weight decay. `gradient` is that of the loss; `step`
+/// counts from 1.
+struct AdamRule {
+  float rate = 1e-3F;
+  float beta1 = 0.9F;
+  float beta2 = 0.999F;
+  float epsilon = 1e-8F;
+  float weight_decay = 0.0F;
+};
+void adam_update(Matrix& parameter, Matrix& mean, Matrix& square, const Matrix& gradient,
+                 const AdamRule& rule, int step);
+
+}  // namespace mcdbn

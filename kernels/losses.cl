@@ -1,0 +1,41 @@
+// Losses, reduced on the device in a fixed order: one partial sum a row, then one work-item adds
+// them to accumulator[slot]; the host reads the accumulators once an epoch.
+
+#ifndef VEC
+#define VEC 16
+#endif
+
+// partial[r] = sum_c (x[r, c] − y[r, c])²; global: (rows)
+kernel void squared_error_rows(global const float* x, int x_offset, int x_ld,
+                               global const float* y, int y_offset, int y_ld, int columns,
+                               global float* partial) {
+  const int row = get_global_id(0);
+  x += x_offset + row * x_ld;
+  y += y_offset + row * y_ld;
+  float sum = 0.0f;
+  for (int c = 0; c < columns; ++c) sum = fma(x[c] - y[c], x[c] - y[c], sum);
+  partial[row] = sum;
+}
+
+// partial[r] = − sum_c x·log y + (1 − x)·log(1 − y), y kept away from 0 and 1; global: (rows)
+kernel void cross_entropy_rows(global const float* x, int x_offset, int x_ld,
+                               global const float* y, int y_offset, int y_ld, int columns,
+                               global float* partial) {
+  const int row = get_global_id(0);
+  x += x_offset + row * x_ld;
+  y += y_offset + row * y_ld;
+  float sum = 0.0f;
+  for (int c = 0; c < columns; ++c) {
+    const float p = clamp(y[c], 1e-7f, 1.0f - 1e-7f);
+    sum -= x[c] * log(p) + (1.0f - x[c]) * log(1.0f - p);
+  }
+  partial[row] = sum;
+}
+
+// accumulator[slot] += scale · sum(partial); global: (1)
+kernel void accumulate(global const float* partial, int rows, float scale,
+                       global float* accumulator, int slot) {
+  float sum = 0.0f;
+  for (int row = 0; row < rows; ++row) sum += partial[row];
+  accumulator[slot] += scale * sum;
+}

@@ -1,0 +1,32 @@
+// Parameter updates, pointwise over [rows x ld] floats; padding columns hold zeros and stay so,
+// as their gradients are zero. `gradient` points uphill for momentum (eq 36: data − reconstruction)
+// and downhill's opposite, the loss's gradient, for Adam. global: (elements / VEC)
+
+#include "philox.clh"
+#include "activation.clh"
+
+// velocity ← momentum · velocity + rate · (gradient − decay · parameter); parameter += velocity
+kernel void momentum_update(global float* parameter, global float* velocity,
+                            global const float* gradient, float rate, float momentum, float decay) {
+  const int at = get_global_id(0) * VEC;
+  const floatN value = loadN(at, parameter);
+  const floatN step =
+      momentum * loadN(at, velocity) + rate * (loadN(at, gradient) - decay * value);
+  storeN(step, at, velocity);
+  storeN(value + step, at, parameter);
+}
+
+// Kingma and Ba (2015), algorithm 1, with decoupled weight decay; correction1 = 1 − β1^t and so on.
+kernel void adam_update(global float* parameter, global float* mean, global float* square,
+                        global const float* gradient, float rate, float beta1, float beta2,
+                        float epsilon, float decay, float correction1, float correction2) {
+  const int at = get_global_id(0) * VEC;
+  const floatN g = loadN(at, gradient);
+  const floatN m = beta1 * loadN(at, mean) + (1.0f - beta1) * g;
+  const floatN s = beta2 * loadN(at, square) + (1.0f - beta2) * g * g;
+  const floatN value = loadN(at, parameter);
+  storeN(m, at, mean);
+  storeN(s, at, square);
+  const floatN step = (m / correction1) / (sqrt(s / correction2) + epsilon);
+  storeN(value - rate * (step + decay * value), at, parameter);
+}

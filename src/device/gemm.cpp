@@ -1,0 +1,131 @@
+#include "mcdbn/device/gemm.hpp"
+
+#include <clblast.h>
+#include <fmt/format.h>
+
+#include "kernel_arguments.hpp"
+#include "mcdbn/device/units.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// Accumulator rows of one work-item: enough to hide the fma latency, few enough for the registers.
+int tile_rows_for(const Device& device, std::size_t rows) {
+  const int largest = device.info().is_gpu ? 4 : 10;
+  return std::min<int>(largest, to_int(std::max<std::size_t>(rows, 1)));
+}
+
+void require_operands(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& options) {
+  require(a.columns == b.count || a.columns == b.count + padded(a.columns) - a.columns,
+          "gemm: A's columns are not B's rows");
+  require(b.columns == c.columns && a.count == c.count, "gemm: C's shape is not that of A·B");
+  require(b.index == nullptr && c.index == nullptr, "gemm: only A may be indexed");
+  if (options.bias)
+    require(options.bias->columns() == c.columns &&
+                (options.bias->rows() == 1 || options.bias_first + c.count <= options.bias->rows()),
+            "gemm: the bias does not fit C");
+  if (options.factor) require(same_shape(*options.factor, c), "gemm: the factor does not fit C");
+  if (options.sample) require(same_shape(*options.sample, c), "gemm: the sample does not fit C");
+  require((options.sampling == Sampling::none) == (options.sample == nullptr),
+          "gemm: sampling needs a matrix for the draws, and the other way round");
+  require((options.activation == Activation::sigmoid_gradient) == (options.factor != nullptr),
+          "gemm: a sigmoid's gradient needs its values, and the other way round");
+}
+
+void gemm_own(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& options) {
+  Device& device = c.matrix->device();
+  const int vec = vector_width(device);
+  const int tile_rows = tile_rows_for(device, c.count);
+  const int bias_kind = !options.bias ? 0 : options.bias->rows() == 1 ? 1 : 2;
+  cl::Kernel& kernel =
+      device.programs().kernel("gemm.cl", "gemm",
+                               {{"VEC", vec},
+                                {"TILE_ROWS", tile_rows},
+                                {"A_ROWS", a.index ? 1 : 0},
+                                {"BIAS", bias_kind},
+                                {"ACTIVATION", static_cast<int>(options.activation)},
+                                {"SAMPLE", static_cast<int>(options.sampling)}});
+  // Arguments that this variant does not read still need a buffer: C's own.
+  const Matrix& bias = options.bias ? *options.bias : *c.matrix;
+  const Rows& factor = options.factor ? *options.factor : c;
+  const Rows& sample = options.sample ? *options.sample : c;
+  const LaunchSize size{{ceil_divide(c.columns, static_cast<std::size_t>(vec)),
+                         ceil_divide(c.count, static_cast<std::size_t>(tile_rows))}};
+  launch(device, kernel, size, a.matrix->buffer(), a.offset(), a.stride(),
+         a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first), a.shift,
+         b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(), c.stride(),
+         to_int(c.count), to_int(c.columns), to_int(b.count), options.alpha, options.beta,
+         bias.buffer(), bias_kind == 2 ? to_int(options.bias_first * bias.stride()) : 0,
+         to_int(bias.stride()), factor.matrix->buffer(), factor.offset(), factor.stride(),
+         sample.matrix->buffer(), sample.offset(), sample.stride(), options.temperature,
+         random_argument(options.random));
+}
+
+/// Row-major product by CLBlast, which reads no index: indexed rows are gathered first.
+void gemm_clblast(const Rows& a, const Rows& b, const Rows& c, float alpha, float beta,
+                  clblast::Transpose transpose_a) {
+  Device& device = c.matrix->device();
+  Matrix gathered;
+  const Rows* left = &a;
+  Rows gathered_rows = a;
+  if (a.index) {
+    gathered = Matrix(device, a.count, a.columns);
+    gathered_rows = Rows(gathered);
+    gather(a, gathered_rows);
+    left = &gathered_rows;
+  }
+  const std::size_t k = b.count;
+  cl_command_queue queue = device.queue()();
+  const auto status = clblast::Gemm<float>(
+      clblast::Layout::kRowMajor, transpose_a, clblast::Transpose::kNo, c.count, c.columns, k,
+      alpha, left->matrix->buffer()(), static_cast<std::size_t>(left->offset()),
+      static_cast<std::size_t>(left->stride()), b.matrix->buffer()(),
+      static_cast<std::size_t>(b.offset()), static_cast<std::size_t>(b.stride()), beta,
+      c.matrix->buffer()(), static_cast<std::size_t>(c.offset()),
+      static_cast<std::size_t>(c.stride()), &queue);
+  if (status != clblast::StatusCode::kSuccess)
+    throw DeviceError(fmt::format("CLBlast's Gemm returned {}", static_cast<int>(status)));
+  device.count_launch();
+}
+
+}  // namespace
+
+void gemm(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& options) {
+  require_operands(a, b, c, options);
+  if (c.count == 0 || c.columns == 0) return;
+  if (options.backend == GemmBackend::clblast && b.count > 0) {
+    gemm_clblast(a, b, c, options.alpha, options.beta, clblast::Transpose::kNo);
+    if (options.bias || options.activation != Activation::none ||
+        options.sampling != Sampling::none)
+      apply_epilogue(c, options);
+    return;
+  }
+  gemm_own(a, b, c, options);
+}
+
+void gemm_transposed_a(const Rows& a, const Rows& b, const Rows& c, float alpha, float beta,
+                       GemmBackend backend) {
+  require(a.count == b.count, "gemm_transposed_a: A and B differ in rows");
+  require(a.columns == c.count && b.columns == c.columns,
+          "gemm_transposed_a: C's shape is not that of AᵀB");
+  require(b.index == nullptr && c.index == nullptr, "gemm_transposed_a: only A may be indexed");
+  if (c.count == 0 || c.columns == 0) return;
+  if (backend == GemmBackend::clblast && b.count > 0) {
+    gemm_clblast(a, b, c, alpha, beta, clblast::Transpose::kYes);
+    return;
+  }
+  Device& device = c.matrix->device();
+  const int vec = vector_width(device);
+  const int tile_rows = device.info().is_gpu ? 4 : 16;  // divides the column padding: no row test
+  cl::Kernel& kernel = device.programs().kernel(
+      "gemm.cl", "gemm_transposed_a",
+      {{"VEC", vec}, {"TILE_ROWS", tile_rows}, {"A_ROWS", a.index ? 1 : 0}});
+  const LaunchSize size{{ceil_divide(c.columns, static_cast<std::size_t>(vec)),
+                         ceil_divide(c.count, static_cast<std::size_t>(tile_rows))}};
+  launch(device, kernel, size, a.matrix->buffer(), a.offset(), a.stride(),
+         a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first), a.shift,
+         b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(), c.stride(),
+         to_int(c.count), to_int(c.columns), to_int(b.count), alpha, beta);
+}
+
+}  // namespace mcdbn

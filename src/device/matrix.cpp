@@ -1,0 +1,124 @@
+#include "mcdbn/device/matrix.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "mcdbn/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// Runs an OpenCL call, turning its errors into ours.
+template <typename Call>
+auto checked(const char* what, Call&& call) {
+  try {
+    return call();
+  } catch (const cl::Error& error) {
+    throw DeviceError(fmt::format("{}: {} returned {}", what, error.what(), error.err()));
+  }
+}
+
+void require_shape(bool holds, const char* what) {
+  if (!holds) throw ShapeError(what);
+}
+
+}  // namespace
+
+Matrix::Matrix(Device& device, std::size_t rows, std::size_t columns)
+    : device_(&device), rows_(rows), columns_(columns) {
+  // Kernels index with 32-bit integers.
+  if (element_count() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+    throw DeviceError(fmt::format("a matrix of {} x {} exceeds 2^31 elements", rows, columns));
+  if (empty()) return;
+  checked("allocating a matrix", [&] {
+    buffer_ = cl::Buffer(device.context(), CL_MEM_READ_WRITE, element_count() * sizeof(float));
+  });
+  set_zero();
+}
+
+Matrix Matrix::from_host(Device& device, const Eigen::Ref<const MatrixF>& values) {
+  Matrix matrix(device, static_cast<std::size_t>(values.rows()),
+                static_cast<std::size_t>(values.cols()));
+  matrix.upload(values);
+  return matrix;
+}
+
+MatrixF Matrix::to_host() const {
+  MatrixF wide(rows_, stride());
+  if (!empty())
+    checked("reading a matrix", [&] {
+      device_->queue().enqueueReadBuffer(buffer_, CL_TRUE, 0, element_count() * sizeof(float),
+                                         wide.data());
+    });
+  return wide.leftCols(static_cast<Eigen::Index>(columns_));
+}
+
+void Matrix::upload(const Eigen::Ref<const MatrixF>& values) {
+  require_shape(static_cast<std::size_t>(values.rows()) == rows_ &&
+                    static_cast<std::size_t>(values.cols()) == columns_,
+                "upload: the values have another shape than the matrix");
+  if (empty()) return;
+  MatrixF wide = MatrixF::Zero(values.rows(), static_cast<Eigen::Index>(stride()));
+  wide.leftCols(values.cols()) = values;
+  checked("writing a matrix", [&] {
+    device_->queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, element_count() * sizeof(float),
+                                        wide.data());
+  });
+}
+
+void Matrix::set_zero() {
+  if (empty()) return;
+  checked("clearing a matrix", [&] {
+    device_->queue().enqueueFillBuffer(buffer_, 0.0F, 0, element_count() * sizeof(float));
+  });
+}
+
+void Matrix::copy_from(const Matrix& other) {
+  require_shape(other.rows_ == rows_ && other.columns_ == columns_,
+                "copy: the matrices differ in shape");
+  if (empty()) return;
+  checked("copying a matrix", [&] {
+    device_->queue().enqueueCopyBuffer(other.buffer_, buffer_, 0, 0,
+                                       element_count() * sizeof(float));
+  });
+}
+
+IndexBuffer::IndexBuffer(Device& device, const std::vector<std::int32_t>& values)
+    : size_(values.size()) {
+  checked("allocating an index", [&] {
+    buffer_ = cl::Buffer(device.context(), CL_MEM_READ_WRITE,
+                         std::max<std::size_t>(size_, 1) * sizeof(std::int32_t));
+  });
+  upload(device, values);
+}
+
+void IndexBuffer::upload(Device& device, const std::vector<std::int32_t>& values) {
+  require_shape(values.size() == size_, "upload: the index has another size");
+  if (values.empty()) return;
+  checked("writing an index", [&] {
+    device.queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, size_ * sizeof(std::int32_t),
+                                      values.data());
+  });
+}
+
+Rows::Rows(const Matrix& all) : matrix(&all), count(all.rows()), columns(all.columns()) {}
+
+Rows::Rows(const Matrix& from, std::size_t first_row, std::size_t row_count)
+    : matrix(&from), count(row_count), columns(from.columns()), first(first_row) {
+  require_shape(first_row + row_count <= from.rows(), "a block of rows reaches past the matrix");
+}
+
+Rows Rows::indexed(const Matrix& from, const IndexBuffer& index, std::size_t index_first,
+                   std::size_t row_count, int shift, std::size_t frames) {
+  require_shape(index_first + row_count <= index.size(), "a mini-batch reaches past the index");
+  Rows rows(from);
+  rows.count = row_count;
+  rows.columns = frames == 1 ? from.columns() : frames * from.stride();
+  rows.index = &index;
+  rows.index_first = index_first;
+  rows.shift = shift;
+  return rows;
+}
+
+}  // namespace mcdbn

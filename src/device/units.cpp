@@ -1,0 +1,71 @@
+#include "mcdbn/device/units.hpp"
+
+#include "kernel_arguments.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// One work-item for VEC columns of one row.
+LaunchSize pointwise_size(const Rows& rows) {
+  return {{ceil_divide(rows.columns, static_cast<std::size_t>(vector_width(rows.matrix->device()))),
+           rows.count}};
+}
+
+cl::Kernel& units_kernel(Device& device, const char* name, Defines defines = {}) {
+  defines["VEC"] = vector_width(device);
+  return device.programs().kernel("units.cl", name, defines);
+}
+
+}  // namespace
+
+void apply_epilogue(const Rows& c, const GemmOptions& options) {
+  Device& device = c.matrix->device();
+  const int bias_kind = !options.bias ? 0 : options.bias->rows() == 1 ? 1 : 2;
+  const Matrix& bias = options.bias ? *options.bias : *c.matrix;
+  const Rows& factor = options.factor ? *options.factor : c;
+  const Rows& sample = options.sample ? *options.sample : c;
+  cl::Kernel& kernel = units_kernel(device, "epilogue",
+                                    {{"BIAS", bias_kind},
+                                     {"ACTIVATION", static_cast<int>(options.activation)},
+                                     {"SAMPLE", static_cast<int>(options.sampling)}});
+  launch(device, kernel, pointwise_size(c), c.matrix->buffer(), c.offset(), c.stride(),
+         to_int(c.columns), bias.buffer(),
+         bias_kind == 2 ? to_int(options.bias_first * bias.stride()) : 0, to_int(bias.stride()),
+         factor.matrix->buffer(), factor.offset(), factor.stride(), sample.matrix->buffer(),
+         sample.offset(), sample.stride(), options.temperature, random_argument(options.random));
+}
+
+void gather(const Rows& rows, const Rows& out) {
+  require(rows.index != nullptr && same_shape(rows, out),
+          "gather: wants an index, and an output of its shape");
+  Device& device = out.matrix->device();
+  launch(device, units_kernel(device, "gather_rows"), pointwise_size(out), rows.matrix->buffer(),
+         rows.stride(), rows.index->buffer(), to_int(rows.index_first), rows.shift,
+         to_int(rows.columns), out.matrix->buffer(), out.offset(), out.stride());
+}
+
+void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& out) {
+  require(same_shape(x, y) && same_shape(x, out), "difference: shapes differ");
+  Device& device = out.matrix->device();
+  launch(device, units_kernel(device, "scaled_difference"), pointwise_size(out), x.matrix->buffer(),
+         x.offset(), x.stride(), y.matrix->buffer(), y.offset(), y.stride(), to_int(out.columns),
+         scale, out.matrix->buffer(), out.offset(), out.stride());
+}
+
+void transpose(const Matrix& in, Matrix& out) {
+  require(in.rows() == out.columns() && in.columns() == out.rows(), "transpose: shapes differ");
+  Device& device = out.device();
+  launch(device, units_kernel(device, "transpose"), {{in.columns(), in.rows()}}, in.buffer(),
+         to_int(in.stride()), out.buffer(), to_int(out.stride()));
+}
+
+void column_sum(const Rows& in, float scale, float beta, Matrix& out) {
+  require(out.rows() == 1 && out.columns() == in.columns, "column_sum: shapes differ");
+  Device& device = out.device();
+  const LaunchSize size{
+      {ceil_divide(in.columns, static_cast<std::size_t>(vector_width(device))), 1}};
+  launch(device, units_kernel(device, "column_sum"), size, in.matrix->buffer(), in.offset(),
+         in.stride(), to_int(in.count), to_int(in.columns), scale, beta, out.buffer());
+}
+
+}  // namespace mcdbn
