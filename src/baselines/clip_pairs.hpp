@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "mcdbn/matrix_types.hpp"
+
+namespace mcdbn {
+
+/// @throws ShapeError unless every track has its pose of as many frames, columns agree over the
+///         clips, and there is a frame to learn from
+void check_clip_pairs(const std::vector<MatrixF>& tracks, const std::vector<MatrixF>& poses);
+
+/// @throws ShapeError unless the baseline was fitted, to tracks of that many columns
+void check_track(const MatrixF& track, Eigen::Index fitted_dimension);
+
+/// A joint that was not seen is taken as 0, the training mean of a standardized feature.
+MatrixF without_nan(const MatrixF& track);
+
+/// All clips below one another.
+MatrixF stacked(const std::vector<MatrixF>& clips);
+
+}  // namespace mcdbn
