@@ -1,0 +1,30 @@
+# Installs library, headers, the CMake package mcdbn (target mcdbn::mcdbn) and a pkg-config file.
+set(MCDBN_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/mcdbn)
+
+install(TARGETS mcdbn EXPORT mcdbn-targets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY include/mcdbn DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT mcdbn-targets NAMESPACE mcdbn:: DESTINATION ${MCDBN_PACKAGE_DIR})
+
+configure_package_config_file(src/packaging/mcdbn-config.cmake.in
+                              ${CMAKE_BINARY_DIR}/generated/mcdbn-config.cmake
+                              INSTALL_DESTINATION ${MCDBN_PACKAGE_DIR})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/generated/mcdbn-config-version.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/generated/mcdbn-config.cmake
+              ${CMAKE_BINARY_DIR}/generated/mcdbn-config-version.cmake
+        DESTINATION ${MCDBN_PACKAGE_DIR})
+
+# A static library leaves its own dependencies to whoever links it.
+set(dependencies "opencv4 clblast fmt spdlog")
+if(BUILD_SHARED_LIBS)
+  set(MCDBN_PC_REQUIRES "eigen3 nlohmann_json OpenCL")
+  set(MCDBN_PC_REQUIRES_PRIVATE "${dependencies}")
+else()
+  set(MCDBN_PC_REQUIRES "eigen3 nlohmann_json OpenCL ${dependencies}")
+  set(MCDBN_PC_REQUIRES_PRIVATE "")
+endif()
+configure_file(src/packaging/mcdbn.pc.in ${CMAKE_BINARY_DIR}/generated/mcdbn.pc @ONLY)
+install(FILES ${CMAKE_BINARY_DIR}/generated/mcdbn.pc
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
