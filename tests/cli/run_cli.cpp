@@ -1,0 +1,75 @@
+#include "run_cli.hpp"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+
+namespace fs = std::filesystem;
+
+namespace mcdbn::test {
+
+CliResult run_cli(const std::string& arguments, const std::string& environment) {
+  const TemporaryFolder folder;
+  const fs::path errors = folder / "stderr";
+  const std::string command =
+      fmt::format("{} '{}' {} 2>'{}'", environment, MCDBN_CLI, arguments, errors.string());
+  FILE* pipe = popen(command.c_str(), "r");
+  if (!pipe) throw std::runtime_error("cannot start " + command);
+  CliResult result;
+  std::array<char, 4096> block{};
+  while (const std::size_t length = fread(block.data(), 1, block.size(), pipe)) {
+    result.standard_output.append(block.data(), length);
+  }
+  const int status = pclose(pipe);
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  std::ostringstream text;
+  text << std::ifstream(errors).rdbuf();
+  result.standard_error = text.str();
+  return result;
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string pattern = (fs::temp_directory_path() / "mcdbn-cli-XXXXXX").string();
+  if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot make a folder like " + pattern);
+  path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+fs::path TemporaryFolder::write(const std::string& name, const std::string& text) const {
+  std::ofstream(path_ / name) << text;
+  return path_ / name;
+}
+
+int count_lines(const std::string& text) {
+  return static_cast<int>(std::ranges::count(text, '\n'));
+}
+
+std::string small_bvh(int frames, bool with_calibration_pose) {
+  std::string text = fmt::format(
+      "HIERARCHY\nROOT Hips\n{{\n  OFFSET 0 0 0\n"
+      "  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+      "  JOINT Chest\n  {{\n    OFFSET 0 50 0\n"
+      "    CHANNELS 3 Zrotation Xrotation Yrotation\n"
+      "    End Site\n    {{\n      OFFSET 0 50 0\n    }}\n  }}\n}}\n"
+      "MOTION\nFrames: {}\nFrame Time: 0.0083333\n",
+      frames + (with_calibration_pose ? 1 : 0));
+  if (with_calibration_pose) text += "0 0 0 0 0 0 0 0 0\n";
+  for (int frame = 0; frame < frames; ++frame) {
+    text += fmt::format("0 90 {} 25 40 {} {} -35 20\n", frame, 10 + 0.1 * frame, 30 + 0.2 * frame);
+  }
+  return text;
+}
+
+}  // namespace mcdbn::test

@@ -1,0 +1,97 @@
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "run_cli.hpp"
+
+using namespace mcdbn::test;
+
+namespace {
+
+constexpr const char* kNoDrivers = "OCL_ICD_VENDORS=/nonexistent OCL_ICD_FILENAMES=";
+
+/// The error is one line that says who speaks, and stdout stays empty.
+void check_one_line_error(const CliResult& result, int exit_code) {
+  CAPTURE(result.standard_error);
+  CHECK(result.exit_code == exit_code);
+  CHECK(result.standard_output.empty());
+  CHECK(count_lines(result.standard_error) == 1);
+  CHECK(result.standard_error.starts_with("mcdbn-cl: error: "));
+}
+
+}  // namespace
+
+TEST_CASE("help and version go to stdout") {
+  const CliResult version = run_cli("--version");
+  CHECK(version.exit_code == 0);
+  CHECK(version.standard_output == "mcdbn-cl " MCDBN_VERSION "\n");
+  CHECK(version.standard_error.empty());
+
+  const CliResult help = run_cli("--help");
+  CHECK(help.exit_code == 0);
+  CHECK(help.standard_error.empty());
+  CHECK(help.standard_output.find("Exit codes") != std::string::npos);
+}
+
+TEST_CASE("every command's help shows an example") {
+  const std::string help = run_cli("--help").standard_output;
+  const auto start = help.find("Subcommands:\n");
+  REQUIRE(start != std::string::npos);
+  std::istringstream lines(help.substr(start));
+  std::string line;
+  std::getline(lines, line);
+  int commands = 0;
+  while (std::getline(lines, line) && line.starts_with("  ")) {
+    if (line[2] == ' ') continue;  // a description that ran on
+    const std::string command = line.substr(2, line.find(' ', 2) - 2);
+    CAPTURE(command);
+    const CliResult result = run_cli(command + " --help");
+    CHECK(result.exit_code == 0);
+    CHECK(result.standard_output.find("\n  mcdbn-cl " + command + " ") != std::string::npos);
+    ++commands;
+  }
+  CHECK(commands >= 3);
+}
+
+TEST_CASE("wrong usage is exit code 2") {
+  check_one_line_error(run_cli(""), 2);
+  check_one_line_error(run_cli("frobnicate"), 2);
+  check_one_line_error(run_cli("--frobnicate"), 2);
+  check_one_line_error(run_cli("project"), 2);
+  check_one_line_error(run_cli("project a.bvh -o a.csv --fps minus"), 2);
+  check_one_line_error(run_cli("project a.bvh -o a.csv --camera c.yaml --camera-azimuth 3"), 2);
+  CHECK(run_cli("frobnicate").standard_error.find("frobnicate") != std::string::npos);
+}
+
+TEST_CASE("devices lists what there is") {
+  const CliResult text = run_cli("devices");
+  if (text.exit_code == 4) {
+    MESSAGE("SKIPPED devices: no OpenCL device here");
+    return;
+  }
+  CHECK(text.exit_code == 0);
+  CHECK(text.standard_error.empty());
+  const auto listed = nlohmann::json::parse(run_cli("devices --json").standard_output);
+  REQUIRE(!listed.at("devices").empty());
+  for (const auto& device : listed.at("devices")) {
+    CHECK(device.at("compute_units").get<int>() > 0);
+    CHECK(device.at("global_memory_bytes").get<double>() > 0);
+    CHECK(device.at("opencl_c_version").get<std::string>().starts_with("OpenCL C "));
+    CHECK(text.standard_output.find(device.at("name").get<std::string>()) != std::string::npos);
+    CHECK(text.standard_output.find(device.at("driver").get<std::string>()) != std::string::npos);
+  }
+}
+
+TEST_CASE("no OpenCL platform is exit code 4 and says what to install") {
+  const CliResult result = run_cli("devices", kNoDrivers);
+  check_one_line_error(result, 4);
+  CHECK(result.standard_error.find("pocl-opencl-icd") != std::string::npos);
+  check_one_line_error(run_cli("devices --json", kNoDrivers), 4);
+}
+
+TEST_CASE("a full disk behind stdout is a failure") {
+  if (run_cli("devices").exit_code != 0) return;
+  const CliResult result = run_cli("devices >/dev/full");
+  CHECK(result.exit_code == 1);
+  CHECK(count_lines(result.standard_error) == 1);
+}
