@@ -1,0 +1,207 @@
+#include "mcdbn/motion/skeleton.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+
+#include "mcdbn/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// Whether the joint has a position channel, that is, moves against its parent.
+bool has_position(const Joint& joint) {
+  return std::any_of(joint.channels.begin(), joint.channels.end(),
+                     [](Channel channel) { return !is_rotation(channel); });
+}
+
+/// The only child of `joint`, or -1.
+int only_child(const Skeleton& skeleton, int joint) {
+  int child = -1;
+  for (int i = joint + 1; i < skeleton.joint_count(); ++i) {
+    if (skeleton.joints[i].parent != joint) continue;
+    if (child >= 0) return -1;
+    child = i;
+  }
+  return child;
+}
+
+/// Where the body begins: the last joint with position channels on the root's chain of only
+/// children. The offset of a joint before it is where the clip happens to stand, not a bone.
+int body_root(const Skeleton& skeleton) {
+  int root = 0;
+  for (int joint = 0; joint >= 0; joint = only_child(skeleton, joint)) {
+    if (has_position(skeleton.joints[joint])) root = joint;
+  }
+  return root;
+}
+
+/// Which joints stand below `root` (itself included).
+std::vector<bool> below(const Skeleton& skeleton, int root) {
+  std::vector<bool> inside(skeleton.joints.size(), false);
+  for (int i = root; i < skeleton.joint_count(); ++i) {
+    const int parent = skeleton.joints[i].parent;
+    inside[i] = i == root || (parent >= 0 && inside[parent]);
+  }
+  return inside;
+}
+
+/// Size of the box around the rest pose, the body's root at the origin.
+Eigen::Vector3d rest_extent(const Skeleton& skeleton, int root) {
+  const std::vector<bool> inside = below(skeleton, root);
+  std::vector<Eigen::Vector3d> position(skeleton.joints.size(), Eigen::Vector3d::Zero());
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
+  const auto include = [&](const Eigen::Vector3d& point) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  };
+  for (int i = root; i < skeleton.joint_count(); ++i) {
+    if (!inside[i]) continue;
+    const Joint& joint = skeleton.joints[i];
+    if (i != root) position[i] = position[joint.parent] + joint.offset;
+    include(position[i]);
+    for (const Eigen::Vector3d& site : joint.end_sites) include(position[i] + site);
+  }
+  return high - low;
+}
+
+bool name_contains(const Joint& joint, std::string_view lower_case_part) {
+  const auto same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == static_cast<unsigned char>(b);
+  };
+  return std::search(joint.name.begin(), joint.name.end(), lower_case_part.begin(),
+                     lower_case_part.end(), same) != joint.name.end();
+}
+
+/// Length of the longest bone path from the root to, or past, a joint with such a name; 0 if none.
+double reach(const Skeleton& skeleton, int root, std::initializer_list<std::string_view> names) {
+  const std::vector<bool> inside = below(skeleton, root);
+  std::vector<double> length(skeleton.joints.size(), 0.0);
+  double longest = 0;
+  for (int i = root + 1; i < skeleton.joint_count(); ++i) {
+    if (!inside[i]) continue;
+    const Joint& joint = skeleton.joints[i];
+    length[i] = length[joint.parent] + joint.offset.norm();
+    const bool named = std::any_of(names.begin(), names.end(), [&](std::string_view name) {
+      return name_contains(joint, name);
+    });
+    if (!named) continue;
+    double end_site = 0;
+    for (const Eigen::Vector3d& site : joint.end_sites) end_site = std::max(end_site, site.norm());
+    longest = std::max(longest, length[i] + end_site);
+  }
+  return longest;
+}
+
+/// Range of a column over a clip's frames; 0 for an empty clip.
+double range(const MatrixD& channels, int column) {
+  if (channels.rows() == 0) return 0;
+  return channels.col(column).maxCoeff() - channels.col(column).minCoeff();
+}
+
+/// Whether the position of the joint of that name changes within any of the clips.
+bool travels(const std::vector<const Motion*>& clips, const std::string& name) {
+  constexpr double kStill = 1e-6;  // below what writers print
+  for (const Motion* clip : clips) {
+    const int joint = clip->skeleton.find(name);
+    if (joint < 0) continue;
+    const std::vector<Channel>& channels = clip->skeleton.joints[joint].channels;
+    const int first = clip->skeleton.first_channel(joint);
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      if (!is_rotation(channels[i]) &&
+          range(clip->channels, first + static_cast<int>(i)) > kStill) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+int Skeleton::channel_count() const {
+  return first_channel(joint_count());
+}
+
+int Skeleton::first_channel(int joint) const {
+  std::size_t count = 0;
+  for (int i = 0; i < joint; ++i) count += joints[i].channels.size();
+  return static_cast<int>(count);
+}
+
+int Skeleton::find(std::string_view name) const {
+  const auto found = std::find_if(joints.begin(), joints.end(),
+                                  [&](const Joint& joint) { return joint.name == name; });
+  return found == joints.end() ? -1 : static_cast<int>(found - joints.begin());
+}
+
+double Skeleton::rest_height(int up_axis) const {
+  if (joints.empty()) return 0;
+  const int root = body_root(*this);
+  const Eigen::Vector3d extent = rest_extent(*this, root);
+  if (up_axis >= 0) return extent[up_axis];
+  // Where every bone lies along its own frame's axis, zero rotations fold the legs over the trunk
+  // (Bandai): nobody stands like that, so the bones' lengths have to tell.
+  constexpr double kFolded = 0.7;
+  const double trunk = reach(*this, root, {"head"});
+  const double leg = reach(*this, root, {"foot", "toe", "ankle"});
+  const double length = trunk > 0 && leg > 0 ? trunk + leg : 0.0;
+  const double largest = extent.maxCoeff();
+  return largest < kFolded * length ? length : largest;
+}
+
+WorldPose forward_kinematics(const Skeleton& skeleton,
+                             const Eigen::Ref<const RowVectorD>& channels) {
+  if (channels.size() != skeleton.channel_count()) {
+    throw ShapeError(fmt::format("forward_kinematics: {} values for a skeleton of {} channels",
+                                 channels.size(), skeleton.channel_count()));
+  }
+  WorldPose pose;
+  pose.world_from_joint.reserve(skeleton.joints.size());
+  pose.position.reserve(skeleton.joints.size());
+  const double* joint_channels = channels.data();
+  for (const Joint& joint : skeleton.joints) {
+    Eigen::Vector3d offset = joint.offset;
+    for (std::size_t i = 0; i < joint.channels.size(); ++i) {
+      const Channel channel = joint.channels[i];
+      if (!is_rotation(channel)) offset[axis_of(channel)] = joint_channels[i];
+    }
+    const Eigen::Matrix3d parent_from_joint = local_rotation(joint, joint_channels);
+    if (joint.parent < 0) {
+      pose.world_from_joint.push_back(parent_from_joint);
+      pose.position.push_back(offset);
+    } else {
+      const Eigen::Matrix3d& world_from_parent = pose.world_from_joint[joint.parent];
+      pose.position.push_back(pose.position[joint.parent] + world_from_parent * offset);
+      pose.world_from_joint.push_back(world_from_parent * parent_from_joint);
+    }
+    joint_channels += joint.channels.size();
+  }
+  return pose;
+}
+
+MatrixD joint_positions(const Motion& motion) {
+  const int joints = motion.skeleton.joint_count();
+  MatrixD positions(motion.frames(), 3 * joints);
+  for (int frame = 0; frame < motion.frames(); ++frame) {
+    const WorldPose pose = forward_kinematics(motion.skeleton, motion.channels.row(frame));
+    for (int joint = 0; joint < joints; ++joint) {
+      positions.block<1, 3>(frame, 3 * joint) = pose.position[joint].transpose();
+    }
+  }
+  return positions;
+}
+
+int moving_root(const std::vector<const Motion*>& clips) {
+  if (clips.empty()) return 0;
+  const Skeleton& skeleton = clips.front()->skeleton;
+  if (skeleton.joints.empty()) return 0;
+  for (int joint = 0; joint >= 0; joint = only_child(skeleton, joint)) {
+    if (travels(clips, skeleton.joints[joint].name)) return joint;
+  }
+  return 0;
+}
+
+}  // namespace mcdbn
