@@ -121,4 +121,16 @@ Rows Rows::indexed(const Matrix& from, const IndexBuffer& index, std::size_t ind
   return rows;
 }
 
+Rows Rows::strided(const Matrix& from, std::size_t first, std::size_t count, std::size_t step,
+                   std::size_t frames) {
+  require_shape(count == 0 || first + (count - 1) * step + frames <= from.rows(),
+                "strided rows reach past the matrix");
+  Rows rows(from);
+  rows.count = count;
+  rows.columns = frames == 1 ? from.columns() : frames * from.stride();
+  rows.first = first;
+  rows.step = step;
+  return rows;
+}
+
 }  // namespace mcdbn

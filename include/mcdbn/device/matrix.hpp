@@ -67,6 +67,7 @@ struct Rows {
   std::size_t count = 0;
   std::size_t columns = 0;  ///< may exceed the matrix's: a window of following frames
   std::size_t first = 0;    ///< first row of a block (without index)
+  std::size_t step = 1;     ///< rows from one to the next (without index)
   const IndexBuffer* index = nullptr;
   std::size_t index_first = 0;  ///< first entry of the index to use
   int shift = 0;                ///< added to every index entry
@@ -78,8 +79,13 @@ struct Rows {
   static Rows indexed(const Matrix& from, const IndexBuffer& index, std::size_t index_first,
                       std::size_t row_count, int shift = 0, std::size_t frames = 1);
 
+  /// Rows first, first + step, first + 2·step …, each running on over `frames` rows: the same
+  /// moment of many sequences that lie one after another.
+  static Rows strided(const Matrix& from, std::size_t first, std::size_t count, std::size_t step,
+                      std::size_t frames = 1);
+
   int offset() const { return static_cast<int>(first * matrix->stride()); }
-  int stride() const { return static_cast<int>(matrix->stride()); }
+  int stride() const { return static_cast<int>(step * matrix->stride()); }
 };
 
 }  // namespace mcdbn
