@@ -68,4 +68,14 @@ void column_sum(const Rows& in, float scale, float beta, Matrix& out) {
          in.stride(), to_int(in.count), to_int(in.columns), scale, beta, out.buffer());
 }
 
+void block_sum(const Matrix& in, const Rows& out) {
+  require(out.first == 0 && out.columns == in.columns() && in.rows() % out.count == 0,
+          "block_sum: shapes differ");
+  Device& device = out.matrix->device();
+  cl::Kernel& kernel =
+      device.programs().kernel("mean_field.cl", "block_sum", {{"VEC", vector_width(device)}});
+  launch(device, kernel, pointwise_size(out), in.buffer(), to_int(in.stride()), to_int(out.count),
+         to_int(in.rows() / out.count), to_int(out.columns), out.matrix->buffer(), out.stride());
+}
+
 }  // namespace mcdbn

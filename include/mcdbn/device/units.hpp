@@ -16,5 +16,7 @@ void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& ou
 void transpose(const Matrix& in, Matrix& out);
 /// out = beta · out + scale · (sum over rows). @param out [1 x in.columns]
 void column_sum(const Rows& in, float scale, float beta, Matrix& out);
+/// out = sum of the blocks of out.count rows that make up `in`. @param in [blocks·rows x columns]
+void block_sum(const Matrix& in, const Rows& out);
 
 }  // namespace mcdbn

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "mcdbn/model/cdbn.hpp"
+#include "mcdbn/model/mrbm.hpp"
+
+namespace mcdbn {
+
+/// The multimodal conditional deep belief network (section IV.A, Fig. 6): a CDBN for each modality
+/// and an MRBM over their codes.
+struct Mcdbn {
+  Cdbn track;  ///< 2D
+  Cdbn pose;   ///< 3D
+  Mrbm mrbm;
+  std::size_t look_ahead = 0;  ///< the 2D code of frame t + look_ahead stands for the 3D code of t
+  std::size_t mean_field_steps = 10;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "mcdbn/motion/camera.hpp"
+
+namespace mcdbn {
+
+/// How one kind of CRBM layer is trained (Algorithm 2, eq 36 to 41).
+struct CdSettings {
+  double rate = 1e-3;                 ///< of W, B, a and b
+  double autoregressive_rate = 1e-5;  ///< of A: much smaller, or it explains everything by itself
+  double momentum = 0.9;
+  std::size_t momentum_from_epoch = 5;  ///< 0 before
+  double weight_decay = 2e-4;           ///< of W, A and B
+  double initial_deviation = 0.01;
+  std::size_t epochs = 100;
+};
+
+/// Multi-prediction training of the MRBM (eq 42).
+struct MultiPredictionSettings {
+  double rate = 1e-3;  ///< Adam's
+  double weight_decay = 0.0;
+  double initial_deviation = 0.01;
+  std::size_t mean_field_steps = 10;
+  std::size_t epochs = 100;
+};
+
+/// Everything that shapes a training run: the paper's Table 2 and section V, and what it leaves
+/// out.
+struct TrainingConfig {
+  std::uint64_t seed = 1;
+  double fps = 30.0;
+  std::size_t phases = 4;  ///< sampling grids taken from each clip where its own rate allows
+  bool keep_first_frame = false;
+  CameraPlacement camera;
+
+  std::size_t order = 5;
+  std::size_t hidden = 300;
+  std::size_t layers = 2;
+  std::size_t mrbm_hidden = 300;
+  std::size_t look_ahead = 5;   ///< the MRBM pairs the 2D code of frame t + look_ahead with 3D of t
+  std::size_t gibbs_steps = 5;  ///< k of CD-k
+  std::size_t batch = 100;
+
+  CdSettings gaussian;
+  CdSettings binary{.rate = 1e-2, .autoregressive_rate = 1e-3};
+  MultiPredictionSettings mrbm;
+
+  /// The paper's own figures (Table 2, section V.C): rate 0.1, momentum 0.9, weights from N(0, 1),
+  /// MRBM of 150, no look-ahead. Diverges (DESIGN section 2): the guard says so.
+  static TrainingConfig paper();
+};
+
+/// Calls visit(name, member, help) for every setting, with dots between the parts of a name: the
+/// one list from which flags, TOML files and the record in the model are made.
+template <typename Config, typename Visit>
+void visit_settings(Config& config, Visit&& visit) {
+  visit("seed", config.seed, "seed of every random number");
+  visit("fps", config.fps, "frame rate that clips are resampled to");
+  visit("phases", config.phases, "sampling grids taken from each clip (free augmentation)");
+  visit("keep-first-frame", config.keep_first_frame, "keep a leading calibration pose");
+  visit("order", config.order, "frames of history of every CRBM (N)");
+  visit("hidden", config.hidden, "hidden units of every CRBM");
+  visit("layers", config.layers, "CRBMs in each CDBN");
+  visit("mrbm-hidden", config.mrbm_hidden, "hidden units of the MRBM");
+  visit("look-ahead", config.look_ahead, "frames of 2D seen ahead; 0 is causal, the paper's");
+  visit("gibbs-steps", config.gibbs_steps, "k of CD-k");
+  visit("batch", config.batch, "windows in a mini-batch");
+  const auto visit_cd = [&visit](const std::string& prefix, auto& settings) {
+    visit(prefix + ".rate", settings.rate, "learning rate of W, B and the biases");
+    visit(prefix + ".autoregressive-rate", settings.autoregressive_rate, "learning rate of A");
+    visit(prefix + ".momentum", settings.momentum, "momentum");
+    visit(prefix + ".momentum-from-epoch", settings.momentum_from_epoch, "no momentum before it");
+    visit(prefix + ".weight-decay", settings.weight_decay, "decay of W, A and B");
+    visit(prefix + ".initial-deviation", settings.initial_deviation, "spread of the first weights");
+    visit(prefix + ".epochs", settings.epochs, "epochs");
+  };
+  visit_cd("gaussian", config.gaussian);
+  visit_cd("binary", config.binary);
+  visit("mrbm.rate", config.mrbm.rate, "Adam's rate for the MRBM");
+  visit("mrbm.weight-decay", config.mrbm.weight_decay, "decay of the MRBM's weights");
+  visit("mrbm.initial-deviation", config.mrbm.initial_deviation, "spread of the first weights");
+  visit("mrbm.mean-field-steps", config.mrbm.mean_field_steps, "unrolled steps of eq 32 and 33");
+  visit("mrbm.epochs", config.mrbm.epochs, "epochs");
+  visit("camera.azimuth-deg", config.camera.azimuth_deg, "camera around the clip, 0 in front");
+  visit("camera.elevation-deg", config.camera.elevation_deg, "camera above the horizon");
+  visit("camera.field-of-view-deg", config.camera.field_of_view_deg, "vertical field of view");
+}
+
+}  // namespace mcdbn

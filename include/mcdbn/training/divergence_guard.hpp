@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace mcdbn {
+
+/// Stops a run that blows up before it wastes an hour: the loss is not finite, or has grown to
+/// several times the best so far.
+class DivergenceGuard {
+ public:
+  DivergenceGuard(std::string stage, std::string advice);
+  /// @throws DivergenceError naming stage, epoch, loss and what to lower
+  void check(std::size_t epoch, double loss);
+
+ private:
+  static constexpr double kGrowth = 4.0;
+  std::string stage_, advice_;
+  double best_ = -1;
+};
+
+}  // namespace mcdbn

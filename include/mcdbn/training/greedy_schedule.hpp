@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "mcdbn/model/mcdbn.hpp"
+#include "mcdbn/training/config.hpp"
+#include "mcdbn/training/training_set.hpp"
+
+namespace mcdbn {
+
+/// What an observer learns of each epoch.
+struct EpochReport {
+  std::string stage;  ///< pose.0, pose.1, track.0, track.1, mrbm
+  std::size_t epoch = 0, epochs = 0;
+  double loss = 0;  ///< mean squared reconstruction error of a unit, or cross-entropy of a unit
+  double windows_per_s = 0;
+  double stage_progress = 0;    ///< 0 … 1
+  double overall_progress = 0;  ///< 0 … 1, by the stages' own cost
+};
+using EpochObserver = std::function<void(const EpochReport&)>;
+
+/// Algorithm 1: the 3D CDBN layer by layer, the 2D CDBN, then the MRBM on their codes.
+/// The observer may throw to stop. @throws DivergenceError saying what to lower
+Mcdbn train_greedy(Device& device, const TrainingSet& data, const TrainingConfig& config,
+                   const EpochObserver& observer = {});
+
+/// One layer of Algorithm 1: CD-k on every window of `visible` for settings.epochs epochs.
+/// @param stream separates this layer's random numbers from those of the others
+Crbm train_crbm(Device& device, const Sequences& visible, const CrbmShape& shape,
+                const CdSettings& settings, const TrainingConfig& config, std::uint16_t stream,
+                const EpochObserver& observer = {}, const std::string& stage = "crbm");
+
+/// The MRBM by multi-prediction on codes whose rows belong to the same frames.
+Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
+                const TrainingConfig& config, std::uint16_t stream,
+                const EpochObserver& observer = {});
+
+}  // namespace mcdbn

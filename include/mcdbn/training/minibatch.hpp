@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mcdbn/device/matrix.hpp"
+#include "mcdbn/device/random.hpp"
+
+namespace mcdbn {
+
+/// The order in which an epoch visits the windows: "each of N + 1 frames are mixed into a
+/// mini-batch" (section IV.B). Whole batches only; what is left over differs from epoch to epoch.
+/// With fewer rows than a batch all of them make one batch.
+class MinibatchSchedule {
+ public:
+  /// @param rows frame numbers that have a history within their clip  @throws ShapeError if none
+  MinibatchSchedule(Device& device, std::vector<std::int32_t> rows, std::size_t batch);
+
+  /// Shuffles anew, as the key says, and uploads.
+  void shuffle(const RandomKey& key);
+  std::size_t batch() const { return batch_; }
+  std::size_t batch_count() const { return rows_.size() / batch_; }
+  const IndexBuffer& index() const { return index_; }
+  std::size_t first_of(std::size_t batch_number) const { return batch_number * batch_; }
+
+ private:
+  Device* device_;
+  std::vector<std::int32_t> rows_;
+  std::size_t batch_;
+  IndexBuffer index_;
+};
+
+}  // namespace mcdbn

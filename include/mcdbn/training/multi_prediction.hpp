@@ -1,0 +1,46 @@
+#pragma once
+
+#include "mcdbn/device/losses.hpp"
+#include "mcdbn/device/update.hpp"
+#include "mcdbn/model/mrbm.hpp"
+
+namespace mcdbn {
+
+/// Multi-prediction MinVI training of the MRBM (eq 42; Goodfellow et al., Sohn et al.): each
+/// modality is predicted from the other by the unrolled mean field of eq 32 and 33, and the
+/// cross-entropy of that prediction is back-propagated through all steps, in both directions.
+class MultiPrediction {
+ public:
+  MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::size_t largest_batch);
+
+  /// One mini-batch with its Adam update: enqueues and returns. Adds to `losses` the mean
+  /// cross-entropy of a unit: slot 0 for pose from track, slot 1 for track from pose.
+  /// @param track, pose the same windows' codes, indexed
+  void step(const Rows& track, const Rows& pose, const AdamRule& rule, LossAccumulator& losses);
+
+  /// The gradients of eq 42 (mean over the mini-batch, summed over both directions) as the last
+  /// step left them, for tests.
+  MrbmParameters gradients() const;
+
+ private:
+  /// Gradients of −log p(absent | present), added to those of the other direction if `add`.
+  void back_propagate(Modality present, std::size_t count, bool add, LossAccumulator& losses);
+  void update(const AdamRule& rule);
+
+  Mrbm& mrbm_;
+  std::size_t steps_;
+  int update_count_ = 0;
+  std::array<Matrix, 2> target_;                 // [batch x visible]
+  std::array<Matrix, 2> values_, value_errors_;  // [(steps + 1)·batch x visible], [steps·batch x …]
+  Matrix drive_, drive_error_;                   // [batch x hidden]
+  Matrix hidden_, hidden_errors_;                // [steps·batch x hidden]
+  std::array<Matrix, 2> gradient_W_, gradient_a_;
+  Matrix gradient_b_;
+  struct Moments {
+    Matrix mean, square;
+  };
+  std::array<Moments, 2> moments_W_, moments_a_;
+  Moments moments_b_;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,177 @@
+#include "mcdbn/model/model_file.hpp"
+
+#include <fmt/format.h>
+
+#include "mcdbn/errors.hpp"
+#include "mcdbn/model/safetensors.hpp"
+
+namespace mcdbn {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFormatVersion = 1;
+
+json shape_json(const CrbmShape& shape) {
+  return {{"visible", shape.visible},
+          {"hidden", shape.hidden},
+          {"order", shape.order},
+          {"kind", shape.kind == VisibleKind::gaussian ? "gaussian" : "binary"}};
+}
+
+CrbmShape shape_from(const json& entry) {
+  return {entry.at("visible"), entry.at("hidden"), entry.at("order"),
+          entry.at("kind") == "gaussian" ? VisibleKind::gaussian : VisibleKind::binary};
+}
+
+json put_cdbn(Safetensors& file, const std::string& name, const Cdbn& cdbn) {
+  json shapes = json::array();
+  for (std::size_t i = 0; i < cdbn.layers.size(); ++i) {
+    const CrbmParameters parameters = cdbn.layers[i].to_host();
+    const std::string prefix = fmt::format("{}.{}.", name, i);
+    file.put(prefix + "W", parameters.W);
+    file.put(prefix + "A", parameters.A);
+    file.put(prefix + "B", parameters.B);
+    file.put(prefix + "a", parameters.a);
+    file.put(prefix + "b", parameters.b);
+    shapes.push_back(shape_json(parameters.shape));
+  }
+  return shapes;
+}
+
+Cdbn get_cdbn(Device& device, const Safetensors& file, const std::string& path,
+              const std::string& name, const json& shapes) {
+  Cdbn cdbn;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    CrbmParameters parameters = CrbmParameters::zeros(shape_from(shapes[i]));
+    const std::string prefix = fmt::format("{}.{}.", name, i);
+    const auto fill = [&](const char* letter, MatrixF& matrix) {
+      matrix = file.get(prefix + letter, path, matrix.rows(), matrix.cols());
+    };
+    fill("W", parameters.W);
+    fill("A", parameters.A);
+    fill("B", parameters.B);
+    fill("a", parameters.a);
+    fill("b", parameters.b);
+    cdbn.layers.emplace_back(device, parameters);
+  }
+  if (cdbn.layers.empty())
+    throw InputError(path + ": a CDBN without layers; train the model again");
+  return cdbn;
+}
+
+constexpr std::array<const char*, 2> kModalityNames{"track", "pose"};
+
+void put_mrbm(Safetensors& file, const Mrbm& mrbm) {
+  const MrbmParameters parameters = mrbm.to_host();
+  for (std::size_t m = 0; m < 2; ++m) {
+    file.put(fmt::format("mrbm.W_{}", kModalityNames[m]), parameters.W[m]);
+    file.put(fmt::format("mrbm.a_{}", kModalityNames[m]), parameters.a[m]);
+  }
+  file.put("mrbm.b", parameters.b);
+}
+
+Mrbm get_mrbm(Device& device, const Safetensors& file, const std::string& path,
+              const std::array<std::size_t, 2>& visible, std::size_t hidden) {
+  const auto h = static_cast<Eigen::Index>(hidden);
+  MrbmParameters parameters;
+  for (std::size_t m = 0; m < 2; ++m) {
+    const auto v = static_cast<Eigen::Index>(visible[m]);
+    parameters.W[m] = file.get(fmt::format("mrbm.W_{}", kModalityNames[m]), path, v, h);
+    parameters.a[m] = file.get(fmt::format("mrbm.a_{}", kModalityNames[m]), path, 1, v);
+  }
+  parameters.b = file.get("mrbm.b", path, 1, h);
+  return {device, parameters};
+}
+
+json camera_json(const CameraPlacement& camera) {
+  return {{"azimuth_deg", camera.azimuth_deg},
+          {"elevation_deg", camera.elevation_deg},
+          {"distance", camera.distance ? json(*camera.distance) : json(nullptr)},
+          {"field_of_view_deg", camera.field_of_view_deg},
+          {"width_px", camera.width_px},
+          {"height_px", camera.height_px}};
+}
+
+CameraPlacement camera_from(const json& entry) {
+  CameraPlacement camera;
+  camera.azimuth_deg = entry.at("azimuth_deg");
+  camera.elevation_deg = entry.at("elevation_deg");
+  if (!entry.at("distance").is_null()) camera.distance = entry.at("distance").get<double>();
+  camera.field_of_view_deg = entry.at("field_of_view_deg");
+  camera.width_px = entry.at("width_px");
+  camera.height_px = entry.at("height_px");
+  return camera;
+}
+
+json modalities_json(const Modalities& modalities) {
+  return {{"pose_features", modalities.pose_features.to_json()},
+          {"track_features", modalities.track_features.to_json()},
+          {"pose_scale", modalities.pose_scale.to_json()},
+          {"track_scale", modalities.track_scale.to_json()},
+          {"fps", modalities.fps},
+          {"camera", camera_json(modalities.camera)}};
+}
+
+Modalities modalities_from(const json& entry) {
+  return {PoseFeatures::from_json(entry.at("pose_features")),
+          TrackFeatures::from_json(entry.at("track_features")),
+          Standardizer::from_json(entry.at("pose_scale")),
+          Standardizer::from_json(entry.at("track_scale")),
+          entry.at("fps"),
+          camera_from(entry.at("camera"))};
+}
+
+Model model_from(Device& device, const Safetensors& file, const std::string& path) {
+  const auto text = file.metadata.find("mcdbn");
+  if (text == file.metadata.end()) throw InputError(path + ": not a model of mcdbn-cl");
+  const json about = json::parse(text->second);
+  if (about.at("format_version") != kFormatVersion)
+    throw InputError(
+        fmt::format("{}: model format {}, this program reads {}; train the model again", path,
+                    about.at("format_version").dump(), kFormatVersion));
+  Cdbn track = get_cdbn(device, file, path, "track", about.at("track"));
+  Cdbn pose = get_cdbn(device, file, path, "pose", about.at("pose"));
+  Mrbm mrbm = get_mrbm(device, file, path, {track.code_dimension(), pose.code_dimension()},
+                       about.at("mrbm_hidden"));
+  Model model{{std::move(track), std::move(pose), std::move(mrbm), about.at("look_ahead"),
+               about.at("mean_field_steps")},
+              modalities_from(about.at("modalities")),
+              {},
+              about.at("config")};
+  for (const json& clip : about.at("training_clips"))
+    model.training_clips.push_back({clip.at("path"), clip.at("fingerprint")});
+  return model;
+}
+
+}  // namespace
+
+void save_model(const std::filesystem::path& path, const Model& model) {
+  Safetensors file;
+  json about;
+  about["format_version"] = kFormatVersion;
+  about["track"] = put_cdbn(file, "track", model.network.track);
+  about["pose"] = put_cdbn(file, "pose", model.network.pose);
+  put_mrbm(file, model.network.mrbm);
+  about["mrbm_hidden"] = model.network.mrbm.hidden();
+  about["look_ahead"] = model.network.look_ahead;
+  about["mean_field_steps"] = model.network.mean_field_steps;
+  about["modalities"] = modalities_json(model.modalities);
+  about["config"] = model.config;
+  about["training_clips"] = json::array();
+  for (const TrainingClip& clip : model.training_clips)
+    about["training_clips"].push_back({{"path", clip.path}, {"fingerprint", clip.fingerprint}});
+  file.metadata["mcdbn"] = about.dump();
+  write_safetensors(path, file);
+}
+
+Model load_model(Device& device, const std::filesystem::path& path) {
+  const Safetensors file = read_safetensors(path);
+  try {
+    return model_from(device, file, path.string());
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: damaged model description: {}", path.string(), error.what()));
+  }
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,231 @@
+#include "mcdbn/training/greedy_schedule.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "mcdbn/errors.hpp"
+#include "mcdbn/training/contrastive_divergence.hpp"
+#include "mcdbn/training/divergence_guard.hpp"
+#include "mcdbn/training/minibatch.hpp"
+#include "mcdbn/training/multi_prediction.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// Phases of a layer's random numbers that Gibbs steps do not use (those count from 0).
+enum RandomPhase : std::uint16_t { kShufflePhase = 0x7000, kWeightPhase = 0x7100 };
+
+/// The random streams of Algorithm 1's parts.
+enum RandomStream : std::uint16_t { kPoseStream = 0, kTrackStream = 64, kMrbmStream = 128 };
+
+RandomKey key_of(const TrainingConfig& config, std::uint16_t stream, std::uint32_t step,
+                 std::uint16_t phase) {
+  return {config.seed, step, stream, phase};
+}
+
+class EpochClock {
+ public:
+  double windows_per_s(std::size_t windows) {
+    const auto now = std::chrono::steady_clock::now();
+    const double elapsed_s = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return static_cast<double>(windows) / elapsed_s;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// Runs one stage's epochs: shuffle, all mini-batches, one read of the losses, guard, report.
+/// @param mini_batch called with (epoch, first index entry, global step)
+template <typename MiniBatch>
+void run_epochs(const std::string& stage, std::size_t epochs, MinibatchSchedule& schedule,
+                LossAccumulator& losses, DivergenceGuard guard, const RandomKey& shuffle_key,
+                const EpochObserver& observer, const MiniBatch& mini_batch) {
+  EpochClock clock;
+  std::uint32_t step = 0;
+  for (std::size_t epoch = 1; epoch <= epochs; ++epoch) {
+    RandomKey key = shuffle_key;
+    key.step = static_cast<std::uint32_t>(epoch);
+    schedule.shuffle(key);
+    for (std::size_t i = 0; i < schedule.batch_count(); ++i)
+      mini_batch(epoch, schedule.first_of(i), step++);
+    double loss = 0;
+    const auto sums = losses.read_and_reset();
+    for (const float sum : sums)
+      loss += sum / static_cast<double>(schedule.batch_count() * sums.size());
+    guard.check(epoch, loss);
+    if (observer) {
+      EpochReport report;
+      report.stage = stage;
+      report.epoch = epoch;
+      report.epochs = epochs;
+      report.loss = loss;
+      report.windows_per_s = clock.windows_per_s(schedule.batch_count() * schedule.batch());
+      report.stage_progress = static_cast<double>(epoch) / static_cast<double>(epochs);
+      observer(report);
+    }
+  }
+}
+
+CdRule rule_for(const CdSettings& settings, std::size_t gibbs_steps, std::size_t epoch) {
+  const auto momentum =
+      static_cast<float>(epoch > settings.momentum_from_epoch ? settings.momentum : 0.0);
+  const auto decay = static_cast<float>(settings.weight_decay);
+  CdRule rule;
+  rule.gibbs_steps = gibbs_steps;
+  rule.weights = {static_cast<float>(settings.rate), momentum, decay};
+  rule.autoregressive = {static_cast<float>(settings.autoregressive_rate), momentum, decay};
+  return rule;
+}
+
+/// Work of a stage in multiply-adds, to show progress over all of them.
+double crbm_cost(const CrbmShape& shape, std::size_t gibbs_steps, std::size_t epochs) {
+  const double v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
+  const double histories = 2.0 * static_cast<double>(shape.order) * v * (v + h);
+  return static_cast<double>(epochs) *
+         (histories + (2.0 * static_cast<double>(gibbs_steps) + 3.0) * v * h);
+}
+
+double mrbm_cost(std::size_t track, std::size_t pose, const TrainingConfig& config) {
+  return static_cast<double>(config.mrbm.epochs) * 6.0 *
+         static_cast<double>(config.mrbm.mean_field_steps) *
+         static_cast<double>((track + pose) * config.mrbm_hidden);
+}
+
+/// Turns each stage's progress into that of the whole run.
+class OverallProgress {
+ public:
+  OverallProgress(EpochObserver observer, double total)
+      : observer_(std::move(observer)), total_(total) {}
+
+  EpochObserver stage(double cost) {
+    const double before = done_;
+    done_ += cost;
+    if (!observer_) return {};
+    return [this, before, cost](EpochReport report) {
+      report.overall_progress = (before + cost * report.stage_progress) / total_;
+      observer_(report);
+    };
+  }
+
+ private:
+  EpochObserver observer_;
+  double total_;
+  double done_ = 0;
+};
+
+std::vector<CrbmShape> layer_shapes(std::size_t visible, const TrainingConfig& config) {
+  std::vector<CrbmShape> shapes{{visible, config.hidden, config.order, VisibleKind::gaussian}};
+  while (shapes.size() < config.layers)
+    shapes.push_back({config.hidden, config.hidden, config.order, VisibleKind::binary});
+  return shapes;
+}
+
+const CdSettings& settings_for(const CrbmShape& shape, const TrainingConfig& config) {
+  return shape.kind == VisibleKind::gaussian ? config.gaussian : config.binary;
+}
+
+struct TrainedCdbn {
+  Cdbn cdbn;
+  Sequences code;
+};
+
+TrainedCdbn train_cdbn(Device& device, const std::vector<MatrixF>& clips,
+                       const TrainingConfig& config, std::uint16_t first_stream,
+                       const std::string& name, OverallProgress& progress) {
+  TrainedCdbn trained;
+  trained.code = Sequences::from_host(device, clips);
+  std::uint16_t stream = first_stream;
+  for (const CrbmShape& shape : layer_shapes(trained.code.values.columns(), config)) {
+    const CdSettings& settings = settings_for(shape, config);
+    const std::string stage = fmt::format("{}.{}", name, trained.cdbn.layers.size());
+    trained.cdbn.layers.push_back(
+        train_crbm(device, trained.code, shape, settings, config, stream++,
+                   progress.stage(crbm_cost(shape, config.gibbs_steps, settings.epochs)), stage));
+    trained.code = up_pass(trained.cdbn.layers.back(), trained.code);
+  }
+  return trained;
+}
+
+/// Rows t such that both the 3D code of t and the 2D code of t + look_ahead exist.
+std::vector<std::int32_t> paired_rows(const Sequences& codes, std::size_t look_ahead) {
+  std::vector<std::int32_t> rows;
+  for (const auto& clip : codes.clips)
+    for (std::size_t t = codes.valid_from; t + look_ahead < clip.frames; ++t)
+      rows.push_back(static_cast<std::int32_t>(clip.first + t));
+  return rows;
+}
+
+}  // namespace
+
+Crbm train_crbm(Device& device, const Sequences& visible, const CrbmShape& shape,
+                const CdSettings& settings, const TrainingConfig& config, std::uint16_t stream,
+                const EpochObserver& observer, const std::string& stage) {
+  Crbm crbm(device, CrbmParameters::random(shape, settings.initial_deviation,
+                                           key_of(config, stream, 0, kWeightPhase)));
+  MinibatchSchedule schedule(device, visible.window_rows(shape.order), config.batch);
+  ContrastiveDivergence cd(crbm, schedule.batch());
+  LossAccumulator losses(device, 1, schedule.batch());
+  const std::string kind = shape.kind == VisibleKind::gaussian ? "gaussian" : "binary";
+  DivergenceGuard guard(
+      stage,
+      fmt::format("lower --{0}-rate (now {1:g}), --{0}-autoregressive-rate (now {2:g}) "
+                  "or --{0}-initial-deviation (now {3:g})",
+                  kind, settings.rate, settings.autoregressive_rate, settings.initial_deviation));
+  run_epochs(
+      stage, settings.epochs, schedule, losses, guard, key_of(config, stream, 0, kShufflePhase),
+      observer, [&](std::size_t epoch, std::size_t first, std::uint32_t step) {
+        const Rows rows = Rows::indexed(visible.values, schedule.index(), first, schedule.batch());
+        cd.step(rows, rule_for(settings, config.gibbs_steps, epoch),
+                key_of(config, stream, step, 0), losses);
+      });
+  return crbm;
+}
+
+Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
+                const TrainingConfig& config, std::uint16_t stream, const EpochObserver& observer) {
+  const MultiPredictionSettings& settings = config.mrbm;
+  Mrbm mrbm(device, MrbmParameters::random(track.values.columns(), pose.values.columns(),
+                                           config.mrbm_hidden, settings.initial_deviation,
+                                           key_of(config, stream, 0, kWeightPhase)));
+  MinibatchSchedule schedule(device, paired_rows(pose, config.look_ahead), config.batch);
+  MultiPrediction multi_prediction(mrbm, settings.mean_field_steps, schedule.batch());
+  LossAccumulator losses(device, 2, schedule.batch());
+  DivergenceGuard guard(
+      "mrbm", fmt::format("lower --mrbm-rate (now {:g}) or --mrbm-initial-deviation (now {:g})",
+                          settings.rate, settings.initial_deviation));
+  AdamRule rule;
+  rule.rate = static_cast<float>(settings.rate);
+  rule.weight_decay = static_cast<float>(settings.weight_decay);
+  run_epochs(
+      "mrbm", settings.epochs, schedule, losses, guard, key_of(config, stream, 0, kShufflePhase),
+      observer, [&](std::size_t, std::size_t first, std::uint32_t) {
+        const auto ahead = static_cast<int>(config.look_ahead);
+        multi_prediction.step(
+            Rows::indexed(track.values, schedule.index(), first, schedule.batch(), ahead),
+            Rows::indexed(pose.values, schedule.index(), first, schedule.batch()), rule, losses);
+      });
+  return mrbm;
+}
+
+Mcdbn train_greedy(Device& device, const TrainingSet& data, const TrainingConfig& config,
+                   const EpochObserver& observer) {
+  if (config.layers == 0 || config.hidden == 0 || config.mrbm_hidden == 0)
+    throw ConfigError("layers, hidden and mrbm-hidden must be at least 1");
+  double total = mrbm_cost(config.hidden, config.hidden, config);
+  for (const auto& clips : {data.poses, data.tracks})
+    for (const CrbmShape& shape :
+         layer_shapes(static_cast<std::size_t>(clips.front().cols()), config))
+      total += crbm_cost(shape, config.gibbs_steps, settings_for(shape, config).epochs);
+  OverallProgress progress(observer, total);
+  TrainedCdbn pose = train_cdbn(device, data.poses, config, kPoseStream, "pose", progress);
+  TrainedCdbn track = train_cdbn(device, data.tracks, config, kTrackStream, "track", progress);
+  Mrbm mrbm = train_mrbm(device, track.code, pose.code, config, kMrbmStream,
+                         progress.stage(mrbm_cost(config.hidden, config.hidden, config)));
+  return {std::move(track.cdbn), std::move(pose.cdbn), std::move(mrbm), config.look_ahead,
+          config.mrbm.mean_field_steps};
+}
+
+}  // namespace mcdbn

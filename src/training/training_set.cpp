@@ -1,0 +1,102 @@
+#include "mcdbn/training/training_set.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mcdbn/device/user_cache.hpp"
+#include "mcdbn/errors.hpp"
+#include "mcdbn/motion/clip.hpp"
+#include "mcdbn/motion/resample.hpp"
+#include "mcdbn/text_file.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// One view of one clip, before scaling.
+struct Pair {
+  MatrixD track, pose;
+};
+
+std::vector<Motion> resampled_phases(const Motion& raw, const TrainingConfig& config) {
+  // More grids than source frames in a target frame would only repeat the interpolation.
+  const auto most =
+      static_cast<std::size_t>(std::max(1.0, std::floor(raw.fps() / config.fps + 1e-6)));
+  const std::size_t phases = std::clamp<std::size_t>(config.phases, 1, most);
+  std::vector<Motion> clips;
+  for (std::size_t i = 0; i < phases; ++i)
+    clips.push_back(
+        resample(raw, config.fps, static_cast<double>(i) / static_cast<double>(phases)));
+  return clips;
+}
+
+std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair::*member) {
+  std::vector<const MatrixD*> blocks;
+  for (const Pair& pair : pairs) blocks.push_back(&(pair.*member));
+  return blocks;
+}
+
+}  // namespace
+
+std::size_t TrainingSet::frames() const {
+  std::size_t sum = 0;
+  for (const MatrixF& pose : poses) sum += static_cast<std::size_t>(pose.rows());
+  return sum;
+}
+
+std::string clip_fingerprint(const std::filesystem::path& path) {
+  return fmt::format("{:016x}", fnv1a(read_text_file(path)));
+}
+
+TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
+                              const TrainingConfig& config, std::vector<std::string>* notices) {
+  if (files.empty())
+    throw InputError("no training clips; name BVH files or folders that hold some");
+  std::vector<TrainingClip> recorded;
+  std::vector<Motion> motions;
+  for (const auto& file : files) {
+    const Motion raw =
+        load_clip(file, {.fps = 0, .keep_first_frame = config.keep_first_frame}, notices);
+    for (Motion& motion : resampled_phases(raw, config)) motions.push_back(std::move(motion));
+    recorded.push_back(
+        {std::filesystem::absolute(file).lexically_normal().string(), clip_fingerprint(file)});
+  }
+  std::vector<const Motion*> all;
+  for (const Motion& motion : motions) all.push_back(&motion);
+  PoseFeatures pose_features = PoseFeatures::fit(all);
+  TrackFeatures track_features =
+      TrackFeatures::for_skeleton(pose_features.skeleton(), pose_features.root());
+  std::vector<Pair> pairs;
+  for (const Motion& motion : motions) {
+    const Camera camera = place_camera(motion, config.camera);
+    pairs.push_back({track_features.encode(project_motion(motion, camera)),
+                     pose_features.encode(motion, camera.camera_from_world)});
+  }
+  TrainingSet set{{std::move(pose_features), std::move(track_features),
+                   Standardizer::fit(members(pairs, &Pair::pose)),
+                   Standardizer::fit(members(pairs, &Pair::track)), config.fps, config.camera},
+                  {},
+                  {},
+                  std::move(recorded)};
+  for (const Pair& pair : pairs) {
+    set.tracks.push_back(set.modalities.track_scale.apply(pair.track));
+    set.poses.push_back(set.modalities.pose_scale.apply(pair.pose));
+  }
+  return set;
+}
+
+EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& modalities,
+                        const CameraPlacement& placement, bool keep_first_frame,
+                        std::vector<std::string>* notices) {
+  EncodedClip clip;
+  clip.motion =
+      load_clip(file, {.fps = modalities.fps, .keep_first_frame = keep_first_frame}, notices);
+  clip.camera = place_camera(clip.motion, placement);
+  clip.track = project_motion(clip.motion, clip.camera);
+  clip.track_features = modalities.encode_track(clip.track);
+  clip.pose_features = modalities.encode_pose(clip.motion, clip.camera.camera_from_world);
+  return clip;
+}
+
+}  // namespace mcdbn
