@@ -67,7 +67,17 @@ void check(const MatrixD& truth, const MatrixD& regenerated, int root_joint) {
         fmt::format("there is no root joint {} in {} joints", root_joint, truth.cols() / 3));
 }
 
+/// Lengths of joint vectors but the root's. @return [frames x joints − 1]
+MatrixD body_norms(const MatrixD& vectors, int root_joint) {
+  return without_column(joint_norms(vectors), root_joint);
+}
+
 }  // namespace
+
+double mean_joint_distance_mm(const MatrixD& truth, const MatrixD& regenerated, int root_joint) {
+  check(truth, regenerated, root_joint);
+  return body_norms(relative_to_root(regenerated - truth, root_joint), root_joint).mean();
+}
 
 JointError joint_error(const MatrixD& truth, const MatrixD& regenerated, double fps,
                        int root_joint) {
@@ -75,25 +85,21 @@ JointError joint_error(const MatrixD& truth, const MatrixD& regenerated, double 
   const MatrixD target = relative_to_root(truth, root_joint);
   const MatrixD source = relative_to_root(regenerated, root_joint);
   const MatrixD difference = source - target;
-  const auto body_norms = [&](const MatrixD& vectors) {
-    return without_column(joint_norms(vectors), root_joint);
-  };
-
   MatrixD residual(target.rows(), target.cols());
   for (Eigen::Index frame = 0; frame < target.rows(); ++frame)
     residual.row(frame) = procrustes_residual(target.row(frame), source.row(frame));
 
-  const MatrixD distance = body_norms(difference);
+  const MatrixD distance = body_norms(difference, root_joint);
   JointError error;
   error.mpjpe_mm = distance.mean();
-  error.pa_mpjpe_mm = body_norms(residual).mean();
+  error.pa_mpjpe_mm = body_norms(residual, root_joint).mean();
   error.rmse_mm = std::sqrt(distance.array().square().mean());
   error.pck_150mm = (distance.array() <= kCorrectWithin_mm).cast<double>().mean();
   const MatrixD velocity = rate_of_change(difference, fps);
-  error.mpjve_mm_s = mean_or_nan(body_norms(velocity));
-  error.acceleration_error_mm_s2 = velocity.rows()
-                                       ? mean_or_nan(body_norms(rate_of_change(velocity, fps)))
-                                       : std::numeric_limits<double>::quiet_NaN();
+  error.mpjve_mm_s = mean_or_nan(body_norms(velocity, root_joint));
+  error.acceleration_error_mm_s2 =
+      velocity.rows() ? mean_or_nan(body_norms(rate_of_change(velocity, fps), root_joint))
+                      : std::numeric_limits<double>::quiet_NaN();
   return error;
 }
 

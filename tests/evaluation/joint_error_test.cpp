@@ -5,17 +5,15 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
-#include <random>
 
+#include "clips.hpp"
 #include "mcdbn/errors.hpp"
 
 namespace mcdbn {
 namespace {
 
-MatrixD random_clip(int frames, int joints, double scale, unsigned seed) {
-  std::mt19937 generator(seed);
-  std::normal_distribution<double> normal(0, scale);
-  return MatrixD::NullaryExpr(frames, 3 * joints, [&] { return normal(generator); });
+MatrixD random_clip(int frames, int joints, double deviation_mm, unsigned seed) {
+  return test::random_clip(frames, 3 * joints, deviation_mm, seed);
 }
 
 Eigen::Vector3d joint_at(const MatrixD& clip, int frame, int joint) {
@@ -109,6 +107,7 @@ TEST_CASE("joint_error: the root may be any joint") {
               (joint_at(truth, frame, joint) - joint_at(truth, frame, 2)))
                  .norm();
   CHECK(joint_error(truth, regenerated, 30, 2).mpjpe_mm == doctest::Approx(sum / 18));
+  CHECK(mean_joint_distance_mm(truth, regenerated, 2) == doctest::Approx(sum / 18));
 }
 
 TEST_CASE("pa_mpjpe: similarities cost nothing, mirroring does") {

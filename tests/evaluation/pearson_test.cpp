@@ -3,17 +3,15 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <random>
 
+#include "clips.hpp"
 #include "mcdbn/errors.hpp"
 
 namespace mcdbn {
 namespace {
 
 MatrixD random_clip(int frames, int channels, unsigned seed) {
-  std::mt19937 generator(seed);
-  std::normal_distribution<double> normal;
-  return MatrixD::NullaryExpr(frames, channels, [&] { return normal(generator); });
+  return test::random_clip(frames, channels, 1, seed);
 }
 
 /// The textbook one-pass sums in long double: another formula than the library's.

@@ -25,6 +25,13 @@ struct JointError {
 JointError joint_error(const MatrixD& truth, const MatrixD& regenerated, double fps,
                        int root_joint = 0);
 
+/// JointError::mpjpe_mm alone. @throws ShapeError as joint_error
+double mean_joint_distance_mm(const MatrixD& truth, const MatrixD& regenerated, int root_joint = 0);
+
+/// Positions in the world, scaled so that the skeleton is 1.7 m tall, in mm.
+/// @return [frames x 3·joints]
+MatrixD world_positions_mm(const Motion& motion);
+
 /// Positions relative to joint `root_joint`, scaled so that the skeleton is 1.7 m tall, in mm.
 /// @return [frames x 3·joints]
 MatrixD root_relative_positions_mm(const Motion& motion, int root_joint = 0);

@@ -4,9 +4,12 @@
 
 namespace mcdbn {
 
+MatrixD world_positions_mm(const Motion& motion) {
+  return joint_positions(motion) * (1000.0 / file_units_per_metre(motion.skeleton));
+}
+
 MatrixD root_relative_positions_mm(const Motion& motion, int root_joint) {
-  const double mm_per_file_unit = 1000.0 / file_units_per_metre(motion.skeleton);
-  return relative_to_root(joint_positions(motion), root_joint) * mm_per_file_unit;
+  return relative_to_root(world_positions_mm(motion), root_joint);
 }
 
 }  // namespace mcdbn

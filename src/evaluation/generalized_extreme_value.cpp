@@ -1,0 +1,90 @@
+#include "generalized_extreme_value.hpp"
+
+#include <Eigen/Cholesky>
+#include <boost/math/constants/constants.hpp>
+#include <cmath>
+#include <limits>
+
+#include "nelder_mead.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kGumbelBelow = 1e-12;  ///< shapes that are zero for all purposes
+
+/// Shape, logarithm of the scale, location: free of constraints but for the shape.
+GeneralizedExtremeValue from_search(const Eigen::Vector3d& at) {
+  return {at(0), std::exp(at(1)), at(2)};
+}
+
+/// Observed information of (shape, scale, location) by central differences.
+Eigen::Matrix3d observed_information(const Eigen::VectorXd& samples,
+                                     const GeneralizedExtremeValue& fit) {
+  constexpr double kStep = 1e-4;  // of standardized samples: far above rounding
+  const auto log_likelihood = [&](int i, double di, int j, double dj) {
+    Eigen::Vector3d at(fit.shape, fit.scale, fit.location);
+    at(i) += di * kStep;
+    at(j) += dj * kStep;
+    return GeneralizedExtremeValue{at(0), at(1), at(2)}.log_likelihood(samples);
+  };
+  Eigen::Matrix3d information;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      information(i, j) = -(log_likelihood(i, 1, j, 1) - log_likelihood(i, 1, j, -1) -
+                            log_likelihood(i, -1, j, 1) + log_likelihood(i, -1, j, -1)) /
+                          (4 * kStep * kStep);
+  return information;
+}
+
+Eigen::Vector3d standard_errors(const Eigen::VectorXd& samples,
+                                const GeneralizedExtremeValue& fit) {
+  if (fit.shape <= -0.5) return Eigen::Vector3d::Constant(kNaN);
+  const Eigen::Matrix3d information = observed_information(samples, fit);
+  const Eigen::LLT<Eigen::Matrix3d> factor(information);
+  if (!information.allFinite() || factor.info() != Eigen::Success)
+    return Eigen::Vector3d::Constant(kNaN);
+  return factor.solve(Eigen::Matrix3d::Identity()).diagonal().cwiseSqrt();
+}
+
+}  // namespace
+
+double GeneralizedExtremeValue::log_density(double x) const {
+  return log_likelihood(Eigen::Matrix<double, 1, 1>(x));
+}
+
+double GeneralizedExtremeValue::log_likelihood(
+    const Eigen::Ref<const Eigen::VectorXd>& samples) const {
+  if (!(scale > 0)) return -kInfinity;
+  const Eigen::ArrayXd z = (samples.array() - location) / scale;
+  if (!((shape * z).minCoeff() > -1)) return -kInfinity;
+  // log1p keeps the passage through shape 0 (Gumbel) smooth.
+  const Eigen::ArrayXd y =
+      std::abs(shape) < kGumbelBelow ? z : Eigen::ArrayXd((shape * z).log1p() / shape);
+  return -((1 + shape) * y + (-y).exp()).sum() -
+         static_cast<double>(samples.size()) * std::log(scale);
+}
+
+GeneralizedExtremeValueFit fit_generalized_extreme_value(
+    const Eigen::Ref<const Eigen::VectorXd>& samples) {
+  const double mean = samples.mean();
+  const double deviation = std::sqrt((samples.array() - mean).square().mean());
+  const Eigen::VectorXd standardized = (samples.array() - mean) / deviation;
+  const auto cost = [&](const Eigen::Vector3d& at) {
+    return at(0) < -1 ? kInfinity : -from_search(at).log_likelihood(standardized);
+  };
+  // The Gumbel distribution of the same mean and variance: no sample is outside of its support.
+  using namespace boost::math::double_constants;
+  const double gumbel_scale = std::sqrt(6.0) / pi;
+  const Eigen::Vector3d start(0, std::log(gumbel_scale), -euler * gumbel_scale);
+  GeneralizedExtremeValue fit = from_search(nelder_mead(cost, start, 0.1));
+
+  Eigen::Vector3d errors = standard_errors(standardized, fit);
+  errors.tail<2>() *= deviation;
+  fit.scale *= deviation;
+  fit.location = mean + deviation * fit.location;
+  return {fit, errors};
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,75 @@
+#include "mcdbn/evaluation/summary_statistics.hpp"
+
+#include <fmt/core.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "mcdbn/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+double median_of_sorted(const std::vector<double>& sorted) {
+  const std::size_t middle = sorted.size() / 2;
+  return sorted.size() % 2 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
+}
+
+double mode_of(const Histogram& histogram) {
+  const auto fullest = std::max_element(histogram.counts.begin(), histogram.counts.end());
+  return histogram.bin_centre(static_cast<int>(fullest - histogram.counts.begin()));
+}
+
+}  // namespace
+
+double Histogram::bin_width() const {
+  return (high - low) / static_cast<double>(counts.size());
+}
+
+double Histogram::bin_centre(int bin) const {
+  return low + (bin + 0.5) * bin_width();
+}
+
+Histogram histogram_of(const std::vector<double>& values, double low, double high, int bins) {
+  if (bins <= 0 || !(low <= high))
+    throw ConfigError(fmt::format("no histogram of {} bins from {} to {}", bins, low, high));
+  Histogram histogram{low, high, std::vector<int>(static_cast<std::size_t>(bins))};
+  for (const double value : values) {
+    if (!(value >= low && value <= high)) continue;
+    const double place = high > low ? (value - low) / (high - low) * bins : 0;
+    ++histogram.counts[static_cast<std::size_t>(std::min(static_cast<int>(place), bins - 1))];
+  }
+  return histogram;
+}
+
+SummaryStatistics summarize(const std::vector<double>& values, int bins) {
+  std::vector<double> sorted;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
+               [](double value) { return std::isfinite(value); });
+  std::sort(sorted.begin(), sorted.end());
+  SummaryStatistics summary;
+  summary.count = static_cast<int>(sorted.size());
+  summary.left_out = static_cast<int>(values.size() - sorted.size());
+  if (sorted.empty()) {
+    summary.mean = summary.standard_deviation = summary.mode = kNaN;
+    summary.median = summary.minimum = summary.maximum = kNaN;
+    return summary;
+  }
+  const Eigen::Map<const Eigen::ArrayXd> x(sorted.data(), summary.count);
+  summary.mean = x.mean();
+  summary.standard_deviation =
+      summary.count > 1 ? std::sqrt((x - summary.mean).square().sum() / (summary.count - 1)) : kNaN;
+  summary.median = median_of_sorted(sorted);
+  summary.minimum = sorted.front();
+  summary.maximum = sorted.back();
+  summary.histogram = histogram_of(sorted, summary.minimum, summary.maximum, bins);
+  summary.mode = mode_of(summary.histogram);
+  return summary;
+}
+
+}  // namespace mcdbn

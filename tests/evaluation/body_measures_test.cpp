@@ -1,0 +1,99 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "clips.hpp"
+#include "mcdbn/errors.hpp"
+#include "mcdbn/evaluation/bone_length.hpp"
+#include "mcdbn/evaluation/foot_slide.hpp"
+#include "mcdbn/evaluation/sample_spread.hpp"
+
+namespace mcdbn {
+namespace {
+
+Skeleton chain(const std::vector<std::string>& names) {
+  Skeleton skeleton;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    Joint joint;
+    joint.name = names[i];
+    joint.parent = static_cast<int>(i) - 1;
+    skeleton.joints.push_back(joint);
+  }
+  return skeleton;
+}
+
+}  // namespace
+
+TEST_CASE("foot_joints: by name, in any case") {
+  CHECK(foot_joints(chain({"Hips", "LeftFoot", "RightToeBase", "lAnkle", "TOES_R", "Hand"})) ==
+        std::vector<int>{1, 2, 3, 4});
+  CHECK(foot_joints(chain({"Hips", "Head"})).empty());
+}
+
+TEST_CASE("foot_slide: by hand") {
+  // 10 frames a second. The foot (joint 1) stands still for frames 0 to 3, then swings up and away.
+  MatrixD truth = MatrixD::Zero(7, 6);
+  truth.col(4) << 50, 52, 50, 51, 120, 200, 60;
+  truth.col(3) << 0, 1, 1, 1, 200, 400, 600;
+  MatrixD regenerated = truth;
+  regenerated.col(3) << 0, 3, 9, 18, 500, 900, 1000;
+  regenerated.col(5) << 0, 4, 12, 24, 0, 0, 0;
+  const FootSlide slide = foot_slide(truth, regenerated, {1}, 10);
+  CHECK(slide.planted == 3);
+  CHECK(slide.truth_mm_s == doctest::Approx(10.0 / 3));
+  CHECK(slide.regenerated_mm_s == doctest::Approx((50 + 100 + 150) / 3.0));
+  CHECK(std::isnan(foot_slide(truth, regenerated, {}, 10).truth_mm_s));
+  CHECK(foot_slide(truth, truth, {1}, 10).regenerated_mm_s == doctest::Approx(slide.truth_mm_s));
+}
+
+TEST_CASE("foot_slide: a low foot that is fast is not planted, nor a slow one up in the air") {
+  MatrixD truth = MatrixD::Zero(5, 3);
+  truth.col(0) << 0, 50, 100, 100, 100;  // 500 mm/s at 10 Hz, then at rest
+  truth.col(1) << 0, 0, 0, 60, 60;
+  CHECK(foot_slide(truth, truth, {0}, 10).planted == 0);
+  truth.col(1).setZero();
+  CHECK(foot_slide(truth, truth, {0}, 10).planted == 2);
+  // Each foot has its own ground: an ankle is never as low as a toe.
+  MatrixD two(5, 6);
+  two << truth, truth;
+  two.col(4).array() += 90;
+  CHECK(foot_slide(two, two, {0, 1}, 10).planted == 4);
+  CHECK_THROWS_AS(foot_slide(two, truth, {0}, 10), ShapeError);
+  CHECK_THROWS_AS(foot_slide(two, two, {2}, 10), ShapeError);
+}
+
+TEST_CASE("bone_length_spread_mm: zero for a rigid body, by hand for a stretching one") {
+  const Skeleton skeleton = chain({"Hips", "Knee", "Foot"});
+  MatrixD positions(2, 9);
+  positions << 0, 0, 0, 300, 400, 0, 300, 400, 100,  //
+      1, 2, 3, 1, 2, 503, 1, 102, 503;               // turned and moved
+  CHECK(bone_length_spread_mm(positions, skeleton) < 1e-9);
+  positions(1, 7) = 142;  // the second bone is 100 mm, then 140 mm
+  CHECK(bone_length_spread_mm(positions, skeleton) == doctest::Approx(20.0 / 2));
+  CHECK(bone_length_spread_mm(positions.leftCols(3), chain({"Hips"})) == 0);
+  CHECK_THROWS_AS(bone_length_spread_mm(positions.leftCols(6), skeleton), ShapeError);
+}
+
+TEST_CASE("diversity_mm: mean over pairs of samples") {
+  MatrixD a = MatrixD::Zero(2, 6), b = a, c = a;
+  b(0, 3) = 10;            // 5 mm from a on average
+  c(0, 3) = c(1, 4) = 20;  // 20 mm from a, 15 mm from b
+  b.row(1).array() += 7;   // travel of the whole body is no diversity of its motion
+  CHECK(diversity_mm({a, b, c}) == doctest::Approx((5.0 + 20 + 15) / 3));
+  CHECK(diversity_mm({a, a}) == 0);
+  CHECK(std::isnan(diversity_mm({a})));
+}
+
+TEST_CASE("best_of: the nearest sample, with all of its errors") {
+  const MatrixD truth = test::random_clip(20, 12, 200, 1);
+  std::vector<MatrixD> samples;
+  for (const double deviation_mm : {40.0, 15.0, 60.0})
+    samples.push_back(truth + test::random_clip(20, 12, deviation_mm, 2));
+  const BestSample best = best_of(truth, samples, 30);
+  CHECK(best.index == 1);
+  CHECK(best.error.mpjpe_mm == joint_error(truth, samples[1], 30).mpjpe_mm);
+  CHECK(best.error.mpjpe_mm < joint_error(truth, samples[0], 30).mpjpe_mm);
+  CHECK_THROWS_AS(best_of(truth, {}, 30), ShapeError);
+}
+
+}  // namespace mcdbn
