@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <limits>
 
 #include "mcdbn/errors.hpp"
 
@@ -38,19 +36,9 @@ int body_root(const Skeleton& skeleton) {
   return root;
 }
 
-/// Which joints stand below `root` (itself included).
-std::vector<bool> below(const Skeleton& skeleton, int root) {
-  std::vector<bool> inside(skeleton.joints.size(), false);
-  for (int i = root; i < skeleton.joint_count(); ++i) {
-    const int parent = skeleton.joints[i].parent;
-    inside[i] = i == root || (parent >= 0 && inside[parent]);
-  }
-  return inside;
-}
-
-/// Size of the box around the rest pose, the body's root at the origin.
+/// Size of the box around the rest pose, the body's root at the origin. As `root` stands on the
+/// chain of only children, all joints after it are below it.
 Eigen::Vector3d rest_extent(const Skeleton& skeleton, int root) {
-  const std::vector<bool> inside = below(skeleton, root);
   std::vector<Eigen::Vector3d> position(skeleton.joints.size(), Eigen::Vector3d::Zero());
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
   const auto include = [&](const Eigen::Vector3d& point) {
@@ -58,41 +46,12 @@ Eigen::Vector3d rest_extent(const Skeleton& skeleton, int root) {
     high = high.cwiseMax(point);
   };
   for (int i = root; i < skeleton.joint_count(); ++i) {
-    if (!inside[i]) continue;
     const Joint& joint = skeleton.joints[i];
     if (i != root) position[i] = position[joint.parent] + joint.offset;
     include(position[i]);
     for (const Eigen::Vector3d& site : joint.end_sites) include(position[i] + site);
   }
   return high - low;
-}
-
-bool name_contains(const Joint& joint, std::string_view lower_case_part) {
-  const auto same = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) == static_cast<unsigned char>(b);
-  };
-  return std::search(joint.name.begin(), joint.name.end(), lower_case_part.begin(),
-                     lower_case_part.end(), same) != joint.name.end();
-}
-
-/// Length of the longest bone path from the root to, or past, a joint with such a name; 0 if none.
-double reach(const Skeleton& skeleton, int root, std::initializer_list<std::string_view> names) {
-  const std::vector<bool> inside = below(skeleton, root);
-  std::vector<double> length(skeleton.joints.size(), 0.0);
-  double longest = 0;
-  for (int i = root + 1; i < skeleton.joint_count(); ++i) {
-    if (!inside[i]) continue;
-    const Joint& joint = skeleton.joints[i];
-    length[i] = length[joint.parent] + joint.offset.norm();
-    const bool named = std::any_of(names.begin(), names.end(), [&](std::string_view name) {
-      return name_contains(joint, name);
-    });
-    if (!named) continue;
-    double end_site = 0;
-    for (const Eigen::Vector3d& site : joint.end_sites) end_site = std::max(end_site, site.norm());
-    longest = std::max(longest, length[i] + end_site);
-  }
-  return longest;
 }
 
 /// Range of a column over a clip's frames; 0 for an empty clip.
@@ -139,17 +98,8 @@ int Skeleton::find(std::string_view name) const {
 
 double Skeleton::rest_height(int up_axis) const {
   if (joints.empty()) return 0;
-  const int root = body_root(*this);
-  const Eigen::Vector3d extent = rest_extent(*this, root);
-  if (up_axis >= 0) return extent[up_axis];
-  // Where every bone lies along its own frame's axis, zero rotations fold the legs over the trunk
-  // (Bandai): nobody stands like that, so the bones' lengths have to tell.
-  constexpr double kFolded = 0.7;
-  const double trunk = reach(*this, root, {"head"});
-  const double leg = reach(*this, root, {"foot", "toe", "ankle"});
-  const double length = trunk > 0 && leg > 0 ? trunk + leg : 0.0;
-  const double largest = extent.maxCoeff();
-  return largest < kFolded * length ? length : largest;
+  const Eigen::Vector3d extent = rest_extent(*this, body_root(*this));
+  return up_axis >= 0 ? extent[up_axis] : extent.maxCoeff();
 }
 
 WorldPose forward_kinematics(const Skeleton& skeleton,

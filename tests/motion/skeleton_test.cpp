@@ -203,15 +203,6 @@ TEST_CASE("rest height") {
   CHECK(fixed.rest_height() == doctest::Approx(7));
 }
 
-TEST_CASE("rest height of a body whose zero pose folds the legs over the trunk") {
-  Skeleton body;
-  body.joints = {rotating_joint({C::x_position}), Joint{"Spine", 0, {30, 0, 0}, {}, {}},
-                 Joint{"Head", 1, {30, 0, 0}, {}, {{10, 0, 0}}},
-                 Joint{"Knee", 0, {40, 0, 0}, {}, {}}, Joint{"Foot", 3, {40, 0, 0}, {}, {}}};
-  CHECK(body.rest_height() == doctest::Approx(150));
-  CHECK(body.rest_height(0) == doctest::Approx(80));
-}
-
 TEST_CASE("forward kinematics equals another program's on walk01") {
   if (!test::have_shared_data("bvh_zoo/walk01_pos.csv", "walk01 forward kinematics")) return;
   const Motion motion = read_bvh(test::shared_data() / "bvh_zoo/walk01.bvh");

@@ -6,16 +6,23 @@
 
 namespace mcdbn {
 
-/// Whether frame 0 is a calibration pose: every rotation channel zero (T-pose), and frame 1 jumps
-/// away from it by more than motion can (as in the CMU files).
+/// Whether frame 0 is a calibration pose that somebody put before the motion: an authored pose,
+/// that is whole degrees in every rotation channel and nearly all of them zero (a T-pose; the CMU
+/// files have 7 of 93 that are not zero), from which frame 1 jumps away by more than motion can.
 bool has_leading_calibration_pose(const Motion& motion);
+/// The clip from its second frame on. @throws ShapeError if it has fewer than two frames
 Motion without_first_frame(const Motion& motion);
 
 /// Resamples a clip to `target_hz`: low-pass below the new Nyquist rate first when going down
-/// (zero phase, so nothing is delayed), then interpolation. Rotations are filtered and interpolated
+/// (zero phase, so nothing is delayed; flat to 0.3 of the new rate, −6 dB at 0.4, nothing from
+/// 0.5 on), then interpolation. Rotations are filtered and interpolated
 /// as rotations, not as angles, and come back as continuous angles in the file's own order.
 /// @param phase shifts the sampling grid by `phase` target frames, 0 <= phase < 1: other phases of
 ///        the same clip are free augmentation.
+/// @return the clip as it is where its rate is within 0.5 % of `target_hz` and phase is 0. Else as
+///         many frames as fit into its duration, at least one. Channels that never change keep
+///         their exact value.
+/// @throws ConfigError if target_hz or phase is out of range, ShapeError for a clip without frames
 Motion resample(const Motion& motion, double target_hz, double phase = 0.0);
 
 }  // namespace mcdbn

@@ -11,9 +11,13 @@ namespace mcdbn {
 
 enum class Channel { x_position, y_position, z_position, x_rotation, y_rotation, z_rotation };
 
-constexpr bool is_rotation(Channel channel) { return channel >= Channel::x_rotation; }
+constexpr bool is_rotation(Channel channel) {
+  return channel >= Channel::x_rotation;
+}
 /// 0, 1 or 2 for x, y, z.
-constexpr int axis_of(Channel channel) { return static_cast<int>(channel) % 3; }
+constexpr int axis_of(Channel channel) {
+  return static_cast<int>(channel) % 3;
+}
 
 struct Joint {
   std::string name;
@@ -34,7 +38,8 @@ struct Skeleton {
   /// Index of the joint of that name, or -1.
   int find(std::string_view name) const;
   /// Height of the rest pose (all rotations zero), end sites included, along `up_axis` (0, 1, 2)
-  /// in file units. The largest extent over the three axes if `up_axis` is negative.
+  /// in file units. The largest extent over the three axes if `up_axis` is negative. The offset of
+  /// a body whose root stands below a fixed one (Bandai's Hips below joint_Root) does not count.
   double rest_height(int up_axis = -1) const;
 };
 
