@@ -52,7 +52,8 @@ CrbmParameters CrbmParameters::zeros(const CrbmShape& shape) {
           MatrixF::Zero(history, visible),
           MatrixF::Zero(history, hidden),
           MatrixF::Zero(1, visible),
-          MatrixF::Zero(1, hidden)};
+          MatrixF::Zero(1, hidden),
+          MatrixF::Zero(1, visible)};
 }
 
 CrbmParameters CrbmParameters::random(const CrbmShape& shape, double deviation,
@@ -74,6 +75,7 @@ Crbm::Crbm(Device& device, const CrbmParameters& parameters)
       a(Matrix::from_host(device, parameters.a)),
       b(Matrix::from_host(device, parameters.b)),
       W_transposed(device, parameters.shape.hidden, parameters.shape.visible),
+      visible_mean(Matrix::from_host(device, parameters.visible_mean)),
       shape_(parameters.shape) {
   if (W.rows() != shape_.visible || W.columns() != shape_.hidden || a.columns() != shape_.visible ||
       b.columns() != shape_.hidden)
@@ -87,7 +89,8 @@ CrbmParameters Crbm::to_host() const {
           without_frame_padding(A.to_host(), shape_),
           without_frame_padding(B.to_host(), shape_),
           a.to_host(),
-          b.to_host()};
+          b.to_host(),
+          visible_mean.to_host()};
 }
 
 Rows Crbm::history(const Rows& rows) const {

@@ -34,6 +34,7 @@ json put_cdbn(Safetensors& file, const std::string& name, const Cdbn& cdbn) {
     file.put(prefix + "B", parameters.B);
     file.put(prefix + "a", parameters.a);
     file.put(prefix + "b", parameters.b);
+    file.put(prefix + "visible_mean", parameters.visible_mean);
     shapes.push_back(shape_json(parameters.shape));
   }
   return shapes;
@@ -53,6 +54,7 @@ Cdbn get_cdbn(Device& device, const Safetensors& file, const std::string& path,
     fill("B", parameters.B);
     fill("a", parameters.a);
     fill("b", parameters.b);
+    fill("visible_mean", parameters.visible_mean);
     cdbn.layers.emplace_back(device, parameters);
   }
   if (cdbn.layers.empty())

@@ -4,8 +4,10 @@ namespace mcdbn {
 
 TrainingConfig TrainingConfig::paper() {
   TrainingConfig config;
-  const CdSettings table2{.rate = 0.1,
-                          .autoregressive_rate = 0.1,
+  const CdSettings table2{.gibbs_steps = 5,
+                          .rate = 0.1,
+                          .rate_A = 0.1,
+                          .rate_B = 0.1,
                           .momentum = 0.9,
                           .momentum_from_epoch = 0,
                           .weight_decay = 0.0,

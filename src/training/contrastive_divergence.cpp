@@ -90,16 +90,16 @@ void ContrastiveDivergence::update(const Rows& rows, const CdRule& rule) {
   scaled_difference(hidden_data, hidden, mean, hidden);
   column_sum(visible, 1.0F, 0.0F, gradient_a_);
   column_sum(hidden, 1.0F, 0.0F, gradient_b_);
-  MomentumRule biases = rule.weights;
+  MomentumRule biases = rule.W;
   biases.weight_decay = 0.0F;
   if (crbm_.shape().order > 0) {
     const Rows history = crbm_.history(rows);
     gemm_transposed_a(history, visible, gradient_A_);
     gemm_transposed_a(history, hidden, gradient_B_);
-    momentum_update(crbm_.A, velocity_A_, gradient_A_, rule.autoregressive);
-    momentum_update(crbm_.B, velocity_B_, gradient_B_, rule.weights);
+    momentum_update(crbm_.A, velocity_A_, gradient_A_, rule.A);
+    momentum_update(crbm_.B, velocity_B_, gradient_B_, rule.B);
   }
-  momentum_update(crbm_.W, velocity_W_, gradient_W_, rule.weights);
+  momentum_update(crbm_.W, velocity_W_, gradient_W_, rule.W);
   momentum_update(crbm_.a, velocity_a_, gradient_a_, biases);
   momentum_update(crbm_.b, velocity_b_, gradient_b_, biases);
   crbm_.refresh_transposed();

@@ -69,23 +69,39 @@ void run_epochs(const std::string& stage, std::size_t epochs, MinibatchSchedule&
   }
 }
 
-CdRule rule_for(const CdSettings& settings, std::size_t gibbs_steps, std::size_t epoch) {
+CdRule rule_for(const CdSettings& settings, std::size_t epoch) {
   const auto momentum =
       static_cast<float>(epoch > settings.momentum_from_epoch ? settings.momentum : 0.0);
   const auto decay = static_cast<float>(settings.weight_decay);
   CdRule rule;
-  rule.gibbs_steps = gibbs_steps;
-  rule.weights = {static_cast<float>(settings.rate), momentum, decay};
-  rule.autoregressive = {static_cast<float>(settings.autoregressive_rate), momentum, decay};
+  rule.gibbs_steps = settings.gibbs_steps;
+  rule.W = {static_cast<float>(settings.rate), momentum, decay};
+  rule.A = {static_cast<float>(settings.rate_A), momentum, decay};
+  rule.B = {static_cast<float>(settings.rate_B), momentum, decay};
   return rule;
 }
 
+/// Adam's rate over the run: flat, then falling, so that the last epochs average out the noise.
+double falling_rate(double rate, double progress) {
+  constexpr double kFlat = 0.5, kEnd = 0.02;
+  return progress < kFlat ? rate : rate * (1.0 - (1.0 - kEnd) * (progress - kFlat) / (1.0 - kFlat));
+}
+
+/// Mean over the rows that have a code. @return [1 x dimension]
+MatrixF mean_of(const Sequences& sequences) {
+  RowVectorD sum = RowVectorD::Zero(static_cast<Eigen::Index>(sequences.values.columns()));
+  const MatrixF values = sequences.values.to_host();
+  const auto rows = sequences.window_rows(0);
+  for (const std::int32_t row : rows) sum += values.row(row).cast<double>();
+  return (sum / static_cast<double>(std::max<std::size_t>(rows.size(), 1))).cast<float>();
+}
+
 /// Work of a stage in multiply-adds, to show progress over all of them.
-double crbm_cost(const CrbmShape& shape, std::size_t gibbs_steps, std::size_t epochs) {
+double crbm_cost(const CrbmShape& shape, const CdSettings& settings) {
   const double v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
   const double histories = 2.0 * static_cast<double>(shape.order) * v * (v + h);
-  return static_cast<double>(epochs) *
-         (histories + (2.0 * static_cast<double>(gibbs_steps) + 3.0) * v * h);
+  return static_cast<double>(settings.epochs) *
+         (histories + (2.0 * static_cast<double>(settings.gibbs_steps) + 3.0) * v * h);
 }
 
 double mrbm_cost(std::size_t track, std::size_t pose, const TrainingConfig& config) {
@@ -141,12 +157,17 @@ TrainedCdbn train_cdbn(Device& device, const std::vector<MatrixF>& clips,
   for (const CrbmShape& shape : layer_shapes(trained.code.values.columns(), config)) {
     const CdSettings& settings = settings_for(shape, config);
     const std::string stage = fmt::format("{}.{}", name, trained.cdbn.layers.size());
-    trained.cdbn.layers.push_back(
-        train_crbm(device, trained.code, shape, settings, config, stream++,
-                   progress.stage(crbm_cost(shape, config.gibbs_steps, settings.epochs)), stage));
+    trained.cdbn.layers.push_back(train_crbm(device, trained.code, shape, settings, config,
+                                             stream++, progress.stage(crbm_cost(shape, settings)),
+                                             stage));
     trained.code = up_pass(trained.cdbn.layers.back(), trained.code);
   }
   return trained;
+}
+
+MatrixF logit(const MatrixF& p) {
+  const auto safe = p.array().max(1e-4F).min(1.0F - 1e-4F);
+  return (safe / (1.0F - safe)).log().matrix();
 }
 
 /// Rows t such that both the 3D code of t and the 2D code of t + look_ahead exist.
@@ -163,23 +184,25 @@ std::vector<std::int32_t> paired_rows(const Sequences& codes, std::size_t look_a
 Crbm train_crbm(Device& device, const Sequences& visible, const CrbmShape& shape,
                 const CdSettings& settings, const TrainingConfig& config, std::uint16_t stream,
                 const EpochObserver& observer, const std::string& stage) {
-  Crbm crbm(device, CrbmParameters::random(shape, settings.initial_deviation,
-                                           key_of(config, stream, 0, kWeightPhase)));
+  CrbmParameters initial = CrbmParameters::random(shape, settings.initial_deviation,
+                                                  key_of(config, stream, 0, kWeightPhase));
+  initial.visible_mean = mean_of(visible);
+  Crbm crbm(device, initial);
   MinibatchSchedule schedule(device, visible.window_rows(shape.order), config.batch);
   ContrastiveDivergence cd(crbm, schedule.batch());
   LossAccumulator losses(device, 1, schedule.batch());
   const std::string kind = shape.kind == VisibleKind::gaussian ? "gaussian" : "binary";
   DivergenceGuard guard(
       stage,
-      fmt::format("lower --{0}-rate (now {1:g}), --{0}-autoregressive-rate (now {2:g}) "
-                  "or --{0}-initial-deviation (now {3:g})",
-                  kind, settings.rate, settings.autoregressive_rate, settings.initial_deviation));
+      fmt::format("lower --{0}-rate (now {1:g}), --{0}-rate-A ({2:g}), --{0}-rate-B ({3:g}) or "
+                  "--{0}-initial-deviation ({4:g})",
+                  kind, settings.rate, settings.rate_A, settings.rate_B,
+                  settings.initial_deviation));
   run_epochs(
       stage, settings.epochs, schedule, losses, guard, key_of(config, stream, 0, kShufflePhase),
       observer, [&](std::size_t epoch, std::size_t first, std::uint32_t step) {
         const Rows rows = Rows::indexed(visible.values, schedule.index(), first, schedule.batch());
-        cd.step(rows, rule_for(settings, config.gibbs_steps, epoch),
-                key_of(config, stream, step, 0), losses);
+        cd.step(rows, rule_for(settings, epoch), key_of(config, stream, step, 0), losses);
       });
   return crbm;
 }
@@ -187,9 +210,12 @@ Crbm train_crbm(Device& device, const Sequences& visible, const CrbmShape& shape
 Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
                 const TrainingConfig& config, std::uint16_t stream, const EpochObserver& observer) {
   const MultiPredictionSettings& settings = config.mrbm;
-  Mrbm mrbm(device, MrbmParameters::random(track.values.columns(), pose.values.columns(),
-                                           config.mrbm_hidden, settings.initial_deviation,
-                                           key_of(config, stream, 0, kWeightPhase)));
+  MrbmParameters initial =
+      MrbmParameters::random(track.values.columns(), pose.values.columns(), config.mrbm_hidden,
+                             settings.initial_deviation, key_of(config, stream, 0, kWeightPhase));
+  // So that the mean field starts near the codes' own means rather than at one half.
+  initial.a = {logit(mean_of(track)), logit(mean_of(pose))};
+  Mrbm mrbm(device, initial);
   MinibatchSchedule schedule(device, paired_rows(pose, config.look_ahead), config.batch);
   MultiPrediction multi_prediction(mrbm, settings.mean_field_steps, schedule.batch());
   LossAccumulator losses(device, 2, schedule.batch());
@@ -197,7 +223,6 @@ Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
       "mrbm", fmt::format("lower --mrbm-rate (now {:g}) or --mrbm-initial-deviation (now {:g})",
                           settings.rate, settings.initial_deviation));
   AdamRule rule;
-  rule.rate = static_cast<float>(settings.rate);
   rule.weight_decay = static_cast<float>(settings.weight_decay);
   run_epochs(
       "mrbm", settings.epochs, schedule, losses, guard, key_of(config, stream, 0, kShufflePhase),
@@ -218,7 +243,7 @@ Mcdbn train_greedy(Device& device, const TrainingSet& data, const TrainingConfig
   for (const auto& clips : {data.poses, data.tracks})
     for (const CrbmShape& shape :
          layer_shapes(static_cast<std::size_t>(clips.front().cols()), config))
-      total += crbm_cost(shape, config.gibbs_steps, settings_for(shape, config).epochs);
+      total += crbm_cost(shape, settings_for(shape, config));
   OverallProgress progress(observer, total);
   TrainedCdbn pose = train_cdbn(device, data.poses, config, kPoseStream, "pose", progress);
   TrainedCdbn track = train_cdbn(device, data.tracks, config, kTrackStream, "track", progress);

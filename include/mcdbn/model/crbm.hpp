@@ -23,6 +23,9 @@ struct CrbmParameters {
   MatrixF B;  ///< [order·visible x hidden]  history → hidden (eq 17)
   MatrixF a;  ///< [1 x visible]
   MatrixF b;  ///< [1 x hidden]
+  /// [1 x visible] what the visible units are on average over the training windows (0 where they
+  /// are standardized): the history before a free-running start.
+  MatrixF visible_mean;
 
   static CrbmParameters zeros(const CrbmShape& shape);
   /// W, A and B drawn from N(0, deviation²), biases zero.
@@ -55,6 +58,7 @@ class Crbm {
   // padding, whose weights are zero and stay zero because the padding is.
   Matrix W, A, B, a, b;
   Matrix W_transposed;  ///< [hidden x visible]
+  Matrix visible_mean;  ///< [1 x visible], see CrbmParameters
 
  private:
   CrbmShape shape_;

@@ -10,8 +10,10 @@ namespace mcdbn {
 
 /// How one kind of CRBM layer is trained (Algorithm 2, eq 36 to 41).
 struct CdSettings {
-  double rate = 1e-3;                 ///< of W, B, a and b
-  double autoregressive_rate = 1e-5;  ///< of A: much smaller, or it explains everything by itself
+  std::size_t gibbs_steps = 5;  ///< k of CD-k
+  double rate = 1e-3;           ///< of W, a and b
+  double rate_A = 1e-5;         ///< much smaller, or A explains everything by itself
+  double rate_B = 1e-3;
   double momentum = 0.9;
   std::size_t momentum_from_epoch = 5;  ///< 0 before
   double weight_decay = 2e-4;           ///< of W, A and B
@@ -21,11 +23,11 @@ struct CdSettings {
 
 /// Multi-prediction training of the MRBM (eq 42).
 struct MultiPredictionSettings {
-  double rate = 1e-3;  ///< Adam's
+  double rate = 1e-3;  ///< Adam's, for the first half; then it falls in a line to a fiftieth
   double weight_decay = 0.0;
   double initial_deviation = 0.01;
-  std::size_t mean_field_steps = 10;
-  std::size_t epochs = 100;
+  std::size_t mean_field_steps = 5;
+  std::size_t epochs = 30;
 };
 
 /// Everything that shapes a training run: the paper's Table 2 and section V, and what it leaves
@@ -41,12 +43,11 @@ struct TrainingConfig {
   std::size_t hidden = 300;
   std::size_t layers = 2;
   std::size_t mrbm_hidden = 300;
-  std::size_t look_ahead = 5;   ///< the MRBM pairs the 2D code of frame t + look_ahead with 3D of t
-  std::size_t gibbs_steps = 5;  ///< k of CD-k
+  std::size_t look_ahead = 5;  ///< the MRBM pairs the 2D code of frame t + look_ahead with 3D of t
   std::size_t batch = 100;
 
   CdSettings gaussian;
-  CdSettings binary{.rate = 1e-2, .autoregressive_rate = 1e-3};
+  CdSettings binary{.gibbs_steps = 1, .rate = 1e-2, .rate_A = 1e-3, .rate_B = 1e-3, .epochs = 50};
   MultiPredictionSettings mrbm;
 
   /// The paper's own figures (Table 2, section V.C): rate 0.1, momentum 0.9, weights from N(0, 1),
@@ -67,11 +68,12 @@ void visit_settings(Config& config, Visit&& visit) {
   visit("layers", config.layers, "CRBMs in each CDBN");
   visit("mrbm-hidden", config.mrbm_hidden, "hidden units of the MRBM");
   visit("look-ahead", config.look_ahead, "frames of 2D seen ahead; 0 is causal, the paper's");
-  visit("gibbs-steps", config.gibbs_steps, "k of CD-k");
   visit("batch", config.batch, "windows in a mini-batch");
   const auto visit_cd = [&visit](const std::string& prefix, auto& settings) {
-    visit(prefix + ".rate", settings.rate, "learning rate of W, B and the biases");
-    visit(prefix + ".autoregressive-rate", settings.autoregressive_rate, "learning rate of A");
+    visit(prefix + ".gibbs-steps", settings.gibbs_steps, "k of CD-k");
+    visit(prefix + ".rate", settings.rate, "learning rate of W and the biases");
+    visit(prefix + ".rate-A", settings.rate_A, "learning rate of A (history to visible)");
+    visit(prefix + ".rate-B", settings.rate_B, "learning rate of B (history to hidden)");
     visit(prefix + ".momentum", settings.momentum, "momentum");
     visit(prefix + ".momentum-from-epoch", settings.momentum_from_epoch, "no momentum before it");
     visit(prefix + ".weight-decay", settings.weight_decay, "decay of W, A and B");

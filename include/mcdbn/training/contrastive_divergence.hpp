@@ -9,8 +9,8 @@ namespace mcdbn {
 /// What one mini-batch of CD-k does to the parameters.
 struct CdRule {
   std::size_t gibbs_steps = 1;
-  MomentumRule weights;         ///< W and B; biases take the same without decay
-  MomentumRule autoregressive;  ///< A
+  MomentumRule W;  ///< the biases take the same without decay
+  MomentumRule A, B;
 };
 
 /// Contrastive divergence for one CRBM or RBM (Algorithm 2 with its errata: the data are clamped

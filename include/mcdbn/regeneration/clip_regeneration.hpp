@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mcdbn/model/model_file.hpp"
+#include "mcdbn/motion/camera.hpp"
+#include "mcdbn/motion/keypoints.hpp"
+#include "mcdbn/regeneration/mcdbn_regeneration.hpp"
+
+namespace mcdbn {
+
+/// Where a regenerated clip is to stand.
+struct ClipPlacement {
+  std::optional<Camera> camera;      ///< unset: the model's own view, the clip put at the origin
+  std::optional<Skeleton> skeleton;  ///< unset: the model's
+};
+
+/// What the root's features say when the pose is known: its path in the world (root_trajectory).
+/// @param pose standardized 3D [frames x dimension]  @return the clip at the model's rate
+Motion motion_from_features(const Modalities& modalities, const MatrixF& pose, const Track2d& track,
+                            const ClipPlacement& placement);
+
+/// 3D motion from a 2D track, `samples` times. The track is brought to the model's rate and the
+/// motion back to the track's: as many frames as the track has.
+/// @param filled if given, how many joints were missing
+/// @throws InputError if the track lacks a joint of the model
+std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
+                                    const ClipPlacement& placement,
+                                    const RegenerationOptions& options,
+                                    TrackFeatures::FillCount* filled = nullptr);
+
+}  // namespace mcdbn

@@ -1,0 +1,73 @@
+#include "mcdbn/regeneration/mcdbn_regeneration.hpp"
+
+#include <algorithm>
+
+#include "mcdbn/errors.hpp"
+#include "mcdbn/regeneration/cdbn_decoder.hpp"
+#include "mcdbn/regeneration/track_completion.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// `lead` copies of the first row, the track, then copies of the last row up to `frames` rows.
+MatrixF extended(const MatrixF& track, Eigen::Index lead, Eigen::Index frames) {
+  MatrixF result(frames, track.cols());
+  result.topRows(lead) = track.row(0).replicate(lead, 1);
+  result.middleRows(lead, track.rows()) = track;
+  const Eigen::Index rest = frames - lead - track.rows();
+  result.bottomRows(rest) = track.row(track.rows() - 1).replicate(rest, 1);
+  return result;
+}
+
+/// The 3D code of every frame from the 2D code `look_ahead` frames later (eq 32, 33).
+Matrix infer_pose_code(const Mcdbn& network, const Sequences& track_code) {
+  Matrix code(track_code.values.device(), track_code.values.rows(), network.pose.code_dimension());
+  for (const auto& clip : track_code.clips) {
+    const std::size_t first = clip.first + track_code.valid_from;
+    const std::size_t count = clip.frames - track_code.valid_from - network.look_ahead;
+    network.mrbm.infer(Modality::track, Rows(track_code.values, first + network.look_ahead, count),
+                       network.mean_field_steps, Rows(code, first, count));
+  }
+  return code;
+}
+
+}  // namespace
+
+std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>& tracks,
+                                const RegenerationOptions& options) {
+  if (tracks.empty() || options.samples == 0) return {};
+  std::size_t pose_order = 0;
+  for (const Crbm& layer : network.pose.layers)
+    pose_order = std::max(pose_order, layer.shape().order);
+  // Before the clip: what the up-pass needs, then the run-in, both of the first frame repeated.
+  const std::size_t start = std::max(network.track.total_order(), pose_order);
+  const std::size_t lead = start + options.run_in;
+  std::size_t longest = 0;
+  for (const MatrixF& track : tracks) {
+    if (track.rows() == 0) throw ShapeError("regenerate: a track without frames");
+    longest = std::max(longest, static_cast<std::size_t>(track.rows()));
+  }
+  const std::size_t frames = lead + longest + network.look_ahead;
+
+  std::vector<MatrixF> sequences;
+  for (const MatrixF& track : tracks) {
+    const MatrixF whole =
+        extended(complete_track(network.track, track), static_cast<Eigen::Index>(lead),
+                 static_cast<Eigen::Index>(frames));
+    sequences.insert(sequences.end(), options.samples, whole);
+  }
+  Device& device = network.mrbm.device();
+  const Sequences track_code = network.track.up_pass(Sequences::from_host(device, sequences));
+  const Matrix code = infer_pose_code(network, track_code);
+  CdbnDecoder decoder(network.pose, code, sequences.size());
+  decoder.decode(start, frames - network.look_ahead, options);
+
+  const MatrixF visible = decoder.visible().to_host();
+  std::vector<MatrixF> result;
+  for (std::size_t i = 0; i < sequences.size(); ++i)
+    result.emplace_back(visible.middleRows(static_cast<Eigen::Index>(i * frames + lead),
+                                           tracks[i / options.samples].rows()));
+  return result;
+}
+
+}  // namespace mcdbn
