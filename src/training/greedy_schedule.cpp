@@ -226,7 +226,10 @@ Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
   rule.weight_decay = static_cast<float>(settings.weight_decay);
   run_epochs(
       "mrbm", settings.epochs, schedule, losses, guard, key_of(config, stream, 0, kShufflePhase),
-      observer, [&](std::size_t, std::size_t first, std::uint32_t) {
+      observer, [&](std::size_t, std::size_t first, std::uint32_t step) {
+        const double progress = static_cast<double>(step) /
+                                static_cast<double>(settings.epochs * schedule.batch_count());
+        rule.rate = static_cast<float>(falling_rate(settings.rate, progress));
         const auto ahead = static_cast<int>(config.look_ahead);
         multi_prediction.step(
             Rows::indexed(track.values, schedule.index(), first, schedule.batch(), ahead),
@@ -240,9 +243,8 @@ Mcdbn train_greedy(Device& device, const TrainingSet& data, const TrainingConfig
   if (config.layers == 0 || config.hidden == 0 || config.mrbm_hidden == 0)
     throw ConfigError("layers, hidden and mrbm-hidden must be at least 1");
   double total = mrbm_cost(config.hidden, config.hidden, config);
-  for (const auto& clips : {data.poses, data.tracks})
-    for (const CrbmShape& shape :
-         layer_shapes(static_cast<std::size_t>(clips.front().cols()), config))
+  for (const Eigen::Index dimension : {data.poses.front().cols(), data.tracks.front().cols()})
+    for (const CrbmShape& shape : layer_shapes(static_cast<std::size_t>(dimension), config))
       total += crbm_cost(shape, settings_for(shape, config));
   OverallProgress progress(observer, total);
   TrainedCdbn pose = train_cdbn(device, data.poses, config, kPoseStream, "pose", progress);
