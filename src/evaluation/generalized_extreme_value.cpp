@@ -2,8 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <boost/math/constants/constants.hpp>
+#include <boost/math/differentiation/autodiff.hpp>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "nelder_mead.hpp"
 
@@ -19,23 +21,37 @@ GeneralizedExtremeValue from_search(const Eigen::Vector3d& at) {
   return {at(0), std::exp(at(1)), at(2)};
 }
 
-/// Observed information of (shape, scale, location) by central differences.
+/// log(1 + shape·z) / shape, smooth with its derivatives through shape 0 (Gumbel).
+template <typename Shape, typename Z>
+auto reduced(const Shape& shape, const Z& z) {
+  constexpr double kSeriesBelow = 1e-3;
+  using std::log;
+  const auto t = shape * z;
+  using Result = std::decay_t<decltype(t)>;
+  if (std::abs(static_cast<double>(t)) < kSeriesBelow)
+    return Result(z * (1 - t * (1.0 / 2 - t * (1.0 / 3 - t * (1.0 / 4 - t / 5)))));
+  return Result(log(1 + t) / shape);
+}
+
+/// Observed information of (shape, scale, location), by automatic differentiation: the support ends
+/// so close to the largest of many samples that differences would step over its border.
 Eigen::Matrix3d observed_information(const Eigen::VectorXd& samples,
                                      const GeneralizedExtremeValue& fit) {
-  constexpr double kStep = 1e-4;  // of standardized samples: far above rounding
-  const auto log_likelihood = [&](int i, double di, int j, double dj) {
-    Eigen::Vector3d at(fit.shape, fit.scale, fit.location);
-    at(i) += di * kStep;
-    at(j) += dj * kStep;
-    return GeneralizedExtremeValue{at(0), at(1), at(2)}.log_likelihood(samples);
-  };
-  Eigen::Matrix3d information;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      information(i, j) = -(log_likelihood(i, 1, j, 1) - log_likelihood(i, 1, j, -1) -
-                            log_likelihood(i, -1, j, 1) + log_likelihood(i, -1, j, -1)) /
-                          (4 * kStep * kStep);
-  return information;
+  const auto variables = boost::math::differentiation::make_ftuple<double, 2, 2, 2>(
+      fit.shape, fit.scale, fit.location);
+  const auto& [shape, scale, location] = variables;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  for (const double x : samples) {
+    const auto y = reduced(shape, (x - location) / scale);
+    const auto cost = (1 + shape) * y + exp(-y) + log(scale);
+    information(0, 0) += cost.derivative(2, 0, 0);
+    information(1, 1) += cost.derivative(0, 2, 0);
+    information(2, 2) += cost.derivative(0, 0, 2);
+    information(1, 0) += cost.derivative(1, 1, 0);
+    information(2, 0) += cost.derivative(1, 0, 1);
+    information(2, 1) += cost.derivative(0, 1, 1);
+  }
+  return information.selfadjointView<Eigen::Lower>();
 }
 
 Eigen::Vector3d standard_errors(const Eigen::VectorXd& samples,
