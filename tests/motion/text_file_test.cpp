@@ -1,4 +1,4 @@
-#include "mcdbn/motion/atomic_file.hpp"
+#include "mcdbn/text_file.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,11 +7,11 @@
 
 using namespace mcdbn;
 
-TEST_CASE("write_file_atomically replaces the file and leaves nothing else behind") {
+TEST_CASE("write_text_file replaces the file and leaves nothing else behind") {
   const test::ScratchFolder folder;
   const auto path = folder.write("a.txt", "old and longer");
-  write_file_atomically(path, "new\n");
-  CHECK(test::ScratchFolder::text_of(path) == "new\n");
+  write_text_file(path, "new\n");
+  CHECK(read_text_file(path) == "new\n");
   int entries = 0;
   for (const auto& entry : std::filesystem::directory_iterator(path.parent_path())) {
     entries += entry.exists() ? 1 : 0;
@@ -19,15 +19,21 @@ TEST_CASE("write_file_atomically replaces the file and leaves nothing else behin
   CHECK(entries == 1);
 }
 
-TEST_CASE("write_file_atomically reports a missing folder and cleans up after a failed rename") {
+TEST_CASE("write_text_file reports a missing folder and cleans up after a failed rename") {
   const test::ScratchFolder folder;
-  CHECK_THROWS_AS(write_file_atomically(folder / "missing/a.txt", "x"), InputError);
+  CHECK_THROWS_AS(write_text_file(folder / "missing/a.txt", "x"), InputError);
   std::filesystem::create_directories(folder / "taken/inside");
-  CHECK_THROWS_AS(write_file_atomically(folder / "taken", "x"), InputError);
+  CHECK_THROWS_AS(write_text_file(folder / "taken", "x"), InputError);
   CHECK(std::filesystem::exists(folder / "taken/inside"));
   int entries = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "")) {
     entries += entry.exists() ? 1 : 0;
   }
   CHECK(entries == 1);
+}
+
+TEST_CASE("read_text_file refuses folders and missing files") {
+  const test::ScratchFolder folder;
+  CHECK_THROWS_AS(read_text_file(folder / ""), InputError);
+  CHECK_THROWS_AS(read_text_file(folder / "missing.txt"), InputError);
 }
