@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "mcdbn/device/user_cache.hpp"
 #include "mcdbn/errors.hpp"
 #include "mcdbn/model/safetensors.hpp"
+#include "mcdbn/text_file.hpp"
 
 namespace mcdbn {
 namespace {
@@ -147,6 +149,11 @@ Model model_from(Device& device, const Safetensors& file, const std::string& pat
 }
 
 }  // namespace
+
+TrainingClip identify_clip(const std::filesystem::path& path) {
+  return {std::filesystem::absolute(path).lexically_normal().string(),
+          fmt::format("{:016x}", fnv1a(read_text_file(path)))};
+}
 
 void save_model(const std::filesystem::path& path, const Model& model) {
   Safetensors file;

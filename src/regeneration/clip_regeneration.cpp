@@ -65,10 +65,7 @@ Motion motion_from_features(const Modalities& modalities, const MatrixF& pose, c
     return modalities.pose_features.decode(features, camera.camera_from_world, skeleton,
                                            modalities.fps, root);
   };
-  const int root_joint =
-      skeleton.find(modalities.pose_features.skeleton()
-                        .joints[static_cast<std::size_t>(modalities.pose_features.root())]
-                        .name);
+  const int root_joint = skeleton.find(modalities.root_name());
   const Motion in_place = decode(MatrixD::Zero(features.rows(), 3));
   const double units = file_units_per_metre(skeleton);
   const MatrixD root_features = modalities.pose_features.root_features(features);

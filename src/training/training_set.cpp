@@ -1,15 +1,11 @@
 #include "mcdbn/training/training_set.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "mcdbn/device/user_cache.hpp"
 #include "mcdbn/errors.hpp"
 #include "mcdbn/motion/clip.hpp"
 #include "mcdbn/motion/resample.hpp"
-#include "mcdbn/text_file.hpp"
 
 namespace mcdbn {
 namespace {
@@ -45,10 +41,6 @@ std::size_t TrainingSet::frames() const {
   return sum;
 }
 
-std::string clip_fingerprint(const std::filesystem::path& path) {
-  return fmt::format("{:016x}", fnv1a(read_text_file(path)));
-}
-
 TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
                               const TrainingConfig& config, std::vector<std::string>* notices) {
   if (files.empty())
@@ -59,8 +51,7 @@ TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
     const Motion raw =
         load_clip(file, {.fps = 0, .keep_first_frame = config.keep_first_frame}, notices);
     for (Motion& motion : resampled_phases(raw, config)) motions.push_back(std::move(motion));
-    recorded.push_back(
-        {std::filesystem::absolute(file).lexically_normal().string(), clip_fingerprint(file)});
+    recorded.push_back(identify_clip(file));
   }
   std::vector<const Motion*> all;
   for (const Motion& motion : motions) all.push_back(&motion);
@@ -84,19 +75,6 @@ TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
     set.poses.push_back(set.modalities.pose_scale.apply(pair.pose));
   }
   return set;
-}
-
-EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& modalities,
-                        const CameraPlacement& placement, bool keep_first_frame,
-                        std::vector<std::string>* notices) {
-  EncodedClip clip;
-  clip.motion =
-      load_clip(file, {.fps = modalities.fps, .keep_first_frame = keep_first_frame}, notices);
-  clip.camera = place_camera(clip.motion, placement);
-  clip.track = project_motion(clip.motion, clip.camera);
-  clip.track_features = modalities.encode_track(clip.track);
-  clip.pose_features = modalities.encode_pose(clip.motion, clip.camera.camera_from_world);
-  return clip;
 }
 
 }  // namespace mcdbn

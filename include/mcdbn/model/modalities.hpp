@@ -13,6 +13,9 @@ struct Modalities {
   double fps = 30.0;
   CameraPlacement camera;  ///< the view that the training tracks were projected through
 
+  const std::string& root_name() const {
+    return pose_features.skeleton().joints[static_cast<std::size_t>(pose_features.root())].name;
+  }
   /// @return [frames x pose_scale.output_dimension()]
   MatrixF encode_pose(const Motion& clip, const Eigen::Matrix3d& camera_from_world) const {
     return pose_scale.apply(pose_features.encode(clip, camera_from_world));

@@ -16,6 +16,9 @@ struct TrainingClip {
   std::string fingerprint;  ///< of the file's bytes: knows the clip again under another name
 };
 
+/// @throws InputError if the file cannot be read
+TrainingClip identify_clip(const std::filesystem::path& path);
+
 /// Everything that one model file holds.
 struct Model {
   Mcdbn network;

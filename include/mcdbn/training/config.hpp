@@ -87,9 +87,9 @@ void visit_settings(Config& config, Visit&& visit) {
   visit("mrbm.initial-deviation", config.mrbm.initial_deviation, "spread of the first weights");
   visit("mrbm.mean-field-steps", config.mrbm.mean_field_steps, "unrolled steps of eq 32 and 33");
   visit("mrbm.epochs", config.mrbm.epochs, "epochs");
-  visit("camera.azimuth-deg", config.camera.azimuth_deg, "camera around the clip, 0 in front");
-  visit("camera.elevation-deg", config.camera.elevation_deg, "camera above the horizon");
-  visit("camera.field-of-view-deg", config.camera.field_of_view_deg, "vertical field of view");
+  visit("camera.azimuth", config.camera.azimuth_deg, "degrees around the clip, 0 in front");
+  visit("camera.elevation", config.camera.elevation_deg, "degrees above the horizon");
+  visit("camera.fov", config.camera.field_of_view_deg, "vertical field of view in degrees");
 }
 
 }  // namespace mcdbn
