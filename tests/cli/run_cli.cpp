@@ -1,24 +1,20 @@
 #include "run_cli.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <fstream>
-#include <memory>
-#include <sstream>
 #include <stdexcept>
 
-namespace fs = std::filesystem;
+#include "motion/scratch_folder.hpp"
 
 namespace mcdbn::test {
 
 CliResult run_cli(const std::string& arguments, const std::string& environment) {
-  const TemporaryFolder folder;
-  const fs::path errors = folder / "stderr";
+  const ScratchFolder folder;
+  const std::filesystem::path errors = folder / "stderr";
   const std::string command =
       fmt::format("{} '{}' {} 2>'{}'", environment, MCDBN_CLI, arguments, errors.string());
   FILE* pipe = popen(command.c_str(), "r");
@@ -30,26 +26,8 @@ CliResult run_cli(const std::string& arguments, const std::string& environment) 
   }
   const int status = pclose(pipe);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  std::ostringstream text;
-  text << std::ifstream(errors).rdbuf();
-  result.standard_error = text.str();
+  result.standard_error = ScratchFolder::text_of(errors);
   return result;
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (fs::temp_directory_path() / "mcdbn-cli-XXXXXX").string();
-  if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot make a folder like " + pattern);
-  path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
-fs::path TemporaryFolder::write(const std::string& name, const std::string& text) const {
-  std::ofstream(path_ / name) << text;
-  return path_ / name;
 }
 
 int count_lines(const std::string& text) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 namespace mcdbn::test {
@@ -13,23 +12,6 @@ struct CliResult {
 /// Runs the built mcdbn-cl through the shell.
 /// @param environment assignments in front of the command, such as "MCDBN_DEVICE=3"
 CliResult run_cli(const std::string& arguments, const std::string& environment = "");
-
-/// A folder of its own for a test, removed with everything in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-  /// Writes a text file. @return its path
-  std::filesystem::path write(const std::string& name, const std::string& text) const;
-
- private:
-  std::filesystem::path path_;
-};
 
 int count_lines(const std::string& text);
 

@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "mcdbn/motion/keypoints.hpp"
+#include "motion/scratch_folder.hpp"
 #include "run_cli.hpp"
 
 using namespace mcdbn::test;
@@ -24,7 +24,7 @@ int files_in(const fs::path& folder) {
 }  // namespace
 
 TEST_CASE("project prepares a clip as training does and keeps the body in view") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const fs::path clip = folder.write("clip.bvh", small_bvh(120, true));
   const fs::path output = folder / "track.csv";
 
@@ -49,7 +49,7 @@ TEST_CASE("project prepares a clip as training does and keeps the body in view")
 }
 
 TEST_CASE("project: the written camera gives the same track again") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const fs::path clip = folder.write("clip.bvh", small_bvh(40));
   const fs::path camera = folder / "camera.yaml";
   REQUIRE(project(clip, folder / "placed.csv",
@@ -66,7 +66,7 @@ TEST_CASE("project: the written camera gives the same track again") {
 }
 
 TEST_CASE("project: noise has the deviation asked for and follows the seed") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const fs::path clip = folder.write("clip.bvh", small_bvh(800));
   REQUIRE(project(clip, folder / "clean.csv", "--fps 0").exit_code == 0);
   REQUIRE(project(clip, folder / "noisy.csv", "--fps 0 --noise-px 5 --seed 3").exit_code == 0);
@@ -82,7 +82,7 @@ TEST_CASE("project: noise has the deviation asked for and follows the seed") {
 }
 
 TEST_CASE("a bad clip is exit code 3, one line with file and line, and no output") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   std::string text = small_bvh(4);
   text.replace(text.rfind("40"), 2, "x0");
   const fs::path clip = folder.write("bad.bvh", text);
@@ -95,24 +95,24 @@ TEST_CASE("a bad clip is exit code 3, one line with file and line, and no output
   CHECK(count_lines(result.standard_error) == 1);
   CHECK(result.standard_error.find(fmt::format("{}:{}: ", clip.string(), bad_line)) !=
         std::string::npos);
-  CHECK(files_in(folder.path()) == 1);
+  CHECK(files_in(folder / ".") == 1);
 
   CHECK(project(folder / "absent.bvh", folder / "track.csv").exit_code == 3);
   CHECK(run_cli("info '" + clip.string() + "'").exit_code == 3);
-  CHECK(files_in(folder.path()) == 1);
+  CHECK(files_in(folder / ".") == 1);
 }
 
 TEST_CASE("an output that cannot be written leaves nothing behind") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const fs::path clip = folder.write("clip.bvh", small_bvh(8));
   const CliResult result = project(clip, folder / "no/such/folder/track.csv");
   CHECK(result.exit_code == 3);
   CHECK(count_lines(result.standard_error) == 1);
-  CHECK(files_in(folder.path()) == 1);
+  CHECK(files_in(folder / ".") == 1);
 }
 
 TEST_CASE("info describes clips and tracks") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const fs::path clip = folder.write("clip.bvh", small_bvh(120, true));
   const auto described =
       nlohmann::json::parse(run_cli("info --json '" + clip.string() + "'").standard_output);
