@@ -25,6 +25,8 @@ else()
   set(MCDBN_PC_REQUIRES "eigen3 nlohmann_json OpenCL ${dependencies}")
   set(MCDBN_PC_REQUIRES_PRIVATE "")
 endif()
+# Relative, so that the installed tree may be moved.
+file(RELATIVE_PATH MCDBN_PREFIX_FROM_PC /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 configure_file(src/packaging/mcdbn.pc.in ${CMAKE_BINARY_DIR}/generated/mcdbn.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/generated/mcdbn.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
