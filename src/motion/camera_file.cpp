@@ -1,5 +1,5 @@
-#include <Eigen/Core>
 #include <fmt/format.h>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <string>
 
 #include "mcdbn/errors.hpp"
-#include "mcdbn/text_file.hpp"
 #include "mcdbn/motion/camera.hpp"
+#include "mcdbn/text_file.hpp"
 
 namespace mcdbn {
 
