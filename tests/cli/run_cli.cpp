@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "mcdbn/text_file.hpp"
 #include "motion/scratch_folder.hpp"
 
 namespace mcdbn::test {
@@ -26,7 +27,7 @@ CliResult run_cli(const std::string& arguments, const std::string& environment) 
   }
   const int status = pclose(pipe);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  result.standard_error = ScratchFolder::text_of(errors);
+  result.standard_error = read_text_file(errors);
   return result;
 }
 
