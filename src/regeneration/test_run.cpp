@@ -20,8 +20,8 @@ bool was_trained_on(const Model& model, const std::filesystem::path& file) {
 /// Joints worth judging: not the root, not those that stand where their parent stands.
 std::vector<int> distinct_joints(const Skeleton& skeleton, int root) {
   std::vector<int> joints;
-  for (const std::string& name : TrackFeatures::for_skeleton(skeleton, root).joint_names())
-    joints.push_back(skeleton.find(name));
+  const TrackFeatures tracked = TrackFeatures::for_skeleton(skeleton, root);
+  for (const std::string& name : tracked.joint_names()) joints.push_back(skeleton.find(name));
   return joints;
 }
 

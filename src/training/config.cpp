@@ -1,5 +1,9 @@
 #include "mcdbn/training/config.hpp"
 
+#include <fmt/format.h>
+
+#include "mcdbn/errors.hpp"
+
 namespace mcdbn {
 
 TrainingConfig TrainingConfig::paper() {
@@ -19,6 +23,31 @@ TrainingConfig TrainingConfig::paper() {
   config.mrbm_hidden = 150;
   config.look_ahead = 0;
   return config;
+}
+
+void TrainingConfig::validate() const {
+  // Counts that nothing works without; histories (order, look-ahead) may be 0.
+  const auto positive = [](const char* name, auto value) {
+    if (!(value > 0)) throw ConfigError(fmt::format("{} must be above 0, not {}", name, value));
+  };
+  positive("fps", fps);
+  positive("phases", phases);
+  positive("hidden", hidden);
+  positive("layers", layers);
+  positive("mrbm-hidden", mrbm_hidden);
+  positive("batch", batch);
+  for (const CdSettings* settings : {&gaussian, &binary}) {
+    positive("gibbs-steps", settings->gibbs_steps);
+    positive("rate", settings->rate);
+    positive("epochs", settings->epochs);
+    if (settings->momentum < 0 || settings->momentum >= 1)
+      throw ConfigError(
+          fmt::format("momentum must be at least 0 and below 1, not {}", settings->momentum));
+  }
+  positive("mrbm.rate", mrbm.rate);
+  positive("mrbm.mean-field-steps", mrbm.mean_field_steps);
+  positive("mrbm.epochs", mrbm.epochs);
+  positive("camera.fov", camera.field_of_view_deg);
 }
 
 }  // namespace mcdbn

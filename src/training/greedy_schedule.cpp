@@ -240,8 +240,7 @@ Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
 
 Mcdbn train_greedy(Device& device, const TrainingSet& data, const TrainingConfig& config,
                    const EpochObserver& observer) {
-  if (config.layers == 0 || config.hidden == 0 || config.mrbm_hidden == 0)
-    throw ConfigError("layers, hidden and mrbm-hidden must be at least 1");
+  config.validate();
   double total = mrbm_cost(config.hidden, config.hidden, config);
   for (const Eigen::Index dimension : {data.poses.front().cols(), data.tracks.front().cols()})
     for (const CrbmShape& shape : layer_shapes(static_cast<std::size_t>(dimension), config))

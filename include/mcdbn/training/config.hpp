@@ -53,6 +53,8 @@ struct TrainingConfig {
   /// The paper's own figures (Table 2, section V.C): rate 0.1, momentum 0.9, weights from N(0, 1),
   /// MRBM of 150, no look-ahead. Diverges (DESIGN section 2): the guard says so.
   static TrainingConfig paper();
+  /// @throws ConfigError naming the setting that is out of range
+  void validate() const;
 };
 
 /// Calls visit(name, member, help) for every setting, with dots between the parts of a name: the

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "commands.hpp"
+#include "mcdbn/errors.hpp"
+#include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/regeneration/clip_regeneration.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+struct RegenerateOptions {
+  std::filesystem::path model, input, output, camera, skeleton;
+  RegenerationOptions regeneration;
+};
+
+/// out.bvh, or out_01.bvh … for several samples.
+std::filesystem::path sample_path(const std::filesystem::path& output, std::size_t sample,
+                                  std::size_t samples) {
+  if (samples == 1) return output;
+  const std::string name =
+      fmt::format("{}_{:02}{}", output.stem().string(), sample + 1, output.extension().string());
+  return output.parent_path() / name;
+}
+
+void run_regenerate(const CommandContext& context, const RegenerateOptions& options) {
+  Device device = Device::open({context.platform, context.device});
+  const Model model = load_model(device, options.model);
+  ClipPlacement placement;
+  if (!options.camera.empty()) placement.camera = read_camera(options.camera);
+  if (!options.skeleton.empty()) placement.skeleton = read_bvh(options.skeleton).skeleton;
+  RegenerationOptions regeneration = options.regeneration;
+  regeneration.seed = context.seed;
+  TrackFeatures::FillCount filled;
+  const Track2d track = read_track_csv(options.input);
+  const auto motions = regenerate_clip(model, track, placement, regeneration, &filled);
+  if (filled.interpolated + filled.missing > 0)
+    spdlog::info("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
+                 options.input.string(), filled.interpolated, filled.missing);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const auto path = sample_path(options.output, i, motions.size());
+    write_bvh(path, motions[i]);
+    spdlog::info("{}: {} frames at {:.4g} fps", path.string(), motions[i].frames(),
+                 motions[i].fps());
+  }
+}
+
+}  // namespace
+
+void add_regenerate_command(CLI::App& app, CommandContext& context) {
+  auto options = std::make_shared<RegenerateOptions>();
+  CLI::App* command =
+      app.add_subcommand("regenerate", "Regenerates 3D motion, as BVH, from a 2D track");
+  command->add_option("--model", options->model, "Trained model")->required()->type_name("FILE");
+  command->add_option("--input", options->input, "2D track, CSV")->required()->type_name("FILE");
+  command->add_option("-o,--output", options->output, "BVH file to write")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--camera", options->camera,
+                   "OpenCV YAML or XML camera that saw the track (default: the model's view, clip "
+                   "at the origin)")
+      ->type_name("FILE");
+  command
+      ->add_option("--skeleton", options->skeleton,
+                   "BVH whose skeleton to use, of the same joint names")
+      ->type_name("FILE");
+  command
+      ->add_option("--samples", options->regeneration.samples,
+                   "Variations; several are written as out_01.bvh …")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command
+      ->add_option("--temperature", options->regeneration.temperature,
+                   "0: the mean-field answer; towards 1: sampled variations")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  command
+      ->add_option("--gibbs-steps", options->regeneration.gibbs_steps,
+                   "k of a sampled frame (Algorithm 5)")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  add_seed_option(*command, context);
+  add_device_options(*command, context);
+  add_quiet_option(*command, context);
+  command->footer(
+      "Example:\n  mcdbn-cl regenerate --model run/model.safetensors --input track.csv -o out.bvh\n"
+      "  mcdbn-cl regenerate --model run/model.safetensors --input track.csv -o out.bvh --samples "
+      "5 "
+      "--temperature 1");
+  command->callback([&context, options] {
+    context.run = [&context, options] { run_regenerate(context, *options); };
+  });
+}
+
+}  // namespace mcdbn::cli

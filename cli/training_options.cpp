@@ -1,0 +1,143 @@
+#include "training_options.hpp"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <sstream>
+
+#include "mcdbn/errors.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+std::string flag_of(const std::string& setting) {
+  std::string flag = "--" + setting;
+  std::replace(flag.begin(), flag.end(), '.', '-');
+  return flag;
+}
+
+/// `a.b` of a nested JSON object, made where it is missing.
+nlohmann::json& nested(nlohmann::json& root, const std::string& name) {
+  std::string pointer = "/" + name;
+  std::replace(pointer.begin(), pointer.end(), '.', '/');
+  return root[nlohmann::json::json_pointer(pointer)];
+}
+
+std::string place(const std::filesystem::path& file, const toml::source_region& source) {
+  return fmt::format("{}:{}", file.string(), source.begin.line);
+}
+
+/// Sets the setting called `name` from a TOML value; false if there is no such setting.
+bool assign(TrainingConfig& config, const std::string& name, const toml::node& node,
+            const std::string& where) {
+  bool found = false;
+  visit_settings(config, [&](const std::string& setting, auto& member, const char*) {
+    if (setting != name) return;
+    found = true;
+    using Member = std::decay_t<decltype(member)>;
+    const auto value = node.value<
+        std::conditional_t<std::is_floating_point_v<Member>, double,
+                           std::conditional_t<std::is_same_v<Member, bool>, bool, std::int64_t>>>();
+    bool fits = value.has_value();
+    if constexpr (std::is_unsigned_v<Member> && !std::is_same_v<Member, bool>)
+      fits = fits && *value >= 0;
+    if (!fits)
+      throw ConfigError(fmt::format("{}: '{}' has a value of the wrong kind", where, name));
+    member = static_cast<Member>(*value);
+  });
+  return found;
+}
+
+void apply_table(TrainingConfig& config, const toml::table& table, const std::string& prefix,
+                 const std::filesystem::path& file) {
+  for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
+    if (const toml::table* inner = node.as_table())
+      apply_table(config, *inner, name + ".", file);
+    else if (const std::string where = place(file, node.source());
+             !assign(config, name, node, where))
+      throw ConfigError(
+          fmt::format("{}: unknown setting '{}'; see mcdbn-cl train --help", where, name));
+  }
+}
+
+void apply_file(TrainingConfig& config, const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file))
+    throw ConfigError(fmt::format("{}: no such file; --config wants a TOML file", file.string()));
+  try {
+    apply_table(config, toml::parse_file(file.string()), "", file);
+  } catch (const toml::parse_error& error) {
+    throw ConfigError(fmt::format("{}: {}", place(file, error.source()), error.description()));
+  }
+}
+
+}  // namespace
+
+void TrainingOptions::add_to(CLI::App& command) {
+  command
+      .add_option("--preset", preset_, "default, or paper: the paper's own figures, which diverge")
+      ->check(CLI::IsMember({"default", "paper"}))
+      ->capture_default_str();
+  command.add_option("--config", file_, "TOML file of settings; flags override it")
+      ->type_name("FILE");
+  TrainingConfig defaults;
+  visit_settings(defaults, [&](const std::string& name, auto& member, const char* help) {
+    using Member = std::decay_t<decltype(member)>;
+    const auto set = [this, name](const Member& value) {
+      flags_.push_back([name, value](TrainingConfig& config) {
+        visit_settings(config, [&](const std::string& setting, auto& target, const char*) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(target)>, Member>)
+            if (setting == name) target = value;
+        });
+      });
+    };
+    CLI::Option* option = nullptr;
+    if constexpr (std::is_same_v<Member, bool>) {
+      option = command.add_flag_function(
+          flag_of(name), [set](std::int64_t count) { set(count > 0); }, help);
+    } else {
+      option = command.add_option_function<Member>(flag_of(name), set, help);
+      option->default_str(fmt::format("{}", member))->run_callback_for_default(false);
+    }
+    option->group("Settings");
+  });
+}
+
+TrainingConfig TrainingOptions::resolve() const {
+  TrainingConfig config = preset_ == "paper" ? TrainingConfig::paper() : TrainingConfig{};
+  if (!file_.empty()) apply_file(config, file_);
+  for (const auto& flag : flags_) flag(config);
+  config.validate();
+  return config;
+}
+
+nlohmann::json settings_json(const TrainingConfig& config) {
+  nlohmann::json json;
+  visit_settings(config, [&](const std::string& name, const auto& member, const char*) {
+    nested(json, name) = member;
+  });
+  return json;
+}
+
+std::string settings_toml(const TrainingConfig& config) {
+  toml::table table;
+  visit_settings(config, [&](const std::string& name, const auto& member, const char*) {
+    using Member = std::decay_t<decltype(member)>;
+    toml::table* target = &table;
+    std::string key = name;
+    if (const auto dot = name.find('.'); dot != std::string::npos) {
+      target = table.insert(name.substr(0, dot), toml::table{}).first->second.as_table();
+      key = name.substr(dot + 1);
+    }
+    if constexpr (std::is_unsigned_v<Member> && !std::is_same_v<Member, bool>)
+      target->insert(key, static_cast<std::int64_t>(member));
+    else
+      target->insert(key, member);
+  });
+  std::ostringstream text;
+  text << table << '\n';
+  return text.str();
+}
+
+}  // namespace mcdbn::cli

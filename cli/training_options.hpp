@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mcdbn/training/config.hpp"
+
+namespace mcdbn::cli {
+
+/// Where a training run's settings come from: a preset, then a TOML file, then flags.
+class TrainingOptions {
+ public:
+  /// --preset, --config and a flag for every setting of TrainingConfig.
+  void add_to(CLI::App& command);
+  /// @throws ConfigError, InputError
+  TrainingConfig resolve() const;
+
+ private:
+  std::string preset_ = "default";
+  std::filesystem::path file_;
+  std::vector<std::function<void(TrainingConfig&)>> flags_;
+};
+
+/// Every setting by its name, nested at the dots.
+nlohmann::json settings_json(const TrainingConfig& config);
+/// The same as a TOML file that --config reads.
+std::string settings_toml(const TrainingConfig& config);
+
+}  // namespace mcdbn::cli
