@@ -45,7 +45,8 @@ void print_as_text(const std::vector<DeviceInfo>& devices) {
 void add_devices_command(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("devices", "Lists the OpenCL platforms and devices");
   add_json_option(*command, context);
-  command->footer("Example:\n  mcdbn-cl devices --json\n  mcdbn-cl train clips/ -o run/ --device 0");
+  command->footer(
+      "Example:\n  mcdbn-cl devices --json\n  mcdbn-cl train clips/ -o run/ --device 0");
   command->callback([&context] {
     context.run = [&context] {
       const std::vector<DeviceInfo> devices = list_devices();

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <array>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -70,7 +71,8 @@ int parse_and_run(CLI::App& app, CommandContext& context, int argc, char** argv)
   }
   if (context.quiet) spdlog::set_level(spdlog::level::warn);
   context.run();
-  if (!std::cout.flush()) throw Error("standard output: cannot be written; is the disk full?");
+  if (!std::cout.flush() || std::fflush(stdout) != 0)
+    throw Error("standard output: cannot be written; is the disk full?");
   return kOk;
 }
 

@@ -13,11 +13,12 @@
 
 namespace mcdbn::test {
 
-CliResult run_cli(const std::string& arguments, const std::string& environment) {
+CliResult run_program(const std::filesystem::path& program, const std::string& arguments,
+                      const std::string& environment) {
   const ScratchFolder folder;
   const std::filesystem::path errors = folder / "stderr";
   const std::string command =
-      fmt::format("{} '{}' {} 2>'{}'", environment, MCDBN_CLI, arguments, errors.string());
+      fmt::format("{} '{}' {} 2>'{}'", environment, program.string(), arguments, errors.string());
   FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) throw std::runtime_error("cannot start " + command);
   CliResult result;
@@ -29,6 +30,10 @@ CliResult run_cli(const std::string& arguments, const std::string& environment) 
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   result.standard_error = read_text_file(errors);
   return result;
+}
+
+CliResult run_cli(const std::string& arguments, const std::string& environment) {
+  return run_program(MCDBN_CLI, arguments, environment);
 }
 
 int count_lines(const std::string& text) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace mcdbn::test {
@@ -8,6 +9,10 @@ struct CliResult {
   int exit_code = -1;
   std::string standard_output, standard_error;
 };
+
+/// Runs a program through the shell.
+CliResult run_program(const std::filesystem::path& program, const std::string& arguments,
+                      const std::string& environment = "");
 
 /// Runs the built mcdbn-cl through the shell.
 /// @param environment assignments in front of the command, such as "MCDBN_DEVICE=3"
