@@ -1,6 +1,6 @@
 #include <fmt/format.h>
-#include <Eigen/LU>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/core/eigen.hpp>
 #include <string>
+#include <string_view>
 
 #include "mcdbn/errors.hpp"
 #include "mcdbn/motion/camera.hpp"
@@ -69,7 +70,8 @@ class CameraReader {
     std::string text;
     int line = 1;
     for (int number = 1; std::getline(file, text); ++number) {
-      if (text.find(node) == std::string::npos) continue;
+      const auto has = [&](const std::string& mark) { return text.find(mark) != text.npos; };
+      if (!has(node + ":") && !has("<" + node) && !has('"' + node + '"')) continue;
       line = number;
       break;
     }
@@ -160,11 +162,17 @@ Camera read_camera(const std::filesystem::path& path) {
 }
 
 void write_camera(const std::filesystem::path& path, const Camera& camera) {
+  const std::string extension = path.extension().string();
+  constexpr std::string_view kFormats[] = {".yml", ".yaml", ".xml", ".json"};
+  if (std::find(std::begin(kFormats), std::end(kFormats), extension) == std::end(kFormats)) {
+    throw InputError(
+        fmt::format("{}: no camera format has the ending '{}'; use .yml, .xml or .json",
+                    path.string(), extension));
+  }
   std::string text;
   try {
     // In memory the name only chooses the format.
-    cv::FileStorage storage("camera" + path.extension().string(),
-                            cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    cv::FileStorage storage("camera" + extension, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
     cv::Mat rotation;
     cv::eigen2cv(camera.camera_from_world, rotation);
     storage << "image_width" << camera.width_px << "image_height" << camera.height_px;
@@ -179,8 +187,7 @@ void write_camera(const std::filesystem::path& path, const Camera& camera) {
                                  camera.translation.z()));
     text = storage.releaseAndGetString();
   } catch (const cv::Exception& error) {
-    throw InputError(fmt::format("{}: cannot be written ({}); end its name in .yml or .xml",
-                                 path.string(), error.err));
+    throw InputError(fmt::format("{}: cannot be written ({})", path.string(), error.err));
   }
   write_text_file(path, text);
 }
