@@ -127,6 +127,7 @@ Foot JumpingJacks::foot(Side side, int hop, double t) const {
   const Foot leaving = planted_foot(body_, print(side, hop), pitch);
   const double u = t / flight_s_, across = smooth_step(0, 1, u);
   Foot foot = landing;
+  foot.planted = false;
   foot.turn_deg = std::lerp(leaving.turn_deg, landing.turn_deg, across);
   foot.toe_bend_deg *= 1 - std::sin(std::numbers::pi * u);
   foot.ankle = (1 - across) * leaving.ankle + across * landing.ankle;

@@ -101,6 +101,7 @@ Foot Jump::flying_foot(const FootPrint& from, const FootPrint& to, double t) con
   };
   const Eigen::Vector3d still = Eigen::Vector3d::Zero();
   Foot foot = leaving;
+  foot.planted = false;
   foot.pitch_deg = pitch_(t);
   foot.toe_bend_deg = leaving.toe_bend_deg * (1 - smooth_step(0, 0.3, u)) +
                       landing.toe_bend_deg * smooth_step(0.7, 1, u);

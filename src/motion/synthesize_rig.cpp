@@ -88,10 +88,11 @@ Rotations local_rotations(const Body& body, const Frame& frame) {
   return rotations;
 }
 
-/// How far the hips have to come down for both ankles to be in reach.
+/// How far the hips have to come down for the planted feet to be in reach.
 double excess_height(const Body& body, const Frame& frame) {
   double excess = 0;
   for (const Side side : kSides) {
+    if (!frame.feet[side].planted) continue;
     const Eigen::Vector3d down = hip_position(body, frame, side) - frame.feet[side].ankle;
     const double reach = kLongestReach * body.leg();
     const double across = std::hypot(down.x(), down.z());
@@ -124,7 +125,7 @@ std::vector<double> smooth_upper_envelope(const std::vector<double>& values, int
 void lower_hips_into_reach(const Body& body, std::vector<Frame>& frames, double fps) {
   std::vector<double> excess(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) excess[i] = excess_height(body, frames[i]);
-  constexpr double kWindow_s = 0.1;
+  constexpr double kWindow_s = 0.07;
   const auto lowering =
       smooth_upper_envelope(excess, static_cast<int>(std::lround(kWindow_s * fps)));
   for (std::size_t i = 0; i < frames.size(); ++i) frames[i].hips.y() -= lowering[i];
@@ -146,7 +147,7 @@ Posture standing_posture(const Style& style) {
 }
 
 Foot planted_foot(const Body& body, const FootPrint& print, double pitch_deg) {
-  Foot foot{print.ankle, print.turn_deg, pitch_deg, std::max(0.0, -pitch_deg)};
+  Foot foot{print.ankle, print.turn_deg, pitch_deg, std::max(0.0, -pitch_deg), true};
   const Eigen::Vector3d pivot = pitch_deg > 0 ? body.heel_offset() : body.ball_offset();
   const Eigen::Matrix3d flat = rotation_y(print.turn_deg);
   foot.ankle = print.ankle + flat * pivot - world_from_foot(foot) * pivot;

@@ -48,6 +48,7 @@ struct Foot {
   double turn_deg = 0;             ///< to the left, in the world
   double pitch_deg = 0;            ///< toes up
   double toe_bend_deg = 0;         ///< toes up against the foot
+  bool planted = false;            ///< has to be reached, whatever that asks of the hips
 };
 
 /// Where a flat foot stands on the ground.
@@ -85,7 +86,7 @@ struct Frame {
   std::array<Foot, 2> feet;
 };
 
-/// Lowers the hips, smoothly over time, wherever a leg could not reach its foot, solves the legs,
+/// Lowers the hips, smoothly over time, wherever a leg could not reach its planted foot, solves the legs,
 /// and writes the channels of `make_skeleton`.
 Motion assemble(const Body& body, std::vector<Frame> frames, double fps);
 

@@ -111,6 +111,7 @@ Foot Throw::stepping_foot(const FootPrint& home, double t) const {
   // Lifted first, then carried forward.
   const double way = out ? smooth_step(0.3, 1, u) : 1 - smooth_step(0, 1, u);
   Foot foot = planted_foot(body_, home, 0);
+  foot.planted = false;
   foot.ankle += Eigen::Vector3d(0, (out ? lift_ : 5) * arch, stride_ * way);
   foot.pitch_deg = (out ? -18 + 26 * u : -12) * arch;
   return foot;

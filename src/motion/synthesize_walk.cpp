@@ -8,10 +8,11 @@ namespace mcdbn::synthesis {
 namespace {
 
 // Normative sagittal angles of level walking at a free cadence (after Winter), in per cent of the
-// cycle from heel contact to heel contact of the same foot. Flexion and dorsiflexion are positive.
-const std::vector<KeyCurve::Key> kHipFlexion{{0, 28},  {5, 27},   {10, 24},  {20, 15}, {30, 5},
-                                             {40, -4}, {50, -11}, {54, -12}, {60, -6}, {65, 3},
-                                             {70, 13}, {75, 21},  {80, 27},  {87, 31}, {94, 29.5}};
+// cycle from heel contact to heel contact of the same foot; the thigh's is against the vertical.
+// Flexion and dorsiflexion are positive.
+const std::vector<KeyCurve::Key> kThighFlexion{
+    {0, 22},   {5, 21},  {10, 18}, {20, 9},  {30, -1}, {40, -10}, {50, -17}, {54, -18},
+    {60, -12}, {65, -3}, {70, 7},  {75, 15}, {80, 21}, {87, 25},  {94, 23.5}};
 const std::vector<KeyCurve::Key> kKneeFlexion{
     {0, 5},   {5, 11},  {10, 17}, {14, 19}, {20, 17}, {30, 10}, {38, 6},  {45, 8}, {50, 14},
     {55, 25}, {60, 40}, {65, 54}, {71, 62}, {76, 58}, {82, 43}, {88, 24}, {94, 8}, {97, 4}};
@@ -67,7 +68,7 @@ class Gait {
 
   Body body_;
   Style style_;
-  CyclicCurve hip_{kHipFlexion}, knee_{kKneeFlexion}, ankle_{kAnkleFlexion};
+  CyclicCurve thigh_{kThighFlexion}, knee_{kKneeFlexion}, ankle_{kAnkleFlexion};
   CyclicCurve pelvis_turn_{kPelvisTurnRight}, pelvis_drop_{kPelvisDropRight};
   SlowNoise stride_noise_, turn_noise_;
   double stride_, turn_deg_per_cm_, step_half_width_, arm_asymmetry_;
@@ -90,8 +91,8 @@ LegPose Gait::leg(Side side, double phase) const {
   const double cycle = foot_phase(side, phase);
   const double scale = stride_scale(phase);
   const double radians = std::numbers::pi / 180;
-  const double hip = scale * hip_(cycle), knee = scale * knee_(cycle), ankle = ankle_(cycle);
-  const double shank = hip - knee;
+  const double thigh = scale * thigh_(cycle), knee = scale * knee_(cycle), ankle = ankle_(cycle);
+  const double shank = thigh - knee;
   double pitch = shank + ankle;
   const double in_cycle = cycle - std::floor(cycle);
   if (in_cycle < kToeOff) {
@@ -100,8 +101,8 @@ LegPose Gait::leg(Side side, double phase) const {
     const double ball = smooth_step(0.34, 0.48, in_cycle);
     pitch = in_cycle < kMidStance ? heel * std::max(0.0, pitch) : ball * std::min(0.0, pitch);
   }
-  return {body_.thigh * std::sin(hip * radians) + body_.shank * std::sin(shank * radians),
-          -body_.thigh * std::cos(hip * radians) - body_.shank * std::cos(shank * radians), pitch};
+  return {body_.thigh * std::sin(thigh * radians) + body_.shank * std::sin(shank * radians),
+          -body_.thigh * std::cos(thigh * radians) - body_.shank * std::cos(shank * radians), pitch};
 }
 
 double Gait::pelvis_turn_deg(double phase) const {
@@ -183,6 +184,7 @@ Foot Gait::swinging_foot(Side side, double phase, double cycle) const {
   const Eigen::Vector3d land_slope = (demand(after, end + 1.5 * kStep) - land) / kStep;
   const double t = phase - start, u = t / duration;
 
+  if (getenv("DBG")) fprintf(stderr,"side %d u %.2f leave %.1f %.1f %.1f slope %.1f %.1f %.1f land %.1f %.1f %.1f slope %.1f %.1f %.1f\n", side, u, leave.x(),leave.y(),leave.z(),leave_slope.x(),leave_slope.y(),leave_slope.z(),land.x(),land.y(),land.z(),land_slope.x(),land_slope.y(),land_slope.z());
   Foot foot;
   foot.pitch_deg = leg(side, phase).pitch_deg;
   foot.turn_deg = std::lerp(before.turn_deg, after.turn_deg, smooth_step(0, 1, u));
