@@ -72,8 +72,12 @@ Eigen::Matrix3d camera_rotation(double azimuth_deg, double elevation_deg) {
 }
 
 Camera place_camera(const Motion& motion, const CameraPlacement& placement) {
+  return place_camera(joint_positions(motion), placement);
+}
+
+Camera place_camera(const MatrixD& points, const CameraPlacement& placement) {
   check(placement);
-  if (motion.frames() == 0) throw InputError("the clip has no frames; nothing to look at");
+  if (points.size() == 0) throw InputError("the clip has no frames; nothing to look at");
   Camera camera;
   camera.camera_from_world = camera_rotation(placement.azimuth_deg, placement.elevation_deg);
   camera.width_px = placement.width_px;
@@ -83,7 +87,6 @@ Camera place_camera(const Motion& motion, const CameraPlacement& placement) {
   camera.fx_px = camera.fy_px =
       placement.height_px / 2.0 / std::tan(placement.field_of_view_deg * kRadians / 2);
 
-  const MatrixD points = joint_positions(motion);
   Eigen::Vector3d low = points.row(0).head<3>(), high = low;
   for (Eigen::Index column = 0; column < points.cols(); ++column) {
     low[column % 3] = std::min(low[column % 3], points.col(column).minCoeff());

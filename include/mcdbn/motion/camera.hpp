@@ -36,6 +36,8 @@ Eigen::Matrix3d camera_rotation(double azimuth_deg, double elevation_deg);
 
 /// Aims a camera at the centre of the clip, with every joint of every frame in view.
 Camera place_camera(const Motion& motion, const CameraPlacement& placement);
+/// The same for points. @param points [frames x 3·joints] world  @throws InputError if none
+Camera place_camera(const MatrixD& points, const CameraPlacement& placement);
 
 /// Reads an OpenCV YAML/XML file: camera_matrix, distortion_coefficients, image_width,
 /// image_height, and the pose as rvec or R (rotation matrix) with tvec.

@@ -1,0 +1,70 @@
+#include "mcdbn/motion/render.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "camera_options.hpp"
+#include "clip_options.hpp"
+#include "commands.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+struct RenderCommandOptions {
+  std::vector<std::filesystem::path> clips;
+  std::filesystem::path output;
+  CameraOptions camera;
+  ClipOptions preparation;
+  RenderOptions render;
+};
+
+void run_render(RenderCommandOptions options) {
+  std::vector<RenderClip> clips;
+  for (const std::filesystem::path& path : options.clips) {
+    clips.push_back({load_clip_with_notices(path, options.preparation), path.filename().string()});
+  }
+  options.render.placement = options.camera.placement;
+  if (!options.camera.file.empty()) options.render.camera = read_camera(options.camera.file);
+  render(clips, options.output, options.render);
+  spdlog::info("{}: {} {}", options.output.string(), clips.size(),
+               clips.size() == 1 ? "clip" : "clips");
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, CommandContext& context) {
+  auto options = std::make_shared<RenderCommandOptions>();
+  RenderOptions& render = options->render;
+  options->camera.placement = render.placement;
+  CLI::App* command = app.add_subcommand("render", "Draws BVH clips as a video or a contact sheet");
+  command
+      ->add_option("clips", options->clips,
+                   "BVH files, shown side by side (in a sheet, row by row)")
+      ->required()
+      ->type_name("FILE...");
+  command
+      ->add_option("-o,--output", options->output,
+                   "What to write: .mp4 is a video, .png a contact sheet")
+      ->required()
+      ->type_name("FILE");
+  command->add_flag("--overlay", render.overlay, "All clips in one picture");
+  command->add_flag("--orbit", render.orbit, "The camera goes round the figure");
+  command->add_option("--orbit-speed", render.orbit_deg_per_s, "Of the camera, degrees a second")
+      ->capture_default_str();
+  command->add_flag("!--still-camera", render.follow_root,
+                    "The camera sees the whole path instead of going with the figure");
+  command->add_option("--video-fps", render.fps, "Frames a second of a video (default: the clip's)")
+      ->check(CLI::Range(1.0, 240.0));
+  command->add_option("--columns", render.sheet_columns, "Frames in a row of a contact sheet")
+      ->capture_default_str();
+  add_clip_options(*command, options->preparation);
+  add_camera_options(*command, options->camera);
+  add_quiet_option(*command, context);
+  command->footer("Example:\n  mcdbn-cl render truth.bvh regenerated.bvh --orbit -o compare.mp4");
+  command->callback([&context, options] { context.run = [options] { run_render(*options); }; });
+}
+
+}  // namespace mcdbn::cli

@@ -1,0 +1,97 @@
+#include "mcdbn/motion/synthesize.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "commands.hpp"
+#include "mcdbn/errors.hpp"
+#include "mcdbn/motion/bvh.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SynthesizeOptions {
+  std::string action;
+  int clips = 10;
+  int subjects = 5;
+  double fps = SynthesisOptions{}.fps;
+  double seconds = SynthesisOptions{}.seconds;
+  fs::path output;
+};
+
+void create_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw InputError(fmt::format("{}: the folder cannot be created ({}); choose another",
+                                 folder.string(), error.message()));
+  }
+}
+
+/// Clips go round the subjects, so that each subject has about as many.
+void run_synthesize(const CommandContext& context, const SynthesizeOptions& options) {
+  SynthesisOptions clip{.action = parse_synthesis_action(options.action)};
+  clip.seed = context.seed;
+  clip.fps = options.fps;
+  clip.seconds = options.seconds;
+  for (int i = 0; i < options.clips; ++i) {
+    clip.subject = 1 + i % options.subjects;
+    clip.clip = 1 + i / options.subjects;
+    const Motion motion = synthesize(clip);
+    if (i == 0) create_folder(options.output);
+    write_bvh(options.output / synthesis_file_name(clip), motion);
+  }
+  spdlog::info("{}: {} clips of {} by {} subjects, {:.4g} s each at {:.4g} fps",
+               options.output.string(), options.clips, options.action,
+               std::min(options.clips, options.subjects), options.seconds, options.fps);
+}
+
+std::vector<std::string> action_names() {
+  std::vector<std::string> names;
+  for (const SynthesisAction action : synthesis_actions()) {
+    names.emplace_back(synthesis_action_name(action));
+  }
+  return names;
+}
+
+}  // namespace
+
+void add_synthesize_command(CLI::App& app, CommandContext& context) {
+  auto options = std::make_shared<SynthesizeOptions>();
+  CLI::App* command =
+      app.add_subcommand("synthesize", "Writes clips of parametric human motion as BVH");
+  command->add_option("--action", options->action, "What the figure does")
+      ->required()
+      ->check(CLI::IsMember(action_names()));
+  command->add_option("--clips", options->clips, "How many clips")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--subjects", options->subjects,
+                   "By how many people; a person's body and style are the same in every action")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "Length of a clip")->capture_default_str();
+  command->add_option("--fps", options->fps, "Frames a second")->capture_default_str();
+  command
+      ->add_option("-o,--output", options->output,
+                   "Folder to write ACTION_sSUBJECT_CLIP.bvh files to")
+      ->required()
+      ->type_name("DIR");
+  add_seed_option(*command, context);
+  add_quiet_option(*command, context);
+  command->footer("Example:\n  mcdbn-cl synthesize --action walk --clips 20 --seed 1 -o clips/");
+  command->callback([&context, options] {
+    context.run = [&context, options] { run_synthesize(context, *options); };
+  });
+}
+
+}  // namespace mcdbn::cli
