@@ -52,8 +52,7 @@ TEST_CASE("small: a device is found by a part of its or its platform's name, in 
     const std::string part = info.name.substr(info.name.size() / 3);
     CHECK(upper(Device::open({"", upper(part)}).info().name).find(upper(part)) !=
           std::string::npos);
-    CHECK(Device::open({upper(info.platform_name), ""}).info().platform_name ==
-          info.platform_name);
+    CHECK(Device::open({upper(info.platform_name), ""}).info().platform_name == info.platform_name);
   }
 }
 

@@ -90,8 +90,8 @@ void check_history(Device& device, const History& shape, GemmBackend backend) {
   const GuardedBlock statistics(device, width, shape.hidden);
   gemm_transposed_a(windows.device_rows(), difference_device, statistics.rows(), 0.01F, 0.0F,
                     backend);
-  const auto want_statistics = reference::product(history.transpose().cast<double>(),
-                                                  difference.cast<double>(), 0.01F);
+  const auto want_statistics =
+      reference::product(history.transpose().cast<double>(), difference.cast<double>(), 0.01F);
   CHECK(misfit(statistics.values(), want_statistics.value, want_statistics.bound) == "");
   CHECK(statistics.intact());
 
@@ -110,13 +110,12 @@ void check_strided(Device& device, std::size_t sequences, std::size_t length, st
   const MatrixF all = random_matrix(sequences * length, columns, 4);
   const Matrix all_device = Matrix::from_host(device, all);
   const std::size_t width = frames == 1 ? columns : frames * all_device.stride();
-  MatrixF rows = MatrixF::Zero(static_cast<Eigen::Index>(sequences),
-                               static_cast<Eigen::Index>(width));
+  MatrixF rows =
+      MatrixF::Zero(static_cast<Eigen::Index>(sequences), static_cast<Eigen::Index>(width));
   for (std::size_t s = 0; s < sequences; ++s)
     for (std::size_t q = 0; q < frames; ++q)
-      rows.block(static_cast<Eigen::Index>(s),
-                 static_cast<Eigen::Index>(q * all_device.stride()), 1,
-                 static_cast<Eigen::Index>(columns)) =
+      rows.block(static_cast<Eigen::Index>(s), static_cast<Eigen::Index>(q * all_device.stride()),
+                 1, static_cast<Eigen::Index>(columns)) =
           all.row(static_cast<Eigen::Index>(s * length + 1 + q));
   const MatrixF weights = random_matrix(width, 5, 5);
   const Matrix weights_device = Matrix::from_host(device, weights);

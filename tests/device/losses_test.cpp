@@ -12,7 +12,7 @@
 
 using namespace mcdbn;
 using namespace mcdbn::test;
-using reference::gamma;
+using reference::gamma_n;
 using reference::kLogError;
 using reference::kRoundoff;
 
@@ -31,7 +31,7 @@ double additions(const MatrixF& x) {
 
 BoundedSum squared_error(const MatrixF& x, const MatrixF& y) {
   const double sum = (x.cast<double>() - y.cast<double>()).squaredNorm();
-  return {sum, gamma(additions(x) + 3.0) * sum};
+  return {sum, gamma_n(additions(x) + 3.0) * sum};
 }
 
 BoundedSum cross_entropy(const MatrixF& target, const MatrixF& prediction) {
@@ -43,10 +43,10 @@ BoundedSum cross_entropy(const MatrixF& target, const MatrixF& prediction) {
     const double here = std::abs(t * std::log(p)) + std::abs((1.0 - t) * std::log(1.0 - p));
     magnitude += here;
     // log, 1 − t, the product and their sum; and 1 − p rounds, which moves its log by u.
-    result.bound += gamma(kLogError + 3.0) * here + 1.01 * kRoundoff * std::abs(1.0 - t);
+    result.bound += gamma_n(kLogError + 3.0) * here + 1.01 * kRoundoff * std::abs(1.0 - t);
   }
   result.value = magnitude;
-  result.bound += gamma(additions(target)) * magnitude;
+  result.bound += gamma_n(additions(target)) * magnitude;
   return result;
 }
 
@@ -55,7 +55,7 @@ void check_losses(Device& device, std::size_t rows, std::size_t columns) {
   CAPTURE(columns);
   const MatrixF x = random_matrix(rows + 1, columns, 1).cwiseAbs();
   MatrixF y = random_matrix(rows + 2, columns, 2).cwiseAbs();
-  y(2, 0) = 1.0F;            // saturated predictions cost much, but not infinitely much
+  y(2, 0) = 1.0F;  // saturated predictions cost much, but not infinitely much
   y(rows + 1, columns - 1) = 0.0F;
   const Matrix x_device = Matrix::from_host(device, x), y_device = Matrix::from_host(device, y);
   const Rows x_rows(x_device, 1, rows), y_rows(y_device, 2, rows);
@@ -81,7 +81,7 @@ void check_losses(Device& device, std::size_t rows, std::size_t columns) {
   const auto again = losses.read_and_reset();
   CHECK(again[0] == sums[0]);
   CHECK(again[2] == sums[2]);
-  CHECK(std::abs(again[1] - 0.75 * squared.value) <= 0.75 * squared.bound + gamma(1) * again[1]);
+  CHECK(std::abs(again[1] - 0.75 * squared.value) <= 0.75 * squared.bound + gamma_n(1) * again[1]);
 }
 
 }  // namespace

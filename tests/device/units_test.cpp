@@ -8,7 +8,7 @@
 
 using namespace mcdbn;
 using namespace mcdbn::test;
-using reference::gamma;
+using reference::gamma_n;
 using reference::kRoundoff;
 using reference::misfit;
 
@@ -31,7 +31,7 @@ void check_difference(Device& device, const Size& size) {
   const auto rows = static_cast<Eigen::Index>(size.rows);
   const MatrixD want =
       double{0.3F} * (x.bottomRows(rows).cast<double>() - y.bottomRows(rows).cast<double>());
-  CHECK(misfit(out.values(), want, MatrixD(gamma(2) * want.cwiseAbs())) == "");
+  CHECK(misfit(out.values(), want, MatrixD(gamma_n(2) * want.cwiseAbs())) == "");
   CHECK(out.intact());
 }
 
@@ -60,7 +60,7 @@ void check_column_sum(Device& device, const Size& size, float beta) {
   const MatrixD magnitude =
       0.7 * summands.cwiseAbs().colwise().sum() + std::abs(beta) * before.cwiseAbs().cast<double>();
   // rows − 1 additions, the scale, beta's product and sum
-  CHECK(misfit(out.to_host(), want, MatrixD(gamma(size.rows + 2.0) * magnitude)) == "");
+  CHECK(misfit(out.to_host(), want, MatrixD(gamma_n(size.rows + 2.0) * magnitude)) == "");
   CHECK(out.to_host() == again.to_host());
   CHECK(padding_is_zero(out));
 }
@@ -80,7 +80,7 @@ void check_block_sum(Device& device, const Size& size, std::size_t blocks) {
     want += in.middleRows(t * rows, rows).cast<double>();
     magnitude += in.middleRows(t * rows, rows).cwiseAbs().cast<double>();
   }
-  CHECK(misfit(out.to_host(), want, MatrixD(gamma(static_cast<double>(blocks)) * magnitude)) == "");
+  CHECK(misfit(out.to_host(), want, MatrixD(gamma_n(static_cast<double>(blocks)) * magnitude)) == "");
   CHECK(padding_is_zero(out));
 }
 
@@ -108,8 +108,8 @@ TEST_CASE("differences, transposes and sums over rows and blocks at the model's 
 TEST_CASE("small: a sum that is not added to takes no notice of what was there") {
   on_every_device([](Device& device) {
     const Matrix in = Matrix::from_host(device, MatrixF::Constant(2, 3, 1.5F));
-    Matrix out = Matrix::from_host(
-        device, MatrixF::Constant(1, 3, std::numeric_limits<float>::quiet_NaN()));
+    Matrix out =
+        Matrix::from_host(device, MatrixF::Constant(1, 3, std::numeric_limits<float>::quiet_NaN()));
     column_sum(in, 1.0F, 0.0F, out);
     CHECK(out.to_host() == MatrixF::Constant(1, 3, 3.0F));
   });

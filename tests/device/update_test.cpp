@@ -9,7 +9,7 @@
 
 using namespace mcdbn;
 using namespace mcdbn::test;
-using reference::gamma;
+using reference::gamma_n;
 using reference::kDivisionError;
 using reference::kRoundoff;
 using reference::kSmallestNormal;
@@ -23,7 +23,8 @@ void check_momentum(Device& device, std::size_t rows, std::size_t columns,
   CAPTURE(rows);
   CAPTURE(columns);
   CAPTURE(rule.rate);
-  const MatrixF parameter = random_matrix(rows, columns, 1), velocity = random_matrix(rows, columns, 2);
+  const MatrixF parameter = random_matrix(rows, columns, 1),
+                velocity = random_matrix(rows, columns, 2);
   const MatrixF gradient = random_matrix(rows, columns, 3, 10.0F);
   Matrix parameter_device = Matrix::from_host(device, parameter);
   Matrix velocity_device = Matrix::from_host(device, velocity);
@@ -36,7 +37,7 @@ void check_momentum(Device& device, std::size_t rows, std::size_t columns,
   const MatrixD magnitude =
       double{rule.momentum} * velocity.cwiseAbs().cast<double>() + double{rule.rate} * pull;
   // decay's product, the difference, the rate's product, the sum
-  const MatrixD velocity_bound = gamma(4) * magnitude;
+  const MatrixD velocity_bound = gamma_n(4) * magnitude;
   CHECK(misfit(velocity_device.to_host(), want_velocity, velocity_bound) == "");
   const MatrixD parameter_bound =
       (1.0 + kRoundoff) * velocity_bound + kRoundoff * want_parameter.cwiseAbs();
@@ -67,22 +68,21 @@ void check_adam(Device& device, std::size_t rows, std::size_t columns, int step,
   // 1 − β (exact for β in [½, 1]), two products and their sum; g² has one product more.
   const double beta1 = rule.beta1, correction1 = 1.0 - std::pow(beta1, step);
   const double correction2 = 1.0 - std::pow(double{rule.beta2}, step);
-  const MatrixD mean_bound = gamma(3) * (beta1 * mean.cwiseAbs().cast<double>() +
+  const MatrixD mean_bound = gamma_n(3) * (beta1 * mean.cwiseAbs().cast<double>() +
                                          (1.0 - beta1) * gradient.cwiseAbs().cast<double>());
-  const MatrixD square_bound = gamma(4) * want_square;
+  const MatrixD square_bound = gamma_n(4) * want_square;
   CHECK(misfit(mean_device.to_host(), want_mean, mean_bound) == "");
   CHECK(misfit(square_device.to_host(), want_square, square_bound) == "");
 
-  const MatrixD divisor =
-      (want_square / correction2).cwiseSqrt().array() + double{rule.epsilon};
+  const MatrixD divisor = (want_square / correction2).cwiseSqrt().array() + double{rule.epsilon};
   const double divisor_error = (4.0 + kDivisionError + 1.0) / 2.0 + kSqrtError + 1.0;
   const MatrixD direction = (want_mean / correction1).cwiseQuotient(divisor);
   const MatrixD direction_bound =
-      (1.0 + gamma(30)) * (mean_bound / correction1).cwiseQuotient(divisor) +
-      gamma(2.0 * kDivisionError + 1.0 + divisor_error) * direction.cwiseAbs();
+      (1.0 + gamma_n(30)) * (mean_bound / correction1).cwiseQuotient(divisor) +
+      gamma_n(2.0 * kDivisionError + 1.0 + divisor_error) * direction.cwiseAbs();
   const MatrixD pull =
       direction.cwiseAbs() + double{weight_decay} * parameter.cwiseAbs().cast<double>();
-  const MatrixD bound = double{rule.rate} * ((1.0 + gamma(3)) * direction_bound + gamma(3) * pull) +
+  const MatrixD bound = double{rule.rate} * ((1.0 + gamma_n(3)) * direction_bound + gamma_n(3) * pull) +
                         kRoundoff * want.cwiseAbs();
   CHECK(misfit(parameter_device.to_host(), want, bound) == "");
   for (const auto* matrix : {&parameter_device, &mean_device, &square_device})

@@ -15,7 +15,7 @@ namespace mcdbn::reference {
 inline constexpr double kRoundoff = 0x1p-24;
 
 /// γ_n = n·u / (1 − n·u): relative error of n rounded operations in a row.
-inline double gamma(double operations) {
+inline double gamma_n(double operations) {
   return operations * kRoundoff / (1.0 - operations * kRoundoff);
 }
 

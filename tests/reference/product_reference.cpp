@@ -12,8 +12,8 @@ Bounded tempered(const MatrixD& mean, const Bounded& drawn, double temperature) 
   const MatrixD difference = drawn.value - mean;
   result.value = mean + temperature * difference;
   // Three roundings: the difference, its product with the temperature, the sum.
-  result.bound = std::abs(temperature) * drawn.bound * (1.0 + gamma(3)) +
-                 gamma(3) * (mean.cwiseAbs() + std::abs(temperature) * difference.cwiseAbs());
+  result.bound = std::abs(temperature) * drawn.bound * (1.0 + gamma_n(3)) +
+                 gamma_n(3) * (mean.cwiseAbs() + std::abs(temperature) * difference.cwiseAbs());
   return result;
 }
 
@@ -25,7 +25,7 @@ Bounded product(const MatrixD& a, const MatrixD& b, double alpha, double beta, c
     result.value += beta * c;
     result.bound += std::abs(beta) * c.cwiseAbs();
   }
-  result.bound *= gamma(static_cast<double>(a.cols()) + 2.0);
+  result.bound *= gamma_n(static_cast<double>(a.cols()) + 2.0);
   return result;
 }
 
@@ -40,7 +40,7 @@ Bounded plus_bias(const Bounded& x, const MatrixD& bias) {
 Bounded sigmoid(const Bounded& x) {
   Bounded result;
   result.value = sigmoid(x.value);
-  result.bound = 0.25 * x.bound + gamma(kSigmoidError) * result.value +
+  result.bound = 0.25 * x.bound + gamma_n(kSigmoidError) * result.value +
                  MatrixD::Constant(x.value.rows(), x.value.cols(), kSmallestNormal);
   return result;
 }
@@ -49,8 +49,8 @@ Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y) {
   const MatrixD slope = y.array() * (1.0 - y.array());
   Bounded result;
   result.value = x.value.cwiseProduct(slope);
-  result.bound = (1.0 + gamma(3)) * x.bound.cwiseProduct(slope.cwiseAbs()) +
-                 gamma(3) * result.value.cwiseAbs() +
+  result.bound = (1.0 + gamma_n(3)) * x.bound.cwiseProduct(slope.cwiseAbs()) +
+                 gamma_n(3) * result.value.cwiseAbs() +
                  MatrixD::Constant(y.rows(), y.cols(), kSmallestNormal);
   return result;
 }
@@ -58,7 +58,7 @@ Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y) {
 Bounded gaussian_sample(const MatrixD& mean, const MatrixD& normal, double temperature) {
   Bounded drawn;
   drawn.value = mean + normal;
-  drawn.bound = gamma(kLogError / 2 + kSqrtError + kCospiError + 1) * normal.cwiseAbs() +
+  drawn.bound = gamma_n(kLogError / 2 + kSqrtError + kCospiError + 1) * normal.cwiseAbs() +
                 kRoundoff * drawn.value.cwiseAbs();
   return tempered(mean, drawn, temperature);
 }
