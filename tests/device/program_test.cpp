@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
+#include <functional>
+#include <sstream>
 
 #include "device/every_device.hpp"
 #include "device/scoped_variable.hpp"
@@ -10,6 +12,7 @@
 #include "mcdbn/device/units.hpp"
 #include "mcdbn/device/user_cache.hpp"
 #include "mcdbn/errors.hpp"
+#include "mcdbn/text_file.hpp"
 #include "motion/scratch_folder.hpp"
 
 using namespace mcdbn;
@@ -68,7 +71,7 @@ TEST_CASE("small: a program is cached as a binary, and a damaged entry is rebuil
     const auto files = files_in(entries);
     REQUIRE(files.size() == 1);
     const fs::path file = files.front();
-    const std::string good = ScratchFolder::text_of(file);
+    const std::string good = read_text_file(file);
     const auto modified = fs::last_write_time(file);
     CHECK(works_afresh(open.info()));
     CHECK(fs::last_write_time(file) == modified);  // read, not built again
@@ -80,8 +83,8 @@ TEST_CASE("small: a program is cached as a binary, and a damaged entry is rebuil
           with_foreign_binary(good)}) {
       folder.write("mcdbn-cl/" + file.filename().string(), bad);
       CHECK(works_afresh(open.info()));
-      CHECK(ScratchFolder::text_of(file) != bad);
-      CHECK(ScratchFolder::text_of(file).size() > 1000);
+      CHECK(read_text_file(file) != bad);
+      CHECK(read_text_file(file).size() > 1000);
     }
     CHECK(files_in(entries).size() == 1);
   });
@@ -92,7 +95,7 @@ TEST_CASE("small: a cache folder that cannot be written only costs time") {
     const ScratchFolder folder;
     const ScopedVariable cache("XDG_CACHE_HOME", folder.write("file", "in the way").string());
     CHECK(works_afresh(open.info()));
-    CHECK(ScratchFolder::text_of(folder / "file") == "in the way");
+    CHECK(read_text_file(folder / "file") == "in the way");
   });
 }
 

@@ -80,7 +80,8 @@ void check_block_sum(Device& device, const Size& size, std::size_t blocks) {
     want += in.middleRows(t * rows, rows).cast<double>();
     magnitude += in.middleRows(t * rows, rows).cwiseAbs().cast<double>();
   }
-  CHECK(misfit(out.to_host(), want, MatrixD(gamma_n(static_cast<double>(blocks)) * magnitude)) == "");
+  CHECK(misfit(out.to_host(), want, MatrixD(gamma_n(static_cast<double>(blocks)) * magnitude)) ==
+        "");
   CHECK(padding_is_zero(out));
 }
 

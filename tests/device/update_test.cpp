@@ -69,7 +69,7 @@ void check_adam(Device& device, std::size_t rows, std::size_t columns, int step,
   const double beta1 = rule.beta1, correction1 = 1.0 - std::pow(beta1, step);
   const double correction2 = 1.0 - std::pow(double{rule.beta2}, step);
   const MatrixD mean_bound = gamma_n(3) * (beta1 * mean.cwiseAbs().cast<double>() +
-                                         (1.0 - beta1) * gradient.cwiseAbs().cast<double>());
+                                           (1.0 - beta1) * gradient.cwiseAbs().cast<double>());
   const MatrixD square_bound = gamma_n(4) * want_square;
   CHECK(misfit(mean_device.to_host(), want_mean, mean_bound) == "");
   CHECK(misfit(square_device.to_host(), want_square, square_bound) == "");
@@ -82,8 +82,9 @@ void check_adam(Device& device, std::size_t rows, std::size_t columns, int step,
       gamma_n(2.0 * kDivisionError + 1.0 + divisor_error) * direction.cwiseAbs();
   const MatrixD pull =
       direction.cwiseAbs() + double{weight_decay} * parameter.cwiseAbs().cast<double>();
-  const MatrixD bound = double{rule.rate} * ((1.0 + gamma_n(3)) * direction_bound + gamma_n(3) * pull) +
-                        kRoundoff * want.cwiseAbs();
+  const MatrixD bound =
+      double{rule.rate} * ((1.0 + gamma_n(3)) * direction_bound + gamma_n(3) * pull) +
+      kRoundoff * want.cwiseAbs();
   CHECK(misfit(parameter_device.to_host(), want, bound) == "");
   for (const auto* matrix : {&parameter_device, &mean_device, &square_device})
     CHECK(padding_is_zero(*matrix));
