@@ -1,0 +1,129 @@
+#include "mcdbn/device/losses.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "device/every_device.hpp"
+#include "mcdbn/errors.hpp"
+#include "reference/error_bounds.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+using reference::gamma_n;
+using reference::kLogError;
+using reference::kRoundoff;
+
+namespace {
+
+/// A sum and how far single precision may be from it.
+struct BoundedSum {
+  double value = 0;
+  double bound = 0;
+};
+
+/// Additions one after another, over columns, then rows, then the scale and the accumulator.
+double additions(const MatrixF& x) {
+  return static_cast<double>(x.cols() + x.rows()) + 2.0;
+}
+
+BoundedSum squared_error(const MatrixF& x, const MatrixF& y) {
+  const double sum = (x.cast<double>() - y.cast<double>()).squaredNorm();
+  return {sum, gamma_n(additions(x) + 3.0) * sum};
+}
+
+BoundedSum cross_entropy(const MatrixF& target, const MatrixF& prediction) {
+  BoundedSum result;
+  double magnitude = 0;
+  for (Eigen::Index i = 0; i < target.size(); ++i) {
+    const double t = target.data()[i];
+    const double p = std::clamp(prediction.data()[i], 1e-7F, 1.0F - 1e-7F);
+    const double here = std::abs(t * std::log(p)) + std::abs((1.0 - t) * std::log(1.0 - p));
+    magnitude += here;
+    // log, 1 − t, the product and their sum; and 1 − p rounds, which moves its log by u.
+    result.bound += gamma_n(kLogError + 3.0) * here + 1.01 * kRoundoff * std::abs(1.0 - t);
+  }
+  result.value = magnitude;
+  result.bound += gamma_n(additions(target)) * magnitude;
+  return result;
+}
+
+void check_losses(Device& device, std::size_t rows, std::size_t columns) {
+  CAPTURE(rows);
+  CAPTURE(columns);
+  const MatrixF x = random_matrix(rows + 1, columns, 1).cwiseAbs();
+  MatrixF y = random_matrix(rows + 2, columns, 2).cwiseAbs();
+  y(2, 0) = 1.0F;  // saturated predictions cost much, but not infinitely much
+  y(rows + 1, columns - 1) = 0.0F;
+  const Matrix x_device = Matrix::from_host(device, x), y_device = Matrix::from_host(device, y);
+  const Rows x_rows(x_device, 1, rows), y_rows(y_device, 2, rows);
+  const MatrixF x_used = x.bottomRows(static_cast<Eigen::Index>(rows));
+  const MatrixF y_used = y.bottomRows(static_cast<Eigen::Index>(rows));
+  const auto squared = squared_error(x_used, y_used);
+  const auto entropy = cross_entropy(x_used, y_used);
+
+  LossAccumulator losses(device, 3, rows + 5);
+  losses.add_squared_error(0, x_rows, y_rows, 1.0F);
+  losses.add_cross_entropy(2, x_rows, y_rows, 1.0F);
+  const auto sums = losses.read_and_reset();
+  REQUIRE(sums.size() == 3);
+  CHECK(std::abs(sums[0] - squared.value) <= squared.bound);
+  CHECK(sums[1] == 0.0F);
+  CHECK(std::abs(sums[2] - entropy.value) <= entropy.bound);
+
+  // Twice over: the same bits. Two additions to one slot: their sum.
+  losses.add_squared_error(0, x_rows, y_rows, 1.0F);
+  losses.add_cross_entropy(2, x_rows, y_rows, 1.0F);
+  losses.add_squared_error(1, x_rows, y_rows, 0.5F);
+  losses.add_squared_error(1, x_rows, y_rows, 0.25F);
+  const auto again = losses.read_and_reset();
+  CHECK(again[0] == sums[0]);
+  CHECK(again[2] == sums[2]);
+  CHECK(std::abs(again[1] - 0.75 * squared.value) <= 0.75 * squared.bound + gamma_n(1) * again[1]);
+}
+
+}  // namespace
+
+TEST_CASE("small: squared error and cross-entropy, in a fixed order") {
+  on_every_device([](Device& device) {
+    check_losses(device, 1, 1);
+    check_losses(device, 3, 3);
+    check_losses(device, 7, 17);
+    check_losses(device, 13, 5);
+  });
+}
+
+TEST_CASE("squared error and cross-entropy at the model's sizes") {
+  on_every_device([](Device& device) {
+    check_losses(device, 100, 96);
+    check_losses(device, 100, 190);
+    check_losses(device, 100, 300);
+  });
+}
+
+TEST_CASE("small: a NaN in target or prediction shows in the loss") {
+  on_every_device([](Device& device) {
+    MatrixF bad = MatrixF::Constant(3, 5, 0.5F);
+    const Matrix good_device = Matrix::from_host(device, bad);
+    bad(1, 4) = std::numeric_limits<float>::quiet_NaN();
+    const Matrix bad_device = Matrix::from_host(device, bad);
+    LossAccumulator losses(device, 4, 3);
+    losses.add_squared_error(0, good_device, bad_device, 1.0F);
+    losses.add_squared_error(1, bad_device, good_device, 1.0F);
+    losses.add_cross_entropy(2, good_device, bad_device, 1.0F);
+    losses.add_cross_entropy(3, bad_device, good_device, 1.0F);
+    for (const float sum : losses.read_and_reset()) CHECK(std::isnan(sum));
+  });
+}
+
+TEST_CASE("small: losses refuse other shapes, slots and batches than they were made for") {
+  on_every_device([](Device& device) {
+    const Matrix x(device, 4, 5), y(device, 4, 6);
+    LossAccumulator losses(device, 1, 3);
+    CHECK_THROWS_AS(losses.add_squared_error(0, Rows(x, 0, 3), Rows(y, 0, 3), 1.0F), ShapeError);
+    CHECK_THROWS_AS(losses.add_squared_error(1, Rows(x, 0, 3), Rows(x, 0, 3), 1.0F), ShapeError);
+    CHECK_THROWS_AS(losses.add_squared_error(0, x, x, 1.0F), ShapeError);
+  });
+}

@@ -1,0 +1,163 @@
+#include "mcdbn/device/program.hpp"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <functional>
+#include <sstream>
+
+#include "device/every_device.hpp"
+#include "device/scoped_variable.hpp"
+#include "mcdbn/device/launch.hpp"
+#include "mcdbn/device/units.hpp"
+#include "mcdbn/device/user_cache.hpp"
+#include "mcdbn/errors.hpp"
+#include "mcdbn/text_file.hpp"
+#include "motion/scratch_folder.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Opens the device anew, so that it has nothing in memory, and has it transpose a matrix.
+bool works_afresh(const DeviceInfo& info) {
+  Device device(info);
+  const MatrixF in = random_matrix(3, 5, 1);
+  Matrix out(device, 5, 3);
+  transpose(Matrix::from_host(device, in), out);
+  return out.to_host() == in.transpose();
+}
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (fs::exists(folder))
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+      if (entry.is_regular_file()) files.push_back(entry.path());
+  return files;
+}
+
+/// An entry whose checksum is right and whose binary is not.
+std::string with_foreign_binary(const std::string& entry) {
+  const std::string binary(5000, 'x');
+  std::string magic, word, version, key;
+  std::istringstream(entry) >> magic >> word >> version >> key;
+  char header[128];
+  std::snprintf(header, sizeof header, "%s %s %s %s %zu %016llx\n", magic.c_str(), word.c_str(),
+                version.c_str(), key.c_str(), binary.size(),
+                static_cast<unsigned long long>(fnv1a(binary)));
+  return header + binary;
+}
+
+std::string error_text(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("small: a program is cached as a binary, and a damaged entry is rebuilt silently") {
+  on_every_device([](Device& open) {
+    const ScratchFolder folder;
+    const ScopedVariable cache("XDG_CACHE_HOME", (folder / "").string());
+    const fs::path entries = folder / "mcdbn-cl";
+    CHECK(works_afresh(open.info()));
+    const auto files = files_in(entries);
+    REQUIRE(files.size() == 1);
+    const fs::path file = files.front();
+    const std::string good = read_text_file(file);
+    const auto modified = fs::last_write_time(file);
+    CHECK(works_afresh(open.info()));
+    CHECK(fs::last_write_time(file) == modified);  // read, not built again
+
+    std::string flipped = good;
+    flipped[flipped.size() / 2] ^= 1;
+    for (const std::string& bad :
+         {std::string(), std::string("garbage"), good.substr(0, good.size() / 2), flipped,
+          with_foreign_binary(good)}) {
+      folder.write("mcdbn-cl/" + file.filename().string(), bad);
+      CHECK(works_afresh(open.info()));
+      CHECK(read_text_file(file) != bad);
+      CHECK(read_text_file(file).size() > 1000);
+    }
+    CHECK(files_in(entries).size() == 1);
+  });
+}
+
+TEST_CASE("small: a cache folder that cannot be written only costs time") {
+  on_every_device([](Device& open) {
+    const ScratchFolder folder;
+    const ScopedVariable cache("XDG_CACHE_HOME", folder.write("file", "in the way").string());
+    CHECK(works_afresh(open.info()));
+    CHECK(read_text_file(folder / "file") == "in the way");
+  });
+}
+
+TEST_CASE("small: cache entries come back whole, and only under their own kind and key") {
+  const ScratchFolder folder;
+  const ScopedVariable cache("XDG_CACHE_HOME", (folder / "").string());
+  const std::string value("binary\0 and\nlines\n", 18);
+  CHECK_FALSE(read_cache_entry("kind", "key").has_value());
+  write_cache_entry("kind", "key", value);
+  REQUIRE(read_cache_entry("kind", "key").has_value());
+  CHECK(*read_cache_entry("kind", "key") == value);
+  CHECK_FALSE(read_cache_entry("other", "key").has_value());
+  CHECK_FALSE(read_cache_entry("kind", "other").has_value());
+  write_cache_entry("kind", "key", "");
+  REQUIRE(read_cache_entry("kind", "key").has_value());
+  CHECK(read_cache_entry("kind", "key")->empty());
+  CHECK(fnv1a("") == 0xcbf29ce484222325ULL);
+  CHECK(fnv1a("foobar") == 0x85944171f73967e8ULL);  // published test vectors
+}
+
+TEST_CASE("small: kernels are read from MCDBN_KERNEL_DIR, with what they include") {
+  on_every_device([](Device& open) {
+    const ScratchFolder folder;
+    folder.write("part.clh", "#define ANSWER 42\n");
+    folder.write("probe.cl",
+                 "#include \"part.clh\"\n"
+                 "kernel void answer(global int* out) { out[0] = ANSWER + EXTRA; }\n");
+    folder.write("broken.cl", "kernel void broken(global int* out) { out[0] = missing_name; }\n");
+    const ScopedVariable kernels("MCDBN_KERNEL_DIR", (folder / "").string());
+    const ScopedVariable cache("XDG_CACHE_HOME", (folder / "cache").string());
+    Device device(open.info());
+    const cl::Buffer out(device.context(), CL_MEM_READ_WRITE, sizeof(cl_int));
+    launch(device, device.programs().kernel("probe.cl", "answer", {{"EXTRA", 3}}), {}, out);
+    cl_int answer = 0;
+    device.queue().enqueueReadBuffer(out, CL_TRUE, 0, sizeof answer, &answer);
+    CHECK(answer == 45);
+    CHECK(device.launch_count() == 1);
+
+    const auto kernel = [&](const char* file, const char* name) {
+      return error_text([&] { device.programs().kernel(file, name); });
+    };
+    CHECK(kernel("absent.cl", "any").find("MCDBN_KERNEL_DIR") != std::string::npos);
+    CHECK(kernel("broken.cl", "broken").find("missing_name") != std::string::npos);
+    CHECK(error_text([&] {
+            device.programs().kernel("probe.cl", "wrong_name", {{"EXTRA", 3}});
+          }).find("wrong_name") != std::string::npos);
+  });
+}
+
+TEST_CASE("small: the embedded kernels are those of the source folder") {
+  const std::string folder = MCDBN_SOURCE_DIR "/kernels";
+  int compared = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".cl") continue;
+    const std::string file = entry.path().filename().string();
+    CAPTURE(file);
+    const std::string embedded = kernel_source(file);
+    const ScopedVariable from_disk("MCDBN_KERNEL_DIR", folder);
+    CHECK(embedded == kernel_source(file));
+    CHECK(embedded.find("#include \"") == std::string::npos);
+    ++compared;
+  }
+  CHECK(compared >= 4);
+  CHECK_THROWS_AS(kernel_source("absent.cl"), DeviceError);
+}

@@ -1,0 +1,70 @@
+#include "reference/product_reference.hpp"
+
+#include "reference/error_bounds.hpp"
+#include "reference/units_reference.hpp"
+
+namespace mcdbn::reference {
+namespace {
+
+/// mean + temperature·(drawn − mean) where `drawn` itself is off by at most drawn.bound.
+Bounded tempered(const MatrixD& mean, const Bounded& drawn, double temperature) {
+  Bounded result;
+  const MatrixD difference = drawn.value - mean;
+  result.value = mean + temperature * difference;
+  // Three roundings: the difference, its product with the temperature, the sum.
+  result.bound = std::abs(temperature) * drawn.bound * (1.0 + gamma_n(3)) +
+                 gamma_n(3) * (mean.cwiseAbs() + std::abs(temperature) * difference.cwiseAbs());
+  return result;
+}
+
+}  // namespace
+
+Bounded product(const MatrixD& a, const MatrixD& b, double alpha, double beta, const MatrixD& c) {
+  Bounded result{alpha * a * b, std::abs(alpha) * a.cwiseAbs() * b.cwiseAbs()};
+  if (beta != 0.0) {
+    result.value += beta * c;
+    result.bound += std::abs(beta) * c.cwiseAbs();
+  }
+  result.bound *= gamma_n(static_cast<double>(a.cols()) + 2.0);
+  return result;
+}
+
+Bounded plus_bias(const Bounded& x, const MatrixD& bias) {
+  const MatrixD full = bias.rows() == x.value.rows() ? bias : bias.replicate(x.value.rows(), 1);
+  Bounded result;
+  result.value = x.value + full;
+  result.bound = (1.0 + kRoundoff) * x.bound + kRoundoff * result.value.cwiseAbs();
+  return result;
+}
+
+Bounded sigmoid(const Bounded& x) {
+  Bounded result;
+  result.value = sigmoid(x.value);
+  result.bound = 0.25 * x.bound + gamma_n(kSigmoidError) * result.value +
+                 MatrixD::Constant(x.value.rows(), x.value.cols(), kSmallestNormal);
+  return result;
+}
+
+Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y) {
+  const MatrixD slope = y.array() * (1.0 - y.array());
+  Bounded result;
+  result.value = x.value.cwiseProduct(slope);
+  result.bound = (1.0 + gamma_n(3)) * x.bound.cwiseProduct(slope.cwiseAbs()) +
+                 gamma_n(3) * result.value.cwiseAbs() +
+                 MatrixD::Constant(y.rows(), y.cols(), kSmallestNormal);
+  return result;
+}
+
+Bounded gaussian_sample(const MatrixD& mean, const MatrixD& normal, double temperature) {
+  Bounded drawn;
+  drawn.value = mean + normal;
+  drawn.bound = gamma_n(kLogError / 2 + kSqrtError + kCospiError + 1) * normal.cwiseAbs() +
+                kRoundoff * drawn.value.cwiseAbs();
+  return tempered(mean, drawn, temperature);
+}
+
+Bounded bernoulli_sample(const MatrixD& probability, const MatrixD& bits, double temperature) {
+  return tempered(probability, {bits, MatrixD::Zero(bits.rows(), bits.cols())}, temperature);
+}
+
+}  // namespace mcdbn::reference

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "mcdbn/matrix_types.hpp"
+
+namespace mcdbn::reference {
+
+/// A value and how far single precision may be from it.
+struct Bounded {
+  MatrixD value;
+  MatrixD bound;
+};
+
+/// alpha·A·B + beta·C with the bound (k + 2)·u·(|alpha||A||B| + |beta||C|), k being A's columns.
+Bounded product(const MatrixD& a, const MatrixD& b, double alpha = 1.0, double beta = 0.0,
+                const MatrixD& c = {});
+
+/// x + bias, one rounding more. @param bias as many rows as x, or one for all
+Bounded plus_bias(const Bounded& x, const MatrixD& bias);
+
+/// σ(x), eq 8: ¼ of the input's error, as |σ'| ≤ ¼, plus the function's own.
+Bounded sigmoid(const Bounded& x);
+
+/// x·y·(1 − y): back through a sigmoid whose value was y.
+Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y);
+
+/// mean + temperature·(draw − mean) for unit normals z, given the means that the device stored.
+/// Box-Muller's error is that of sqrt(−2·log u)·cospi(2u').
+Bounded gaussian_sample(const MatrixD& mean, const MatrixD& normal, double temperature);
+
+/// Same for given bits in place of the draw.
+Bounded bernoulli_sample(const MatrixD& probability, const MatrixD& bits, double temperature);
+
+}  // namespace mcdbn::reference
