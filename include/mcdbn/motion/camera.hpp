@@ -25,7 +25,7 @@ struct Camera {
 struct CameraPlacement {
   double azimuth_deg = 30.0;
   double elevation_deg = 10.0;
-  std::optional<double> distance;  ///< file units; unset: the whole clip's body just fits in view
+  std::optional<double> distance;   ///< file units; unset: the whole clip's body just fits in view
   double field_of_view_deg = 45.0;  ///< vertical
   int width_px = 1920, height_px = 1080;
   bool operator==(const CameraPlacement&) const = default;

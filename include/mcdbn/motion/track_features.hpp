@@ -15,8 +15,9 @@ namespace mcdbn {
 /// logarithm of that size over the image's height. DESIGN section 3.
 ///
 /// The size of a frame is the RMS distance of its joints from the root; where joints are missing,
-/// the others stand in by their usual share of it. Its logarithm is smoothed over `kSizeWindow_s` to
-/// both sides by local lines, which takes the gait out of it, yet follows a walk towards the camera.
+/// the others stand in by their usual share of it. Its logarithm is smoothed over `kSizeWindow_s`
+/// to both sides by local lines, which takes the gait out of it, yet follows a walk towards the
+/// camera.
 class TrackFeatures {
  public:
   /// The joints to use, by name; joints that coincide with their parent should be left out. The
