@@ -102,7 +102,8 @@ LegPose Gait::leg(Side side, double phase) const {
     pitch = in_cycle < kMidStance ? heel * std::max(0.0, pitch) : ball * std::min(0.0, pitch);
   }
   return {body_.thigh * std::sin(thigh * radians) + body_.shank * std::sin(shank * radians),
-          -body_.thigh * std::cos(thigh * radians) - body_.shank * std::cos(shank * radians), pitch};
+          -body_.thigh * std::cos(thigh * radians) - body_.shank * std::cos(shank * radians),
+          pitch};
 }
 
 double Gait::pelvis_turn_deg(double phase) const {
@@ -184,7 +185,13 @@ Foot Gait::swinging_foot(Side side, double phase, double cycle) const {
   const Eigen::Vector3d land_slope = (demand(after, end + 1.5 * kStep) - land) / kStep;
   const double t = phase - start, u = t / duration;
 
-  if (getenv("DBG")) fprintf(stderr,"side %d u %.2f leave %.1f %.1f %.1f slope %.1f %.1f %.1f land %.1f %.1f %.1f slope %.1f %.1f %.1f\n", side, u, leave.x(),leave.y(),leave.z(),leave_slope.x(),leave_slope.y(),leave_slope.z(),land.x(),land.y(),land.z(),land_slope.x(),land_slope.y(),land_slope.z());
+  if (getenv("DBG"))
+    fprintf(stderr,
+            "side %d u %.2f leave %.1f %.1f %.1f slope %.1f %.1f %.1f land %.1f %.1f %.1f slope "
+            "%.1f %.1f %.1f\n",
+            side, u, leave.x(), leave.y(), leave.z(), leave_slope.x(), leave_slope.y(),
+            leave_slope.z(), land.x(), land.y(), land.z(), land_slope.x(), land_slope.y(),
+            land_slope.z());
   Foot foot;
   foot.pitch_deg = leg(side, phase).pitch_deg;
   foot.turn_deg = std::lerp(before.turn_deg, after.turn_deg, smooth_step(0, 1, u));
