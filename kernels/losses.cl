@@ -26,7 +26,9 @@ kernel void cross_entropy_rows(global const float* x, int x_offset, int x_ld,
   y += y_offset + row * y_ld;
   float sum = 0.0f;
   for (int c = 0; c < columns; ++c) {
-    const float p = clamp(y[c], 1e-7f, 1.0f - 1e-7f);
+    float p = y[c];  // comparisons let a NaN through to the divergence guard, clamp() would not
+    p = p < 1e-7f ? 1e-7f : p;
+    p = p > 1.0f - 1e-7f ? 1.0f - 1e-7f : p;
     sum -= x[c] * log(p) + (1.0f - x[c]) * log(1.0f - p);
   }
   partial[row] = sum;

@@ -16,8 +16,7 @@ int tile_rows_for(const Device& device, std::size_t rows) {
 }
 
 void require_operands(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& options) {
-  require(a.columns == b.count || a.columns == b.count + padded(a.columns) - a.columns,
-          "gemm: A's columns are not B's rows");
+  require(a.columns == b.count, "gemm: A's columns are not B's rows");
   require(b.columns == c.columns && a.count == c.count, "gemm: C's shape is not that of A·B");
   require(b.index == nullptr && c.index == nullptr, "gemm: only A may be indexed");
   if (options.bias)

@@ -39,8 +39,10 @@ float random_uniform(const RandomKey& key, std::uint32_t row, std::uint32_t colu
 double random_normal(const RandomKey& key, std::uint32_t row, std::uint32_t column) {
   RandomKey second = key;
   second.phase |= 0x8000U;
-  const double radius = std::sqrt(-2.0 * std::log(random_uniform(key, row, column)));
-  return radius * std::cos(2.0 * std::numbers::pi * random_uniform(second, row, column));
+  const double first_uniform = random_uniform(key, row, column);
+  const double second_uniform = random_uniform(second, row, column);
+  return std::sqrt(-2.0 * std::log(first_uniform)) *
+         std::cos(2.0 * std::numbers::pi * second_uniform);
 }
 
 }  // namespace mcdbn

@@ -95,13 +95,15 @@ CrbmParameters Crbm::to_host() const {
 
 Rows Crbm::history(const Rows& rows) const {
   const int order = static_cast<int>(shape_.order);
-  if (rows.index)
-    return Rows::indexed(*rows.matrix, *rows.index, rows.index_first, rows.count,
-                         rows.shift - order, shape_.order);
-  if (rows.first < shape_.order)
+  if (!rows.index && rows.first < shape_.order)
     throw ShapeError("CRBM: a row has fewer frames before it than the order");
-  return Rows::strided(*rows.matrix, rows.first - shape_.order, rows.count, rows.step,
-                       shape_.order);
+  Rows past = rows.index ? Rows::indexed(*rows.matrix, *rows.index, rows.index_first, rows.count,
+                                         rows.shift - order, shape_.order)
+                         : Rows::strided(*rows.matrix, rows.first - shape_.order, rows.count,
+                                         rows.step, shape_.order);
+  // A and B have rows for the padding of every frame, so a history of one has its padding too.
+  past.columns = shape_.order * rows.matrix->stride();
+  return past;
 }
 
 void Crbm::dynamic_hidden_bias(const Rows& rows, const Rows& out) const {

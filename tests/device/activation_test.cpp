@@ -85,22 +85,22 @@ double worst_sigmoid(Device& device, int width, std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("small: exp stays under 2 ulp and the sigmoid under 5") {
+TEST_CASE("small: exp stays under 1 ulp and the sigmoid under 5") {
   on_every_device([](Device& device) {
     for (const int width : kVectorWidths) {
       CAPTURE(width);
-      CHECK(worst_exp(device, width, 4096) < 2.0);
+      CHECK(worst_exp(device, width, 4096) < 1.0);
       CHECK(worst_sigmoid(device, width, 4096) < 5.0);
     }
   });
 }
 
-TEST_CASE("exp stays under 2 ulp and the sigmoid under 5 over their whole range") {
+TEST_CASE("exp stays under 1 ulp and the sigmoid under 5 over their whole range") {
   on_every_device([](Device& device) {
     const double exp_ulp = worst_exp(device, 16, 1U << 21);
     const double sigmoid_ulp = worst_sigmoid(device, 16, 1U << 21);
     MESSAGE(device.info().name, ": exp ", exp_ulp, " ulp, sigmoid ", sigmoid_ulp, " ulp");
-    CHECK(exp_ulp < 2.0);
+    CHECK(exp_ulp < 1.0);
     CHECK(sigmoid_ulp < 5.0);
   });
 }

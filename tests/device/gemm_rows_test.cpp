@@ -46,8 +46,10 @@ class Windows {
   MatrixF host_rows() const {
     const auto stride = static_cast<Eigen::Index>(frames_device_.stride());
     const auto visible = static_cast<Eigen::Index>(shape_.visible);
-    MatrixF rows = MatrixF::Zero(static_cast<Eigen::Index>(shape_.windows),
-                                 static_cast<Eigen::Index>(shape_.order) * stride);
+    // A window of one frame is an ordinary row, without its padding.
+    const auto width =
+        shape_.order == 1 ? visible : static_cast<Eigen::Index>(shape_.order) * stride;
+    MatrixF rows = MatrixF::Zero(static_cast<Eigen::Index>(shape_.windows), width);
     for (Eigen::Index r = 0; r < rows.rows(); ++r)
       for (Eigen::Index q = 0; q < static_cast<Eigen::Index>(shape_.order); ++q)
         rows.block(r, q * stride, 1, visible) =

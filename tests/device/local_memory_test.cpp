@@ -90,7 +90,7 @@ TEST_CASE("the trap of a helper that is not inlined and works on the kernel's ow
   on_every_device([](Device& device) {
     const bool right = sums(device, kNotInlined + kOwnArray) == wanted();
     MESSAGE(device.info().name, ", driver ", device.info().driver_version, ": ",
-            right ? "the trap does not show" : "WRONG SUMS, the trap is real");
+            std::string(right ? "the trap does not show" : "wrong sums, the trap is real"));
     // PoCL alone may be wrong here; any other device has no excuse.
     if (device.info().platform_name.find("Portable Computing Language") == std::string::npos)
       CHECK(right);

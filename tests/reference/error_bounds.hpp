@@ -25,8 +25,8 @@ inline constexpr double kDivisionError = 5.0;
 inline constexpr double kSqrtError = 6.0;
 inline constexpr double kLogError = 6.0;
 inline constexpr double kCospiError = 8.0;
-/// The library's own exp (2 ulp) and, from it, 1 / (1 + exp(−x)).
-inline constexpr double kExpError = 4.0;
+/// The library's own exp (1 ulp) and, from it, 1 / (1 + exp(−x)).
+inline constexpr double kExpError = 2.0;
 inline constexpr double kSigmoidError = kExpError + 1.0 + kDivisionError;
 
 /// Below this a float is subnormal, and a device may flush it to zero.
