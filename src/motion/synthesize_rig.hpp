@@ -86,8 +86,8 @@ struct Frame {
   std::array<Foot, 2> feet;
 };
 
-/// Lowers the hips, smoothly over time, wherever a leg could not reach its planted foot, solves the legs,
-/// and writes the channels of `make_skeleton`.
+/// Lowers the hips, smoothly over time, wherever a leg could not reach its planted foot, solves the
+/// legs, and writes the channels of `make_skeleton`.
 Motion assemble(const Body& body, std::vector<Frame> frames, double fps);
 
 }  // namespace mcdbn::synthesis
