@@ -11,13 +11,14 @@ Eigen::Matrix3d rotation(double angle_deg, const Eigen::Vector3d& axis) {
   return Eigen::AngleAxisd(angle_deg * std::numbers::pi / 180, axis).toRotationMatrix();
 }
 
-const std::vector<Channel> kRotationChannels{Channel::z_rotation, Channel::x_rotation,
-                                             Channel::y_rotation};
+const std::vector<Channel> kZxy{Channel::z_rotation, Channel::x_rotation, Channel::y_rotation};
+/// For upper arms: in the order Z X Y a raised forearm would be the singular pose, in this one it
+/// is the arm that points straight forward.
+const std::vector<Channel> kZyx{Channel::z_rotation, Channel::y_rotation, Channel::x_rotation};
 
 void add_joint(Skeleton& skeleton, std::string name, int parent, const Eigen::Vector3d& offset,
                std::vector<Eigen::Vector3d> end_sites = {}) {
-  skeleton.joints.push_back(
-      {std::move(name), parent, offset, kRotationChannels, std::move(end_sites)});
+  skeleton.joints.push_back({std::move(name), parent, offset, kZxy, std::move(end_sites)});
 }
 
 void add_arm(Skeleton& skeleton, const Body& body, Side side) {
@@ -26,6 +27,7 @@ void add_arm(Skeleton& skeleton, const Body& body, Side side) {
   const int first = arm_block(side);
   add_joint(skeleton, prefix + "Shoulder", kChest, body.clavicle_offset(side));
   add_joint(skeleton, prefix + "Arm", first, body.shoulder_offset(side));
+  skeleton.joints.back().channels = kZyx;
   add_joint(skeleton, prefix + "ForeArm", first + 1, {sign * body.upper_arm, 0, 0});
   add_joint(skeleton, prefix + "Hand", first + 2, {sign * body.forearm, 0, 0},
             {{sign * body.hand, 0, 0}});

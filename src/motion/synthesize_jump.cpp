@@ -141,7 +141,7 @@ Posture Jump::posture(double t) const {
   for (const Side side : kSides) {
     add(arm_dof(side, kFlexion), {{0, 0},
                                   {0.25 * crouched_, 12},
-                                  {crouched_, -45},
+                                  {crouched_, -34},
                                   {take_off_, 0.85 * arm_reach_deg_},
                                   {air, arm_reach_deg_},
                                   {landing_, 0.55 * arm_reach_deg_},
@@ -153,7 +153,8 @@ Posture Jump::posture(double t) const {
                                 {air, 12},
                                 {absorbed_, 25},
                                 {end_, 0}});
-    add(arm_dof(side, kAbduction), {{0, 0}, {crouched_, 6}, {air, 10}, {absorbed_, 12}, {end_, 0}});
+    add(arm_dof(side, kAbduction),
+        {{0, 0}, {crouched_, 9}, {take_off_, 18}, {air, 18}, {absorbed_, 12}, {end_, 0}});
     add(arm_dof(side, kShrug), {{0, 0}, {crouched_, 0}, {air, 12}, {absorbed_, 0}, {end_, 0}});
   }
   return posture;

@@ -11,8 +11,8 @@ namespace {
 // cycle from heel contact to heel contact of the same foot; the thigh's is against the vertical.
 // Flexion and dorsiflexion are positive.
 const std::vector<KeyCurve::Key> kThighFlexion{
-    {0, 22},   {5, 21},  {10, 18}, {20, 9},  {30, -1}, {40, -10}, {50, -17}, {54, -18},
-    {60, -12}, {65, -3}, {70, 7},  {75, 15}, {80, 21}, {87, 25},  {94, 23.5}};
+    {0, 23},   {5, 22},  {10, 19}, {20, 10}, {30, 0},  {40, -9}, {50, -15.5}, {53, -16},
+    {60, -10}, {65, -2}, {70, 7},  {75, 15}, {80, 21}, {87, 25}, {94, 24}};
 const std::vector<KeyCurve::Key> kKneeFlexion{
     {0, 5},   {5, 11},  {10, 17}, {14, 19}, {20, 17}, {30, 10}, {38, 6},  {45, 8}, {50, 14},
     {55, 25}, {60, 40}, {65, 54}, {71, 62}, {76, 58}, {82, 43}, {88, 24}, {94, 8}, {97, 4}};
@@ -25,9 +25,9 @@ const std::vector<KeyCurve::Key> kPelvisTurnRight{{0, 5},   {15, 3.5},  {30, 0},
 const std::vector<KeyCurve::Key> kPelvisDropRight{{0, 0},  {12, 4},  {30, 1.5},
                                                   {50, 0}, {62, -4}, {80, -1.5}};
 
-constexpr double kToeOff = 0.61;         ///< of the cycle; the foot stands from 0 to here
+constexpr double kToeOff = 0.58;         ///< of the cycle; the foot stands from 0 to here
 constexpr double kMidStance = 0.25;      ///< the foot is flat, its print is taken
-constexpr double kDoubleSupport = 0.11;  ///< of the cycle
+constexpr double kDoubleSupport = 0.09;  ///< of the cycle
 
 /// One leg in the sagittal plane, relative to its hip; angles in degrees, cm.
 struct LegPose {
@@ -173,30 +173,30 @@ Foot Gait::swinging_foot(Side side, double phase, double cycle) const {
   const FootPrint before = print(side, cycle), after = print(side, cycle + 1);
   const double start = phase - (foot_phase(side, phase) - cycle - kToeOff);
   const double duration = 1 - kToeOff;
-  // What the ground demands beyond the curves at both ends of the swing is faded over it.
+  // What the ground demands beyond the curves at both ends of the swing fades towards its middle.
+  // Half of its slope is kept: the foot leaves and lands softly, yet is not drawn far off the
+  // curve.
   const auto demand = [&](const FootPrint& on, double at) -> Eigen::Vector3d {
     return planted_foot(body_, on, leg(side, at).pitch_deg).ankle - free_ankle(side, at);
   };
   constexpr double kStep = 0.004;
   const Eigen::Vector3d leave = demand(before, start - kStep / 2);
-  const Eigen::Vector3d leave_slope = (leave - demand(before, start - 1.5 * kStep)) / kStep;
+  const Eigen::Vector3d leave_slope = 0.5 * (leave - demand(before, start - 1.5 * kStep)) / kStep;
   const double end = start + duration;
   const Eigen::Vector3d land = demand(after, end + kStep / 2);
-  const Eigen::Vector3d land_slope = (demand(after, end + 1.5 * kStep) - land) / kStep;
-  const double t = phase - start, u = t / duration;
+  const Eigen::Vector3d land_slope = 0.5 * (demand(after, end + 1.5 * kStep) - land) / kStep;
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+  const double t = phase - start, u = t / duration, half = duration / 2;
 
-  if (getenv("DBG"))
-    fprintf(stderr,
-            "side %d u %.2f leave %.1f %.1f %.1f slope %.1f %.1f %.1f land %.1f %.1f %.1f slope "
-            "%.1f %.1f %.1f\n",
-            side, u, leave.x(), leave.y(), leave.z(), leave_slope.x(), leave_slope.y(),
-            leave_slope.z(), land.x(), land.y(), land.z(), land_slope.x(), land_slope.y(),
-            land_slope.z());
   Foot foot;
   foot.pitch_deg = leg(side, phase).pitch_deg;
   foot.turn_deg = std::lerp(before.turn_deg, after.turn_deg, smooth_step(0, 1, u));
-  foot.toe_bend_deg = std::max(0.0, -foot.pitch_deg) * (1 - smooth_step(0, 0.3, u));
-  foot.ankle = free_ankle(side, phase) + hermite(t, duration, leave, leave_slope, land, land_slope);
+  foot.toe_bend_deg = std::max(0.0, -foot.pitch_deg) * (1 - smooth_step(0.1, 0.65, u));
+  foot.ankle =
+      free_ankle(side, phase) + (t < half ? hermite(t, half, leave, leave_slope, none, none)
+                                          : hermite(t - half, half, none, none, land, land_slope));
+  constexpr double kClearance = 1.8;  // of the toes, beyond what the curves give
+  foot.ankle.y() += kClearance * std::pow(std::sin(std::numbers::pi * u), 2);
   return foot;
 }
 

@@ -28,12 +28,12 @@ struct SynthesisOptions {
 };
 
 /// A clip of parametric human motion: +y up, facing about +z, centimetres, 21 joints, a root with
-/// six channels and rotations in the order Z X Y. Walking follows the normative joint angles of
-/// gait analysis (Winter, Biomechanics and Motor Control of Human Movement), with the root's travel
-/// and height taken from the planted foot by forward kinematics; the other actions run on key
-/// poses. Body segments are fractions of stature (Drillis and Contini). A planted foot does not
-/// slide, knees and elbows bend one way only, and the ground is y = 0.
-/// The same options give the same clip on every platform, up to the rounding of its <cmath>.
+/// six channels, rotations in the order Z X Y (upper arms: Z Y X). Walking follows the normative
+/// joint angles of gait analysis (Winter, Biomechanics and Motor Control of Human Movement), with
+/// the root's travel and height taken from the planted foot by forward kinematics; the other
+/// actions run on key poses. Body segments are fractions of stature (Drillis and Contini). A
+/// planted foot does not slide, knees and elbows bend one way only, and the ground is y = 0. The
+/// same options give the same clip on every platform, up to the rounding of its <cmath>.
 /// @throws ConfigError if a number is out of range
 Motion synthesize(const SynthesisOptions& options);
 
