@@ -12,7 +12,7 @@ int main() {
   try {
     mcdbn::Device device = mcdbn::Device::open();
     const mcdbn::CrbmShape shape{.visible = 2, .hidden = 16, .order = 3};
-    const mcdbn::CdSettings settings{.rate = 1e-2, .epochs = 60};
+    const mcdbn::CdSettings settings{.rate = 1e-2, .rate_A = 1e-3, .rate_B = 1e-3, .epochs = 60};
 
     double first_loss = 0, last_loss = 0;
     const auto watch = [&](const mcdbn::EpochReport& report) {
