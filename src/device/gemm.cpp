@@ -3,7 +3,7 @@
 #include <clblast.h>
 #include <fmt/format.h>
 
-#include "kernel_arguments.hpp"
+#include "mcdbn/device/kernel_arguments.hpp"
 #include "mcdbn/device/units.hpp"
 
 namespace mcdbn {

@@ -1,6 +1,6 @@
 #include "mcdbn/device/losses.hpp"
 
-#include "kernel_arguments.hpp"
+#include "mcdbn/device/kernel_arguments.hpp"
 
 namespace mcdbn {
 

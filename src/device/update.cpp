@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "kernel_arguments.hpp"
+#include "mcdbn/device/kernel_arguments.hpp"
 
 namespace mcdbn {
 namespace {

@@ -1,5 +1,6 @@
 #include "mcdbn/training/contrastive_divergence.hpp"
 
+#include "mcdbn/device/kernel_arguments.hpp"
 #include "mcdbn/device/units.hpp"
 
 namespace mcdbn {
@@ -9,30 +10,60 @@ Matrix like(const Matrix& matrix) {
   return {matrix.device(), matrix.rows(), matrix.columns()};
 }
 
+/// The fused chain writes whole blocks of rows.
+std::size_t whole_blocks(std::size_t batch, const std::optional<ChainTile>& tile) {
+  const auto rows = static_cast<std::size_t>(tile ? tile->rows : 1);
+  return ceil_divide(batch, rows) * rows;
+}
+
 }  // namespace
 
 ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch)
+    : ContrastiveDivergence(crbm, largest_batch,
+                            choose_chain_tile(crbm.device(), crbm.shape(), largest_batch)) {}
+
+ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch,
+                                             std::optional<ChainTile> tile)
     : crbm_(crbm),
-      visible_data_(crbm.device(), largest_batch, crbm.shape().visible),
+      tile_(tile),
+      visible_data_(crbm.device(), whole_blocks(largest_batch, tile), crbm.shape().visible),
       visible_(like(visible_data_)),
       visible_bias_(like(visible_data_)),
-      hidden_data_(crbm.device(), largest_batch, crbm.shape().hidden),
+      hidden_data_(crbm.device(), visible_data_.rows(), crbm.shape().hidden),
       hidden_(like(hidden_data_)),
-      hidden_sample_(like(hidden_data_)),
       hidden_bias_(like(hidden_data_)),
-      gradient_W_(like(crbm.W)),
-      gradient_A_(like(crbm.A)),
-      gradient_B_(like(crbm.B)),
-      gradient_a_(like(crbm.a)),
-      gradient_b_(like(crbm.b)),
+      row_losses_(crbm.device(), 1, visible_data_.rows()),
       velocity_W_(like(crbm.W)),
       velocity_A_(like(crbm.A)),
       velocity_B_(like(crbm.B)),
       velocity_a_(like(crbm.a)),
-      velocity_b_(like(crbm.b)) {}
+      velocity_b_(like(crbm.b)) {
+  if (tile_) return;
+  hidden_sample_ = like(hidden_data_);
+  gradient_W_ = like(crbm.W);
+  gradient_A_ = like(crbm.A);
+  gradient_B_ = like(crbm.B);
+  gradient_a_ = like(crbm.a);
+  gradient_b_ = like(crbm.b);
+}
 
 void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const RandomKey& key,
                                  LossAccumulator& losses) {
+  require(rows.index != nullptr && rows.columns == crbm_.shape().visible,
+          "CD: wants indexed frames, one each");
+  require(rows.count > 0 && rows.count <= visible_data_.rows(),
+          "CD: the mini-batch is larger than it was made for");
+  require(rule.gibbs_steps > 0, "CD: wants at least one Gibbs step");
+  if (!tile_) {
+    composed_step(rows, rule, key, losses);
+    return;
+  }
+  fused_chain(rows, rule.gibbs_steps, key);
+  fused_update(rows, rule, losses);
+}
+
+void ContrastiveDivergence::composed_step(const Rows& rows, const CdRule& rule,
+                                          const RandomKey& key, LossAccumulator& losses) {
   clamp_data(rows, key);
   gibbs_chain(rows.count, rule.gibbs_steps, key);
   const Rows data(visible_data_, 0, rows.count), reconstruction(visible_, 0, rows.count);

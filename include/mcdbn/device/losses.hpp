@@ -15,6 +15,8 @@ class LossAccumulator {
   void add_squared_error(std::size_t slot, const Rows& x, const Rows& y, float scale);
   /// slot += scale · Σ cross-entropy of prediction y against target x (both within 0 … 1)
   void add_cross_entropy(std::size_t slot, const Rows& x, const Rows& y, float scale);
+  /// Where the sums lie, for kernels that add to them by themselves: slot s is float s.
+  const cl::Buffer& buffer() const { return sums_.buffer(); }
   /// Waits for the queue, returns the sums and starts again from zero.
   std::vector<float> read_and_reset();
 
