@@ -29,7 +29,8 @@ std::optional<ChainTile> choose_chain_tile(const Device& device, const CrbmShape
   ChainTile best;
   best.vector_width = vector_width(device);
   if (device.info().is_gpu) best.group = 64;
-  const int largest = std::min(device.info().is_gpu ? 4 : 14, to_int(std::max<std::size_t>(batch, 1)));
+  const int largest =
+      std::min(device.info().is_gpu ? 4 : 14, to_int(std::max<std::size_t>(batch, 1)));
   const std::size_t units = std::max(1U, device.info().compute_units);
   double best_cost = 0;
   bool fits = false;
@@ -48,7 +49,8 @@ std::optional<ChainTile> choose_chain_tile(const Device& device, const CrbmShape
   spdlog::debug(
       "{} visible, {} hidden units: one row of the fused Gibbs chain takes {} bytes of local "
       "memory, the device has {}; composed kernels instead",
-      shape.visible, shape.hidden, chain_local_bytes(shape, best), device.info().local_memory_bytes);
+      shape.visible, shape.hidden, chain_local_bytes(shape, best),
+      device.info().local_memory_bytes);
   return std::nullopt;
 }
 

@@ -69,8 +69,8 @@ void ContrastiveDivergence::fused_update(const Rows& rows, const CdRule& rule,
          buffer_of(crbm_.A, crbm_.W), buffer_of(crbm_.B, crbm_.W), crbm_.a.buffer(),
          crbm_.b.buffer(), velocity_W_.buffer(), buffer_of(velocity_A_, crbm_.W),
          buffer_of(velocity_B_, crbm_.W), velocity_a_.buffer(), velocity_b_.buffer(),
-         rule_argument(rule.W), rule_argument(rule.A), rule_argument(rule.B),
-         row_losses_.buffer(), losses.buffer(), loss_scale);
+         rule_argument(rule.W), rule_argument(rule.A), rule_argument(rule.B), row_losses_.buffer(),
+         losses.buffer(), loss_scale);
 }
 
 }  // namespace mcdbn
