@@ -1,0 +1,179 @@
+#include "bench_steps.hpp"
+
+#include <memory>
+
+#include "mcdbn/regeneration/mcdbn_regeneration.hpp"
+#include "mcdbn/training/contrastive_divergence.hpp"
+#include "mcdbn/training/multi_prediction.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+constexpr std::size_t kFrames = 4096;
+constexpr double kWeightDeviation = 0.01;
+
+/// Standard normal, or what is left of it within 0 … 1 around one half for binary units.
+MatrixF random_frames(std::size_t rows, std::size_t columns, VisibleKind kind) {
+  const RandomKey key{1, 0, 7, 0};
+  MatrixF frames(rows, columns);
+  for (Eigen::Index r = 0; r < frames.rows(); ++r)
+    for (Eigen::Index c = 0; c < frames.cols(); ++c)
+      frames(r, c) = static_cast<float>(
+          random_normal(key, static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c)));
+  if (kind == VisibleKind::binary)
+    frames = (0.5F + 0.2F * frames.array()).max(0.0F).min(1.0F).matrix();
+  return frames;
+}
+
+/// Rows scattered over the frames, as a shuffled epoch has them.
+IndexBuffer scattered_rows(Device& device, std::size_t batch, std::size_t order) {
+  std::vector<std::int32_t> rows;
+  for (std::size_t i = 0; i < batch; ++i)
+    rows.push_back(static_cast<std::int32_t>(order + i * 2654435761U % (kFrames - order)));
+  return {device, rows};
+}
+
+BenchStep crbm_step(Device& device, const CrbmShape& shape, std::size_t batch,
+                    std::size_t gibbs_steps) {
+  struct State {
+    Matrix frames;
+    IndexBuffer index;
+    Crbm crbm;
+    ContrastiveDivergence cd;
+    LossAccumulator losses;
+    CdRule rule;
+    RandomKey key;
+    State(Device& device, const CrbmShape& shape, std::size_t batch)
+        : frames(Matrix::from_host(device, random_frames(kFrames, shape.visible, shape.kind))),
+          index(scattered_rows(device, batch, shape.order)),
+          crbm(device, CrbmParameters::random(shape, kWeightDeviation, {})),
+          cd(crbm, batch),
+          losses(device, 1, batch) {}
+  };
+  const auto state = std::make_shared<State>(device, shape, batch);
+  state->rule.gibbs_steps = gibbs_steps;
+  state->rule.W = state->rule.B = {1e-3F, 0.9F, 2e-4F};
+  state->rule.A = {1e-5F, 0.9F, 2e-4F};
+  const auto v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
+  const auto order = static_cast<double>(shape.order), k = static_cast<double>(gibbs_steps);
+  // Dynamic biases and their gradients; up, k times down and up, two products for W's gradient.
+  const double multiply_adds = 2.0 * order * v * (v + h) + (1.0 + 2.0 * k + 2.0) * v * h;
+  return {{{"layer", shape.kind == VisibleKind::gaussian ? "gaussian_crbm" : "binary_crbm"},
+           {"visible", shape.visible},
+           {"order", shape.order},
+           {"hidden", shape.hidden},
+           {"batch", batch},
+           {"k", gibbs_steps}},
+          2.0 * multiply_adds * static_cast<double>(batch),
+          [state, batch] {
+            ++state->key.step;
+            state->cd.step(Rows::indexed(state->frames, state->index, 0, batch), state->rule,
+                           state->key, state->losses);
+          }};
+}
+
+BenchStep mrbm_step(Device& device, std::size_t visible, std::size_t hidden, std::size_t batch,
+                    std::size_t mean_field_steps) {
+  struct State {
+    Matrix track, pose;
+    IndexBuffer index;
+    Mrbm mrbm;
+    MultiPrediction multi_prediction;
+    LossAccumulator losses;
+    State(Device& device, std::size_t visible, std::size_t hidden, std::size_t batch,
+          std::size_t steps)
+        : track(Matrix::from_host(device, random_frames(kFrames, visible, VisibleKind::binary))),
+          pose(Matrix::from_host(device, random_frames(kFrames, visible, VisibleKind::binary))),
+          index(scattered_rows(device, batch, 0)),
+          mrbm(device, MrbmParameters::random(visible, visible, hidden, kWeightDeviation, {})),
+          multi_prediction(mrbm, steps, batch),
+          losses(device, 2, batch) {}
+  };
+  const auto state = std::make_shared<State>(device, visible, hidden, batch, mean_field_steps);
+  // A direction: the present modality's drive and its gradient; T downs, T − 1 ups (the first
+  // starts from zeros), their back-propagation and their gradients.
+  const double products = 2.0 * (6.0 * static_cast<double>(mean_field_steps) - 1.0);
+  const double multiply_adds = products * static_cast<double>(visible * hidden);
+  return {{{"layer", "mrbm"},
+           {"visible", 2 * visible},
+           {"hidden", hidden},
+           {"batch", batch},
+           {"steps", mean_field_steps}},
+          2.0 * multiply_adds * static_cast<double>(batch),
+          [state, batch] {
+            state->multi_prediction.step(Rows::indexed(state->track, state->index, 0, batch),
+                                         Rows::indexed(state->pose, state->index, 0, batch), {},
+                                         state->losses);
+          }};
+}
+
+BenchStep gemm_step(Device& device, std::size_t m, std::size_t n, std::size_t k,
+                    GemmBackend backend) {
+  const auto matrix = [&](std::size_t rows, std::size_t columns) {
+    return std::make_shared<Matrix>(
+        Matrix::from_host(device, random_frames(rows, columns, VisibleKind::gaussian)));
+  };
+  const auto a = matrix(m, k), b = matrix(k, n), c = matrix(m, n);
+  GemmOptions options;
+  options.backend = backend;
+  return {{{"layer", "gemm"},
+           {"m", m},
+           {"n", n},
+           {"k", k},
+           {"backend", backend == GemmBackend::own ? "own" : "clblast"}},
+          2.0 * static_cast<double>(m * n * k),
+          [=] { gemm(*a, *b, *c, options); }};
+}
+
+Cdbn random_cdbn(Device& device, std::size_t visible, std::size_t hidden, std::size_t order) {
+  Cdbn cdbn;
+  for (const CrbmShape& shape : {CrbmShape{visible, hidden, order, VisibleKind::gaussian},
+                                 CrbmShape{hidden, hidden, order, VisibleKind::binary}})
+    cdbn.layers.emplace_back(device, CrbmParameters::random(shape, kWeightDeviation, {}));
+  return cdbn;
+}
+
+BenchStep regeneration_step(Device& device, double temperature) {
+  constexpr std::size_t kTrack = 43, kPose = 96, kHidden = 300, kOrder = 5, kClipFrames = 1000;
+  const auto network = std::make_shared<Mcdbn>(Mcdbn{
+      random_cdbn(device, kTrack, kHidden, kOrder), random_cdbn(device, kPose, kHidden, kOrder),
+      Mrbm(device, MrbmParameters::random(kHidden, kHidden, kHidden, kWeightDeviation, {})), 5, 5});
+  RegenerationOptions options;
+  options.samples = 10;
+  options.temperature = temperature;
+  const std::vector<MatrixF> tracks{random_frames(kClipFrames, kTrack, VisibleKind::gaussian)};
+  return {{{"layer", "regeneration"},
+           {"frames", kClipFrames},
+           {"samples", options.samples},
+           {"temperature", temperature},
+           {"k", temperature > 0.0 ? options.gibbs_steps : 0}},
+          0.0,
+          [=] { regenerate(*network, tracks, options); }};
+}
+
+}  // namespace
+
+std::vector<BenchStepMaker> bench_steps() {
+  std::vector<BenchStepMaker> makers;
+  for (const std::size_t batch : {100U, 1024U}) {
+    makers.emplace_back([=](Device& device) {
+      return crbm_step(device, {96, 300, 5, VisibleKind::gaussian}, batch, 5);
+    });
+    makers.emplace_back([=](Device& device) {
+      return crbm_step(device, {300, 300, 5, VisibleKind::binary}, batch, 1);
+    });
+    makers.emplace_back([=](Device& device) { return mrbm_step(device, 300, 150, batch, 10); });
+  }
+  for (const auto backend : {GemmBackend::own, GemmBackend::clblast})
+    for (const auto& [m, n, k] : {std::array<std::size_t, 3>{100, 300, 96},
+                                  {100, 300, 480},
+                                  {100, 300, 1500},
+                                  {1024, 300, 1500}})
+      makers.emplace_back(
+          [=, m = m, n = n, k = k](Device& device) { return gemm_step(device, m, n, k, backend); });
+  for (const double temperature : {0.0, 1.0})
+    makers.emplace_back([=](Device& device) { return regeneration_step(device, temperature); });
+  return makers;
+}
+
+}  // namespace mcdbn::cli

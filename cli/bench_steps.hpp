@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "mcdbn/device/device.hpp"
+
+namespace mcdbn::cli {
+
+/// One thing to measure. `run` enqueues it once; it owns the matrices that it works on.
+struct BenchStep {
+  nlohmann::ordered_json what;  ///< layer, sizes, batch and so on
+  double flops = 0;             ///< useful arithmetic of one run, 2 a multiply-add; 0: not counted
+  std::function<void()> run;
+};
+
+/// Makes a step when its turn comes.
+using BenchStepMaker = std::function<BenchStep(Device&)>;
+
+/// The mini-batch step of every kind of layer at batch 100 and 1024, the products of the model's
+/// sizes by both back ends, and the regeneration of ten samples of a 1,000-frame clip.
+std::vector<BenchStepMaker> bench_steps();
+
+}  // namespace mcdbn::cli

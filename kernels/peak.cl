@@ -1,0 +1,27 @@
+// How fast the device multiplies and adds at best: CHAINS independent fma() chains a work-item, in
+// registers. global: any; out[item] keeps the compiler from dropping them.
+
+#include "philox.clh"
+#include "activation.clh"
+
+#ifndef CHAINS
+#define CHAINS 16
+#endif
+
+// An argument of vector type lets PoCL's compiler use the widest registers.
+static inline __attribute__((always_inline)) floatN step(floatN x, floatN a, floatN b) {
+  return fma(x, a, b);
+}
+
+kernel void fma_loop(global float* out, int iterations, float a, float b) {
+  floatN x[CHAINS];
+#pragma unroll
+  for (int c = 0; c < CHAINS; ++c) x[c] = (floatN)((float)get_global_id(0) + (float)c);
+  for (int i = 0; i < iterations; ++i)
+#pragma unroll
+    for (int c = 0; c < CHAINS; ++c) x[c] = step(x[c], (floatN)(a), (floatN)(b));
+  floatN sum = x[0];
+#pragma unroll
+  for (int c = 1; c < CHAINS; ++c) sum += x[c];
+  out[get_global_id(0)] = sum_lanes(sum);
+}
