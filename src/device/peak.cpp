@@ -8,9 +8,10 @@
 namespace mcdbn {
 
 double measure_peak_gflops(Device& device) {
-  constexpr int kChains = 16, kIterations = 20000, kRuns = 9;
+  constexpr int kChains = 16, kIterations = 20000, kRuns = 15;
   const int vec = vector_width(device);
-  const std::size_t items = device.info().compute_units * (device.info().is_gpu ? 1024U : 4U);
+  const std::size_t group = device.info().is_gpu ? 64 : 1;
+  const std::size_t items = device.info().compute_units * group * 16;
   cl::Kernel& kernel =
       device.programs().kernel("peak.cl", "fma_loop", {{"VEC", vec}, {"CHAINS", kChains}});
   const Matrix out(device, 1, items);
@@ -19,7 +20,7 @@ double measure_peak_gflops(Device& device) {
   for (int run = 0; run < kRuns; ++run) {
     device.finish();
     const auto start = std::chrono::steady_clock::now();
-    launch(device, kernel, {{items, 1}}, out.buffer(), kIterations, 0.999F, 0.001F);
+    launch(device, kernel, {{items, 1}, {group, 1}}, out.buffer(), kIterations, 0.999F, 0.001F);
     device.finish();
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     best = std::max(best, flops / elapsed.count() * 1e-9);

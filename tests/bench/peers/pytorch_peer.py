@@ -1,0 +1,229 @@
+"""The mini-batch steps of `mcdbn-cl bench` in PyTorch, on the CPU.
+
+    python pytorch_peer.py LAYER BATCH SECONDS
+
+prints {"variant": median_us, ...} for eager and compiled, torch.bernoulli and rand < p. The variants
+take turns, so that whatever else the machine does slows all of them. Layers: gaussian_crbm,
+binary_crbm, mrbm, regeneration (BATCH is then the number of samples).
+"""
+
+import json
+import statistics
+import sys
+import time
+
+import torch
+
+ORDER, HIDDEN = 5, 300
+RATE, RATE_A, MOMENTUM, DECAY = 1e-3, 1e-5, 0.9, 2e-4
+
+
+def bernoulli(p):
+    return torch.bernoulli(p)
+
+
+def compare(p):
+    return (torch.rand_like(p) < p).to(p.dtype)
+
+
+DRAWS = {"bernoulli": bernoulli, "rand < p": compare}
+
+
+def normal(*shape, scale=0.01):
+    return scale * torch.randn(*shape)
+
+
+def frames_of(visible, binary):
+    frames = torch.randn(4096, visible)
+    return (0.5 + 0.2 * frames).clamp(0, 1) if binary else frames
+
+
+def momentum_update(parameter, velocity, gradient, rate, decay):
+    velocity.mul_(MOMENTUM).add_(gradient - decay * parameter if decay else gradient, alpha=rate)
+    parameter.add_(velocity)
+
+
+class CrbmStep:
+    """CD-k as kernels/gibbs_chain.cl and cd_update.cl do it."""
+
+    def __init__(self, visible, batch, gibbs_steps, binary, draw):
+        self.frames = frames_of(visible, binary)
+        self.rows = torch.randint(ORDER, 4096, (batch,))
+        self.window = torch.arange(-ORDER, 0)
+        shapes = {"W": (visible, HIDDEN), "A": (ORDER * visible, visible),
+                  "B": (ORDER * visible, HIDDEN), "a": (visible,), "b": (HIDDEN,)}
+        self.parameters = {name: normal(*shape) for name, shape in shapes.items()}
+        self.velocities = {name: torch.zeros(*shape) for name, shape in shapes.items()}
+        self.gibbs_steps, self.binary, self.draw = gibbs_steps, binary, draw
+        self.loss = torch.zeros(())
+
+    def __call__(self):
+        p, n = self.parameters, len(self.rows)
+        data = self.frames[self.rows]
+        history = self.frames[self.rows[:, None] + self.window].view(n, -1)
+        bias_v = torch.addmm(p["a"], history, p["A"])
+        bias_h = torch.addmm(p["b"], history, p["B"])
+        hidden_data = torch.sigmoid(torch.addmm(bias_h, data, p["W"]))
+        hidden = hidden_data
+        for _ in range(self.gibbs_steps):
+            visible = torch.addmm(bias_v, self.draw(hidden), p["W"].t())
+            if self.binary:
+                visible = torch.sigmoid(visible)
+            hidden = torch.sigmoid(torch.addmm(bias_h, visible, p["W"]))
+        change_v, change_h = (data - visible) / n, (hidden_data - hidden) / n
+        gradients = {"W": (data.t() @ hidden_data - visible.t() @ hidden) / n,
+                     "A": history.t() @ change_v, "B": history.t() @ change_h,
+                     "a": change_v.sum(0), "b": change_h.sum(0)}
+        self.loss += (data - visible).square().mean()
+        for name, gradient in gradients.items():
+            momentum_update(p[name], self.velocities[name], gradient,
+                            RATE_A if name == "A" else RATE, DECAY if name in "WAB" else 0)
+
+
+class MrbmStep:
+    """Multi-prediction through ten mean-field steps, by autograd, with Adam."""
+
+    STEPS = 10
+
+    def __init__(self, batch, visible=300, hidden=150):
+        self.frames = [frames_of(visible, True) for _ in range(2)]
+        self.rows = torch.randint(0, 4096, (batch,))
+        self.W = [normal(visible, hidden).requires_grad_() for _ in range(2)]
+        self.a = [torch.zeros(visible, requires_grad=True) for _ in range(2)]
+        self.b = torch.zeros(hidden, requires_grad=True)
+        self.optimizer = torch.optim.Adam([*self.W, *self.a, self.b], lr=1e-3)
+        self.total = torch.zeros(())
+
+    def loss(self):
+        codes = [frames[self.rows] for frames in self.frames]
+        total = 0.0
+        for present, absent in ((0, 1), (1, 0)):
+            drive = torch.addmm(self.b, codes[present], self.W[present])
+            hidden = torch.sigmoid(drive)
+            for step in range(self.STEPS):
+                logits = torch.addmm(self.a[absent], hidden, self.W[absent].t())
+                if step + 1 < self.STEPS:
+                    hidden = torch.sigmoid(
+                        torch.addmm(drive, torch.sigmoid(logits), self.W[absent]))
+            total = total + torch.nn.functional.binary_cross_entropy_with_logits(
+                logits, codes[absent], reduction="sum") / len(self.rows)
+        return total
+
+    def __call__(self):
+        self.optimizer.zero_grad(set_to_none=True)
+        loss = self.loss()
+        loss.backward()
+        self.optimizer.step()
+        self.total += loss.detach()
+
+
+class Regeneration:
+    """A 1,000-frame clip, `samples` times: up-pass, mean field, sampled down-pass (Algorithm 5)."""
+
+    FRAMES, TRACK, POSE, GIBBS_STEPS, AHEAD, RUN_IN = 1000, 43, 96, 3, 5, 30
+
+    def __init__(self, samples, draw):
+        def layers(visible):
+            return [{"W": normal(v, HIDDEN), "A": normal(ORDER * v, v), "B": normal(ORDER * v, HIDDEN),
+                     "a": torch.zeros(v), "b": torch.zeros(HIDDEN)} for v in (visible, HIDDEN)]
+        self.samples, self.draw = samples, draw
+        self.track, self.pose = layers(self.TRACK), layers(self.POSE)
+        self.W = [normal(HIDDEN, HIDDEN) for _ in range(2)]
+        self.a, self.b = torch.zeros(HIDDEN), torch.zeros(HIDDEN)
+        lead = 2 * ORDER + self.RUN_IN
+        clip = torch.randn(self.FRAMES, self.TRACK)
+        self.clip = torch.cat([clip[:1].expand(lead, -1), clip, clip[-1:].expand(self.AHEAD, -1)])
+
+    def up(self, layer, x):
+        windows = x.unfold(1, ORDER, 1)[:, :-1].transpose(2, 3).flatten(2)
+        return torch.sigmoid(windows @ layer["B"] + x[:, ORDER:] @ layer["W"] + layer["b"])
+
+    @torch.no_grad()
+    def __call__(self):
+        code = self.clip.expand(self.samples, -1, -1)
+        for layer in self.track:
+            code = self.up(layer, code)
+        drive = code[:, self.AHEAD:] @ self.W[0] + self.b
+        hidden = torch.sigmoid(drive)
+        for step in range(5):
+            pose_code = torch.sigmoid(hidden @ self.W[1].t() + self.a)
+            hidden = torch.sigmoid(drive + pose_code @ self.W[1])
+        low, top = self.pose
+        history_top = torch.zeros(self.samples, ORDER, HIDDEN)
+        history_low = torch.zeros(self.samples, ORDER, self.POSE)
+        frames = []
+        for t in range(pose_code.shape[1]):
+            bias_v = torch.addmm(top["a"], history_top.flatten(1), top["A"])
+            bias_h = torch.addmm(top["b"], history_top.flatten(1), top["B"])
+            above = pose_code[:, t]
+            for _ in range(self.GIBBS_STEPS):
+                below = self.draw(torch.sigmoid(torch.addmm(bias_v, above, top["W"].t())))
+                above = self.draw(torch.sigmoid(torch.addmm(bias_h, below, top["W"])))
+            below = torch.sigmoid(torch.addmm(bias_v, above, top["W"].t()))
+            frame = torch.addmm(torch.addmm(low["a"], history_low.flatten(1), low["A"]), below,
+                                low["W"].t())
+            history_top = torch.cat([history_top[:, 1:], below[:, None]], 1)
+            history_low = torch.cat([history_low[:, 1:], frame[:, None]], 1)
+            frames.append(frame)
+        return torch.stack(frames, 1)
+
+
+def variants(layer, batch):
+    """(name, step) pairs; a compiled one only where torch.compile works here."""
+    result = {}
+
+    def add(name, make):
+        result["eager" + name] = make()
+        if layer == "regeneration":  # a loop over frames: nothing to compile as a whole
+            return
+        step = make()
+        if layer == "mrbm":
+            step.loss = torch.compile(step.loss)
+            compiled = step
+        else:
+            compiled = torch.compile(step.__call__)
+        try:
+            compiled()
+        except Exception as error:  # no compiler, or a version without it
+            print(f"torch.compile: {error}"[:200], file=sys.stderr)
+            return
+        result["compiled" + name] = compiled
+
+    if layer == "mrbm":
+        add("", lambda: MrbmStep(batch))
+        return result
+    for name, draw in DRAWS.items():
+        if layer == "regeneration":
+            add(", " + name, lambda draw=draw: Regeneration(batch, draw))
+        else:
+            binary = layer == "binary_crbm"
+            visible, steps = (300, 1) if binary else (96, 5)
+            add(", " + name, lambda draw=draw: CrbmStep(visible, batch, steps, binary, draw))
+    return result
+
+
+def main():
+    layer, batch, seconds = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
+    torch.set_num_threads(2)
+    torch.manual_seed(1)
+    if layer != "mrbm":
+        torch.set_grad_enabled(False)
+    steps = variants(layer, batch)
+    runs, times = {}, {name: [] for name in steps}
+    for name, step in steps.items():
+        for _ in range(3 if layer != "regeneration" else 1):
+            start = time.perf_counter()
+            step()
+            once = time.perf_counter() - start
+        runs[name] = max(1, min(1000, int(0.01 / once)))
+    end = time.perf_counter() + seconds * len(steps)
+    while time.perf_counter() < end or min(map(len, times.values())) < 3:
+        for name, step in steps.items():
+            start = time.perf_counter()
+            for _ in range(runs[name]):
+                step()
+            times[name].append((time.perf_counter() - start) / runs[name] * 1e6)
+    print(json.dumps({"pytorch " + name: statistics.median(t) for name, t in times.items()}))
+
+
+main()
