@@ -24,6 +24,11 @@ std::size_t chain_local_bytes(const CrbmShape& shape, const ChainTile& tile) {
          sizeof(float);
 }
 
+std::size_t whole_blocks(std::size_t batch, const std::optional<ChainTile>& tile) {
+  const auto rows = static_cast<std::size_t>(tile ? tile->rows : 1);
+  return ceil_divide(batch, rows) * rows;
+}
+
 std::optional<ChainTile> choose_chain_tile(const Device& device, const CrbmShape& shape,
                                            std::size_t batch) {
   ChainTile best;

@@ -10,12 +10,6 @@ Matrix like(const Matrix& matrix) {
   return {matrix.device(), matrix.rows(), matrix.columns()};
 }
 
-/// The fused chain writes whole blocks of rows.
-std::size_t whole_blocks(std::size_t batch, const std::optional<ChainTile>& tile) {
-  const auto rows = static_cast<std::size_t>(tile ? tile->rows : 1);
-  return ceil_divide(batch, rows) * rows;
-}
-
 }  // namespace
 
 ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch)

@@ -1,5 +1,7 @@
 #include "mcdbn/training/multi_prediction.hpp"
 
+#include <algorithm>
+
 #include "mcdbn/device/units.hpp"
 #include "mcdbn/errors.hpp"
 
@@ -10,24 +12,38 @@ Matrix like(const Matrix& matrix) {
   return {matrix.device(), matrix.rows(), matrix.columns()};
 }
 
+std::optional<ChainTile> choose_tile(const Mrbm& mrbm, std::size_t batch) {
+  CrbmShape shape;
+  shape.visible = std::max(mrbm.visible(Modality::track), mrbm.visible(Modality::pose));
+  shape.hidden = mrbm.hidden();
+  return choose_chain_tile(mrbm.device(), shape, batch);
+}
+
 }  // namespace
 
-MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps,
-                                 std::size_t largest_batch)
+MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::size_t batch)
+    : MultiPrediction(mrbm, mean_field_steps, batch, choose_tile(mrbm, batch)) {}
+
+MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::size_t batch,
+                                 std::optional<ChainTile> tile)
     : mrbm_(mrbm),
       steps_(mean_field_steps),
-      drive_(mrbm.device(), largest_batch, mrbm.hidden()),
+      batch_(batch),
+      tile_(tile),
+      block_(whole_blocks(batch, tile)),
+      drive_(mrbm.device(), (tile ? 2 : 1) * block_, mrbm.hidden()),
       drive_error_(like(drive_)),
-      hidden_(mrbm.device(), steps_ * largest_batch, mrbm.hidden()),
+      hidden_(mrbm.device(), steps_ * drive_.rows(), mrbm.hidden()),
       hidden_errors_(like(hidden_)),
+      row_losses_(mrbm.device(), 1, 2 * block_),
       gradient_b_(like(mrbm.b)),
       moments_b_{like(mrbm.b), like(mrbm.b)} {
   if (steps_ == 0) throw ConfigError("mrbm.mean-field-steps must be at least 1");
   for (std::size_t m = 0; m < 2; ++m) {
     const std::size_t visible = mrbm.W[m].rows();
-    target_[m] = Matrix(mrbm.device(), largest_batch, visible);
-    values_[m] = Matrix(mrbm.device(), (steps_ + 1) * largest_batch, visible);
-    value_errors_[m] = Matrix(mrbm.device(), steps_ * largest_batch, visible);
+    target_[m] = Matrix(mrbm.device(), block_, visible);
+    values_[m] = Matrix(mrbm.device(), (steps_ + (tile ? 0 : 1)) * block_, visible);
+    value_errors_[m] = Matrix(mrbm.device(), steps_ * block_, visible);
     gradient_W_[m] = like(mrbm.W[m]);
     gradient_a_[m] = like(mrbm.a[m]);
     moments_W_[m] = {like(mrbm.W[m]), like(mrbm.W[m])};
@@ -39,8 +55,14 @@ void MultiPrediction::step(const Rows& track, const Rows& pose, const AdamRule& 
                            LossAccumulator& losses) {
   if (track.count != pose.count)
     throw ShapeError("multi-prediction: the modalities differ in rows");
-  if (track.count != drive_.rows())
+  if (track.count != batch_)
     throw ShapeError("multi-prediction: the mini-batch has another size than it was made for");
+  if (!track.index || !pose.index) throw ShapeError("multi-prediction: wants indexed codes");
+  if (tile_) {
+    fused_gradients(track, pose);
+    fused_update(rule, losses);
+    return;
+  }
   gather(track, target_[index_of(Modality::track)]);
   gather(pose, target_[index_of(Modality::pose)]);
   back_propagate(Modality::track, track.count, false, losses);

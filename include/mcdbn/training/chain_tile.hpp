@@ -25,4 +25,7 @@ std::size_t chain_local_bytes(const CrbmShape& shape, const ChainTile& tile);
 std::optional<ChainTile> choose_chain_tile(const Device& device, const CrbmShape& shape,
                                            std::size_t batch);
 
+/// The batch, filled up to whole blocks of rows; unchanged without a tile.
+std::size_t whole_blocks(std::size_t batch, const std::optional<ChainTile>& tile);
+
 }  // namespace mcdbn

@@ -1,0 +1,192 @@
+// Multi-prediction of the MRBM (eq 42) in two launches: multi_prediction runs the unrolled mean field
+// (eq 32, 33) and its back-propagation for a block of rows, multi_prediction_update.cl makes every
+// gradient and applies it.
+//
+// global: (blocks · GROUP, 2), local: (GROUP, 1). Group (i, d) carries rows i · ROWS … through the
+// direction in which modality d is absent. Compile-time: VISIBLE_0, VISIBLE_1, HIDDEN (units of the
+// modalities and shared), STEPS of mean field, ROWS, COLUMNS, GROUP (row_tile.clh).
+// Outputs are stacks of blocks of `stride` rows, block t after block t − 1; rows past `rows` have
+// errors of zero. Of modality d: codes_d [1 block], values_d and value_errors_d [STEPS blocks]. Of
+// direction d: hidden, hidden_errors [STEPS blocks at d · STEPS], drive, drive_errors [1 block at d],
+// loss[d · stride + row] = Σ cross-entropy of the row.
+
+#include "philox.clh"
+#include "activation.clh"
+#include "row_tile.clh"
+
+#ifndef VISIBLE_0
+#define VISIBLE_0 300
+#endif
+#ifndef VISIBLE_1
+#define VISIBLE_1 300
+#endif
+#ifndef HIDDEN
+#define HIDDEN 150
+#endif
+#ifndef STEPS
+#define STEPS 10
+#endif
+#define PADDED(n) (((n) + 15) / 16 * 16)
+#define LARGER_LD (PADDED(VISIBLE_0) > PADDED(VISIBLE_1) ? PADDED(VISIBLE_0) : PADDED(VISIBLE_1))
+#define H_LD PADDED(HIDDEN)
+
+// sum ∘= y · (1 − y), the derivative of the sigmoid whose value is y
+INLINE void through_sigmoid(floatN sum[ROWS][COLUMNS], const int count, global const float* y,
+                            const int ld, int column) {
+#pragma unroll
+  for (int r = 0; r < ROWS; ++r)
+#pragma unroll
+    for (int c = 0; c < count; ++c) {
+      const floatN value = loadN(r * ld + column + c * VEC, y);
+      sum[r][c] *= value * (1.0f - value);
+    }
+}
+
+INLINE void clear_tile(floatN sum[ROWS][COLUMNS], const int count) {
+#pragma unroll
+  for (int r = 0; r < ROWS; ++r)
+#pragma unroll
+    for (int c = 0; c < count; ++c) sum[r][c] = (floatN)(0.0f);
+}
+
+INLINE void add_tile(floatN sum[ROWS][COLUMNS], const int count, global const float* x,
+                     const int ld, int column) {
+#pragma unroll
+  for (int r = 0; r < ROWS; ++r)
+#pragma unroll
+    for (int c = 0; c < count; ++c) sum[r][c] += loadN(r * ld + column + c * VEC, x);
+}
+
+// − Σ t · log y + (1 − t) · log(1 − y) of one row, y kept away from 0 and 1; a NaN stays one.
+INLINE float row_cross_entropy(global const float* target, local const float* prediction,
+                               const int units, const int ld) {
+  floatN sum = (floatN)(0.0f);
+  for (int column = 0; column < ld; column += VEC) {
+    const floatN t = loadN(column, target);
+    floatN y = loadN(column, prediction);
+    y = y < (floatN)(1e-7f) ? (floatN)(1e-7f) : y;
+    y = y > (floatN)(1.0f - 1e-7f) ? (floatN)(1.0f - 1e-7f) : y;
+    sum -= column_mask(column, units) * (t * log(y) + (1.0f - t) * log(1.0f - y));
+  }
+  return sum_lanes(sum);
+}
+
+// One direction, from a modality of P units to one of Q. The pointers to outputs are at the block's
+// first row.
+INLINE void predict(const int P, const int Q, local float* x, local float* h, int row0, int rows,
+                    int stride, global const float* frames_p, global const int* index_p, int shift_p,
+                    global const float* frames_q, global const int* index_q, int shift_q,
+                    global const float* w_p, global const float* w_q, global const float* wt_q,
+                    global const float* a_q, global const float* b, global float* codes_p,
+                    global float* values, global float* value_errors, global float* hidden,
+                    global float* hidden_errors, global float* drive, global float* drive_errors,
+                    global float* loss) {
+  const int P_LD = PADDED(P), Q_LD = PADDED(Q);
+  const int value_block = stride * Q_LD, hidden_block = stride * H_LD;
+  floatN sum[ROWS][COLUMNS];
+  int target[ROWS];
+  for (int r = 0; r < ROWS; ++r) {
+    const int row = min(row0 + r, rows - 1);
+    target[r] = (index_q[row] + shift_q) * Q_LD;
+    for (int column = get_local_id(0) * VEC; column < P_LD; column += GROUP * VEC) {
+      const floatN code = loadN((index_p[row] + shift_p) * P_LD + column, frames_p);
+      storeN(code, r * P_LD + column, codes_p);
+      storeN(code, r * P_LD + column, x);
+    }
+  }
+  SYNC();
+
+  // Forward; the absent modality starts from zeros, so that the first pass is the drive alone.
+  FOR_TILES(H_LD, {
+    load_tile(sum, count, b, 0, column);
+    add_products(sum, count, x, P_LD, P, w_p, H_LD, column);
+    store_tile(sum, count, drive, H_LD, column);
+  });
+  for (int t = 0; t < STEPS; ++t) {
+    FOR_TILES(H_LD, {
+      load_tile(sum, count, drive, H_LD, column);
+      if (t > 0) add_products(sum, count, x, Q_LD, Q, w_q, H_LD, column);
+      apply_sigmoid(sum, count, column, HIDDEN);
+      store_tile(sum, count, hidden + t * hidden_block, H_LD, column);
+      keep_tile(sum, count, h, H_LD, column);
+    });
+    SYNC();
+    FOR_TILES(Q_LD, {
+      load_tile(sum, count, a_q, 0, column);
+      add_products(sum, count, h, H_LD, HIDDEN, wt_q, Q_LD, column);
+      apply_sigmoid(sum, count, column, Q);
+      store_tile(sum, count, values + t * value_block, Q_LD, column);
+      keep_tile(sum, count, x, Q_LD, column);
+    });
+    SYNC();
+  }
+
+  // The cross-entropy's error before the sigmoid is prediction − target.
+  const float mean = 1.0f / (float)rows;
+  for (int r = get_local_id(0); r < ROWS && row0 + r < rows; r += GROUP)
+    loss[r] = row_cross_entropy(frames_q + target[r], x + r * Q_LD, Q, Q_LD);
+  SYNC();
+  for (int r = 0; r < ROWS; ++r)
+    for (int column = get_local_id(0) * VEC; column < Q_LD; column += GROUP * VEC) {
+      const int at = r * Q_LD + column;
+      const floatN error = (row0 + r < rows ? mean : 0.0f) *
+                           (loadN(at, x) - loadN(target[r] + column, frames_q));
+      storeN(error, (STEPS - 1) * value_block + at, value_errors);
+      storeN(error, at, x);
+    }
+  SYNC();
+
+  for (int t = STEPS - 1; t >= 0; --t) {
+    FOR_TILES(H_LD, {
+      clear_tile(sum, count);
+      add_products(sum, count, x, Q_LD, Q, w_q, H_LD, column);
+      through_sigmoid(sum, count, hidden + t * hidden_block, H_LD, column);
+      store_tile(sum, count, hidden_errors + t * hidden_block, H_LD, column);
+      keep_tile(sum, count, h, H_LD, column);
+      if (t < STEPS - 1) add_tile(sum, count, drive_errors, H_LD, column);
+      store_tile(sum, count, drive_errors, H_LD, column);
+    });
+    SYNC();
+    if (t == 0) break;
+    FOR_TILES(Q_LD, {
+      clear_tile(sum, count);
+      add_products(sum, count, h, H_LD, HIDDEN, wt_q, Q_LD, column);
+      through_sigmoid(sum, count, values + (t - 1) * value_block, Q_LD, column);
+      store_tile(sum, count, value_errors + (t - 1) * value_block, Q_LD, column);
+      keep_tile(sum, count, x, Q_LD, column);
+    });
+    SYNC();
+  }
+}
+
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
+    global const float* frames_0, global const int* index_0, int first_0, int shift_0,
+    global const float* frames_1, global const int* index_1, int first_1, int shift_1, int rows,
+    int stride, global const float* w_0, global const float* wt_0, global const float* a_0,
+    global const float* w_1, global const float* wt_1, global const float* a_1,
+    global const float* b, global float* codes_0, global float* values_0,
+    global float* value_errors_0, global float* codes_1, global float* values_1,
+    global float* value_errors_1, global float* hidden, global float* hidden_errors,
+    global float* drive, global float* drive_errors, global float* loss) {
+  local float x[ROWS * LARGER_LD];
+  local float h[ROWS * H_LD];
+  const int row0 = get_group_id(0) * ROWS, absent = get_group_id(1);
+  const int at_0 = row0 * PADDED(VISIBLE_0), at_1 = row0 * PADDED(VISIBLE_1);
+  const int at_stack = (absent * STEPS * stride + row0) * H_LD;
+  const int at_drive = (absent * stride + row0) * H_LD;
+  index_0 += first_0;
+  index_1 += first_1;
+  hidden += at_stack;
+  hidden_errors += at_stack;
+  drive += at_drive;
+  drive_errors += at_drive;
+  loss += absent * stride + row0;
+  if (absent == 0)
+    predict(VISIBLE_1, VISIBLE_0, x, h, row0, rows, stride, frames_1, index_1, shift_1, frames_0,
+            index_0, shift_0, w_1, w_0, wt_0, a_0, b, codes_1 + at_1, values_0 + at_0,
+            value_errors_0 + at_0, hidden, hidden_errors, drive, drive_errors, loss);
+  else
+    predict(VISIBLE_0, VISIBLE_1, x, h, row0, rows, stride, frames_0, index_0, shift_0, frames_1,
+            index_1, shift_1, w_0, w_1, wt_1, a_1, b, codes_0 + at_0, values_1 + at_1,
+            value_errors_1 + at_1, hidden, hidden_errors, drive, drive_errors, loss);
+}
