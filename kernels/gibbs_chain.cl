@@ -18,6 +18,7 @@
 #include "activation.clh"
 #include "sampling.clh"
 #include "row_tile.clh"
+#include "row_draws.clh"
 
 #ifndef VISIBLE
 #define VISIBLE 96
@@ -41,21 +42,6 @@ INLINE void take_frames(local float* v, global const float* frames, const int at
     for (int r = 0; r < ROWS; ++r)
       storeN(loadN((at[r] - back) * V_LD + column, frames), r * V_LD + column, v);
   SYNC();
-}
-
-// Probabilities in columns column … column + VEC of s become draws (eq 7).
-INLINE void draw_units(local float* s, int column, int row0, uint4 random) {
-  for (int group = row0 / 4; group <= (row0 + ROWS - 1) / 4; ++group) {
-    uintN words[4];
-    draw_four_rows(words, column, (uint)group, random);
-#pragma unroll
-    for (int word = 0; word < 4; ++word) {
-      const int r = 4 * group + word - row0;
-      if (r < 0 || r >= ROWS) continue;
-      const floatN p = loadN(r * H_LD + column, s);
-      storeN(sample_units(p, words, word), r * H_LD + column, s);
-    }
-  }
 }
 
 // change = data − end, where `end` is this tile
@@ -146,7 +132,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
         if (step == 0) store_tile(sum, count, hidden_data, H_LD, column);
         keep_tile(sum, count, s, H_LD, column);
         for (int c = 0; c < count; ++c)
-          draw_units(s, column + c * VEC, row0, (uint4)(random.xyz, random.w + (uint)step));
+          draw_rows(s, H_LD, column + c * VEC, row0, 1.0f,
+                    (uint4)(random.xyz, random.w + (uint)step));
       }
     });
     SYNC();

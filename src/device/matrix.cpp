@@ -84,6 +84,18 @@ void Matrix::copy_from(const Matrix& other) {
   });
 }
 
+void Matrix::copy_rows_from(const Matrix& other, std::size_t first, std::size_t count,
+                            std::size_t to) {
+  require_shape(other.columns_ == columns_ && first + count <= other.rows_ && to + count <= rows_,
+                "copy: the rows do not fit");
+  if (count == 0 || columns_ == 0) return;
+  const std::size_t row_bytes = stride() * sizeof(float);
+  checked("copying rows", [&] {
+    device_->queue().enqueueCopyBuffer(other.buffer_, buffer_, first * row_bytes, to * row_bytes,
+                                       count * row_bytes);
+  });
+}
+
 IndexBuffer::IndexBuffer(Device& device, const std::vector<std::int32_t>& values)
     : size_(values.size()) {
   checked("allocating an index", [&] {

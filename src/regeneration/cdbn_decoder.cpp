@@ -7,8 +7,6 @@
 namespace mcdbn {
 namespace {
 
-constexpr std::uint16_t kDecoderStream = 200;
-
 /// @param row [1 x n]  @return [rows x n]
 Matrix filled_with_row(const Matrix& row, std::size_t rows) {
   return Matrix::from_host(row.device(),
@@ -32,26 +30,34 @@ CdbnDecoder::CdbnDecoder(const Cdbn& cdbn, const Matrix& code, std::size_t seque
     states_.push_back(filled_with_row(layer.visible_mean, code.rows()));
 }
 
-void CdbnDecoder::decode(std::size_t first, std::size_t last, const RegenerationOptions& options) {
+void CdbnDecoder::decode(std::size_t first, std::size_t last, const RegenerationOptions& options,
+                         bool fused) {
   for (const Crbm& layer : cdbn_.layers)
     if (first < layer.shape().order) throw ShapeError("decoder: the first frame has no history");
   const bool sampled = options.temperature > 0.0 && options.gibbs_steps > 0;
   last = std::min(last, frames_);
-  if (!sampled) drive_top_layer(first, last);
+  if (first >= last) return;
+  const auto tiles = fused ? fused_tiles(sampled) : std::nullopt;
+  if (tiles) {
+    fused_decode(first, last, options, *tiles);
+    return;
+  }
+  if (!sampled) drive_layer(states_.size() - 1, first, last);
   for (std::size_t frame = first; frame < last; ++frame) {
     if (sampled) sample_top_layer(frame, options);
     down_pass(frame, !sampled);
   }
 }
 
-void CdbnDecoder::drive_top_layer(std::size_t first, std::size_t last) {
-  const Crbm& top = cdbn_.layers.back();
+void CdbnDecoder::drive_layer(std::size_t layer, std::size_t first, std::size_t last) {
+  const Crbm& crbm = cdbn_.layers[layer];
+  const bool is_top = layer + 1 == cdbn_.layers.size();
   GemmOptions drive;
-  drive.bias = &top.a;
+  drive.bias = &crbm.a;
   for (std::size_t i = 0; i < sequences_; ++i) {
     const std::size_t begin = i * frames_ + first;
-    gemm(Rows(code_, begin, last - first), top.W_transposed,
-         Rows(states_.back(), begin, last - first), drive);
+    gemm(Rows(is_top ? code_ : states_[layer + 1], begin, last - first), crbm.W_transposed,
+         Rows(states_[layer], begin, last - first), drive);
   }
 }
 
@@ -90,7 +96,7 @@ void CdbnDecoder::sample_top_layer(std::size_t frame, const RegenerationOptions&
   const Rows below_sample(below_sample_), top_sample(top_sample_);
   top.dynamic_visible_bias(state, below_bias_);
   top.dynamic_hidden_bias(state, top_bias_);
-  RandomKey key{options.seed, static_cast<std::uint32_t>(frame), kDecoderStream, 0};
+  RandomKey key{options.seed, static_cast<std::uint32_t>(frame), kStream, 0};
   GemmOptions down, up;
   down.bias = &below_bias_;
   down.activation = activation_of(top);

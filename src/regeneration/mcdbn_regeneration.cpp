@@ -19,6 +19,16 @@ MatrixF extended(const MatrixF& track, Eigen::Index lead, Eigen::Index frames) {
   return result;
 }
 
+/// Each sequence `copies` times in a row. @param code [sequences·frames x dimension]
+Matrix repeated(const Matrix& code, std::size_t sequences, std::size_t copies) {
+  if (copies == 1) return code;
+  Matrix result(code.device(), code.rows() * copies, code.columns());
+  const std::size_t frames = code.rows() / sequences;
+  for (std::size_t i = 0; i < sequences * copies; ++i)
+    result.copy_rows_from(code, i / copies * frames, frames, i * frames);
+  return result;
+}
+
 /// The 3D code of every frame from the 2D code `look_ahead` frames later (eq 32, 33).
 Matrix infer_pose_code(const Mcdbn& network, const Sequences& track_code) {
   Matrix code(track_code.values.device(), track_code.values.rows(), network.pose.code_dimension());
@@ -50,21 +60,22 @@ std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>
   const std::size_t frames = lead + longest + network.look_ahead;
 
   std::vector<MatrixF> sequences;
-  for (const MatrixF& track : tracks) {
-    const MatrixF whole =
-        extended(complete_track(network.track, track), static_cast<Eigen::Index>(lead),
-                 static_cast<Eigen::Index>(frames));
-    sequences.insert(sequences.end(), options.samples, whole);
-  }
+  for (const MatrixF& track : tracks)
+    sequences.push_back(extended(complete_track(network.track, track),
+                                 static_cast<Eigen::Index>(lead),
+                                 static_cast<Eigen::Index>(frames)));
   Device& device = network.mrbm.device();
   const Sequences track_code = network.track.up_pass(Sequences::from_host(device, sequences));
-  const Matrix code = infer_pose_code(network, track_code);
-  CdbnDecoder decoder(network.pose, code, sequences.size());
+  // A track's samples differ in the decoder only.
+  const std::size_t decoded = sequences.size() * options.samples;
+  const Matrix code =
+      repeated(infer_pose_code(network, track_code), sequences.size(), options.samples);
+  CdbnDecoder decoder(network.pose, code, decoded);
   decoder.decode(start, frames - network.look_ahead, options);
 
   const MatrixF visible = decoder.visible().to_host();
   std::vector<MatrixF> result;
-  for (std::size_t i = 0; i < sequences.size(); ++i)
+  for (std::size_t i = 0; i < decoded; ++i)
     result.emplace_back(visible.middleRows(static_cast<Eigen::Index>(i * frames + lead),
                                            tracks[i / options.samples].rows()));
   return result;

@@ -1,5 +1,7 @@
 #include "mcdbn/training/contrastive_divergence.hpp"
 
+#include <fmt/format.h>
+
 #include "mcdbn/device/kernel_arguments.hpp"
 #include "mcdbn/device/units.hpp"
 
@@ -12,12 +14,19 @@ Matrix like(const Matrix& matrix) {
 
 }  // namespace
 
+std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& shape,
+                                         std::size_t batch) {
+  return choose_row_tile(
+      device, padded(shape.visible) + padded(shape.hidden), batch,
+      fmt::format("Gibbs chain of {} visible, {} hidden units", shape.visible, shape.hidden));
+}
+
 ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch)
     : ContrastiveDivergence(crbm, largest_batch,
                             choose_chain_tile(crbm.device(), crbm.shape(), largest_batch)) {}
 
 ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch,
-                                             std::optional<ChainTile> tile)
+                                             std::optional<RowTile> tile)
     : crbm_(crbm),
       tile_(tile),
       visible_data_(crbm.device(), whole_blocks(largest_batch, tile), crbm.shape().visible),

@@ -6,7 +6,7 @@
 namespace mcdbn {
 namespace {
 
-Defines shape_defines(const CrbmShape& shape, const ChainTile& tile) {
+Defines shape_defines(const CrbmShape& shape, const RowTile& tile) {
   return {{"VEC", tile.vector_width},
           {"VISIBLE", to_int(shape.visible)},
           {"HIDDEN", to_int(shape.hidden)},
@@ -22,7 +22,7 @@ const cl::Buffer& buffer_of(const Matrix& matrix, const Matrix& substitute) {
   return matrix.empty() ? substitute.buffer() : matrix.buffer();
 }
 
-std::size_t update_work_items(const CrbmShape& shape, const ChainTile& tile) {
+std::size_t update_work_items(const CrbmShape& shape, const RowTile& tile) {
   const std::size_t visible = padded(shape.visible), hidden = padded(shape.hidden);
   const auto vec = static_cast<std::size_t>(tile.vector_width);
   const auto rows = static_cast<std::size_t>(tile.update_rows);

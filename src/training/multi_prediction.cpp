@@ -4,6 +4,7 @@
 
 #include "mcdbn/device/units.hpp"
 #include "mcdbn/errors.hpp"
+#include "mcdbn/training/contrastive_divergence.hpp"
 
 namespace mcdbn {
 namespace {
@@ -12,7 +13,7 @@ Matrix like(const Matrix& matrix) {
   return {matrix.device(), matrix.rows(), matrix.columns()};
 }
 
-std::optional<ChainTile> choose_tile(const Mrbm& mrbm, std::size_t batch) {
+std::optional<RowTile> choose_tile(const Mrbm& mrbm, std::size_t batch) {
   CrbmShape shape;
   shape.visible = std::max(mrbm.visible(Modality::track), mrbm.visible(Modality::pose));
   shape.hidden = mrbm.hidden();
@@ -25,7 +26,7 @@ MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::
     : MultiPrediction(mrbm, mean_field_steps, batch, choose_tile(mrbm, batch)) {}
 
 MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::size_t batch,
-                                 std::optional<ChainTile> tile)
+                                 std::optional<RowTile> tile)
     : mrbm_(mrbm),
       steps_(mean_field_steps),
       batch_(batch),

@@ -197,7 +197,7 @@ void check_parameter(const char* name, const MatrixF& got, const MatrixD& before
 }
 
 /// Two mini-batches in a row, so that the momentum counts, each from the device's own parameters.
-void check_against_reference(Device& device, const Case& test, std::optional<ChainTile> tile) {
+void check_against_reference(Device& device, const Case& test, std::optional<RowTile> tile) {
   const Problem problem(test);
   const CdRule rule = rule_of(test.gibbs_steps);
   MomentumRule bias_rule = rule.W;
@@ -251,7 +251,7 @@ struct TrainedBits {
   }
 };
 
-TrainedBits train_two(Device& device, const Case& test, std::optional<ChainTile> tile,
+TrainedBits train_two(Device& device, const Case& test, std::optional<RowTile> tile,
                       std::uint64_t seed = 42) {
   const Problem problem(test);
   const Matrix frames = Matrix::from_host(device, problem.frames);
@@ -291,10 +291,10 @@ TEST_CASE("every tile of the fused kernels gives the same bits") {
     const auto chosen = choose_chain_tile(device, kOddCase.shape, kOddCase.batch);
     REQUIRE(chosen);
     const TrainedBits want = train_two(device, kOddCase, *chosen);
-    for (const ChainTile& tile :
-         {ChainTile{16, 10, 1, 1, 16}, ChainTile{16, 7, 2, 1, 8}, ChainTile{8, 14, 1, 1, 4},
-          ChainTile{16, 1, 1, 1, 16}, ChainTile{4, 4, 1, 32, 4}, ChainTile{1, 3, 1, 64, 16},
-          ChainTile{8, 5, 2, 4, 8}}) {
+    for (const RowTile& tile :
+         {RowTile{16, 10, 1, 1, 16}, RowTile{16, 7, 2, 1, 8}, RowTile{8, 14, 1, 1, 4},
+          RowTile{16, 1, 1, 1, 16}, RowTile{4, 4, 1, 32, 4}, RowTile{1, 3, 1, 64, 16},
+          RowTile{8, 5, 2, 4, 8}}) {
       CAPTURE(tile.vector_width);
       CAPTURE(tile.rows);
       CAPTURE(tile.group);
@@ -307,7 +307,7 @@ TEST_CASE("every tile of the fused kernels gives the same bits") {
 TEST_CASE("same seed, same bits; another seed, others") {
   on_every_device([](Device& device) {
     const auto tile = choose_chain_tile(device, kOddCase.shape, kOddCase.batch);
-    for (const auto& form : {tile, std::optional<ChainTile>()}) {
+    for (const auto& form : {tile, std::optional<RowTile>()}) {
       const TrainedBits first = train_two(device, kOddCase, form);
       CHECK(train_two(device, kOddCase, form) == first);
       CHECK_FALSE(train_two(device, kOddCase, form, 43) == first);

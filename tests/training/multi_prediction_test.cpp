@@ -4,6 +4,7 @@
 
 #include "device/every_device.hpp"
 #include "mcdbn/errors.hpp"
+#include "mcdbn/training/contrastive_divergence.hpp"
 #include "reference/error_bounds.hpp"
 #include "reference/mrbm_reference.hpp"
 #include "reference/update_reference.hpp"
@@ -166,7 +167,7 @@ struct Step {
   std::uint64_t launches = 0;
 };
 
-Step run_step(Device& device, const Problem& problem, const std::optional<ChainTile>& tile,
+Step run_step(Device& device, const Problem& problem, const std::optional<RowTile>& tile,
               const AdamRule& rule, int count = 1) {
   const Matrix track = Matrix::from_host(device, problem.frames[0]);
   const Matrix pose = Matrix::from_host(device, problem.frames[1]);
@@ -189,13 +190,12 @@ Step run_step(Device& device, const Problem& problem, const std::optional<ChainT
   return step;
 }
 
-std::optional<ChainTile> tile_for(Device& device, const Case& test) {
+std::optional<RowTile> tile_for(Device& device, const Case& test) {
   const CrbmShape shape{std::max(test.track, test.pose), test.hidden, 0, VisibleKind::binary};
   return choose_chain_tile(device, shape, test.batch);
 }
 
-void check_against_reference(Device& device, const Case& test,
-                             const std::optional<ChainTile>& tile) {
+void check_against_reference(Device& device, const Case& test, const std::optional<RowTile>& tile) {
   const Problem problem(test);
   const reference::Mrbm model = problem.model();
   const std::array<MatrixD, 2> batch{problem.batch(0), problem.batch(1)};
@@ -251,9 +251,9 @@ TEST_CASE("every tile of fused multi-prediction gives the same bits, and so does
   on_every_device([](Device& device) {
     const Problem problem(kOddCase);
     const Step want = run_step(device, problem, tile_for(device, kOddCase), {}, 3);
-    for (const ChainTile& tile :
-         {ChainTile{16, 10, 1, 1, 16}, ChainTile{16, 7, 2, 1, 8}, ChainTile{8, 14, 1, 1, 4},
-          ChainTile{4, 4, 1, 32, 4}, ChainTile{1, 3, 1, 64, 16}}) {
+    for (const RowTile& tile :
+         {RowTile{16, 10, 1, 1, 16}, RowTile{16, 7, 2, 1, 8}, RowTile{8, 14, 1, 1, 4},
+          RowTile{4, 4, 1, 32, 4}, RowTile{1, 3, 1, 64, 16}}) {
       CAPTURE(tile.vector_width);
       CAPTURE(tile.rows);
       check_against_reference(device, kOddCase, tile);

@@ -38,6 +38,8 @@ class Matrix {
   void set_zero();
   /// Enqueues a copy of `other`, which has the same shape. @throws ShapeError
   void copy_from(const Matrix& other);
+  /// Enqueues a copy of `count` rows of `other`, which has as many columns. @throws ShapeError
+  void copy_rows_from(const Matrix& other, std::size_t first, std::size_t count, std::size_t to);
 
  private:
   Device* device_ = nullptr;

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "mcdbn/device/losses.hpp"
+#include "mcdbn/device/row_tile.hpp"
 #include "mcdbn/device/update.hpp"
 #include "mcdbn/model/crbm.hpp"
-#include "mcdbn/training/chain_tile.hpp"
 
 namespace mcdbn {
 
@@ -13,6 +13,11 @@ struct CdRule {
   MomentumRule W;  ///< the biases take the same without decay
   MomentumRule A, B;
 };
+
+/// The tile for CD-k, and for multi-prediction with the larger modality's units: a block's local
+/// memory holds its visible and its hidden units. Unset where they do not fit (choose_row_tile).
+std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& shape,
+                                         std::size_t batch);
 
 /// Contrastive divergence for one CRBM or RBM (Algorithm 2 with its errata: the data are clamped
 /// once, then k Gibbs steps, then one update; DESIGN section 2). Hidden units are sampled,
@@ -24,7 +29,7 @@ class ContrastiveDivergence {
  public:
   ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch);
   /// With a tile of the caller's, or without the fused kernels.
-  ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch, std::optional<ChainTile> tile);
+  ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch, std::optional<RowTile> tile);
 
   /// One mini-batch: enqueues and returns. The draws are those of `key` with phase = Gibbs step.
   /// Adds the mean squared reconstruction error of a unit to `losses` slot 0.
@@ -32,7 +37,7 @@ class ContrastiveDivergence {
   void step(const Rows& rows, const CdRule& rule, const RandomKey& key, LossAccumulator& losses);
 
   /// Unset where mini-batches are composed.
-  const std::optional<ChainTile>& tile() const { return tile_; }
+  const std::optional<RowTile>& tile() const { return tile_; }
 
  private:
   void composed_step(const Rows& rows, const CdRule& rule, const RandomKey& key,
@@ -45,7 +50,7 @@ class ContrastiveDivergence {
   void fused_update(const Rows& rows, const CdRule& rule, LossAccumulator& losses);
 
   Crbm& crbm_;
-  std::optional<ChainTile> tile_;
+  std::optional<RowTile> tile_;
   // Dynamic biases while the chain runs; the fused chain leaves data − reconstruction there.
   Matrix visible_data_, visible_, visible_bias_;  // [batch x visible]
   Matrix hidden_data_, hidden_, hidden_bias_;     // [batch x hidden]

@@ -2,9 +2,9 @@
 
 #include "mcdbn/device/losses.hpp"
 #include "mcdbn/device/program.hpp"
+#include "mcdbn/device/row_tile.hpp"
 #include "mcdbn/device/update.hpp"
 #include "mcdbn/model/mrbm.hpp"
-#include "mcdbn/training/chain_tile.hpp"
 
 namespace mcdbn {
 
@@ -19,7 +19,7 @@ class MultiPrediction {
   MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::size_t batch);
   /// With a tile of the caller's, or without the fused kernels.
   MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::size_t batch,
-                  std::optional<ChainTile> tile);
+                  std::optional<RowTile> tile);
 
   /// One mini-batch with its Adam update: enqueues and returns. Adds to `losses` the mean
   /// cross-entropy of a unit: slot 0 for pose from track, slot 1 for track from pose.
@@ -41,7 +41,7 @@ class MultiPrediction {
 
   Mrbm& mrbm_;
   std::size_t steps_, batch_;
-  std::optional<ChainTile> tile_;
+  std::optional<RowTile> tile_;
   std::size_t block_;  ///< rows of one mean-field step in the stacks: the batch, or whole blocks
   int update_count_ = 0;
   std::array<Matrix, 2> target_;                 // [block x visible]

@@ -140,7 +140,7 @@ class Regeneration:
 
     @torch.no_grad()
     def __call__(self):
-        code = self.clip.expand(self.samples, -1, -1)
+        code = self.clip[None]  # the samples differ in the down-pass only
         for layer in self.track:
             code = self.up(layer, code)
         drive = code[:, self.AHEAD:] @ self.W[0] + self.b
@@ -148,6 +148,7 @@ class Regeneration:
         for step in range(5):
             pose_code = torch.sigmoid(hidden @ self.W[1].t() + self.a)
             hidden = torch.sigmoid(drive + pose_code @ self.W[1])
+        pose_code = pose_code.expand(self.samples, -1, -1)
         low, top = self.pose
         history_top = torch.zeros(self.samples, ORDER, HIDDEN)
         history_low = torch.zeros(self.samples, ORDER, self.POSE)

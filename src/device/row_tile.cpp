@@ -1,0 +1,55 @@
+#include "mcdbn/device/row_tile.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "mcdbn/device/kernel_arguments.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// Blocks are dealt out whole: what counts is how long the busiest compute unit works. A block
+/// costs its rows plus what does not depend on them (loading weights, launching).
+double busiest_unit_cost(std::size_t batch, std::size_t rows, std::size_t units) {
+  constexpr double kBlockOverheadRows = 1.5;
+  const std::size_t blocks = ceil_divide(ceil_divide(batch, rows), units);
+  return static_cast<double>(blocks) * (static_cast<double>(rows) + kBlockOverheadRows);
+}
+
+/// Vector registers of a CPU that hold a tile's sums: few rows take more columns, so that enough
+/// fma() are under way and weights are read in longer pieces.
+constexpr int kAccumulators = 24;
+
+}  // namespace
+
+std::optional<RowTile> choose_row_tile(const Device& device, std::size_t floats_per_row,
+                                       std::size_t batch, const std::string& what) {
+  const DeviceInfo& info = device.info();
+  const std::size_t row_bytes = floats_per_row * sizeof(float);
+  const std::size_t fitting = info.local_memory_bytes / std::max<std::size_t>(row_bytes, 1);
+  if (fitting == 0) {
+    spdlog::debug(
+        "{}: one row takes {} bytes of local memory, the device has {}; composed kernels instead",
+        what, row_bytes, info.local_memory_bytes);
+    return std::nullopt;
+  }
+  RowTile tile;
+  tile.vector_width = vector_width(device);
+  tile.group = info.is_gpu ? 64 : 1;
+  const std::size_t largest = std::min({fitting, batch, std::size_t{info.is_gpu ? 4U : 14U}});
+  const std::size_t units = std::max(1U, info.compute_units);
+  std::size_t best = std::max<std::size_t>(largest, 1);
+  for (std::size_t rows = best; rows >= 1; --rows)
+    if (busiest_unit_cost(batch, rows, units) < busiest_unit_cost(batch, best, units)) best = rows;
+  tile.rows = to_int(best);
+  if (!info.is_gpu) tile.columns = std::clamp(kAccumulators / tile.rows, 1, 8);
+  return tile;
+}
+
+std::size_t whole_blocks(std::size_t batch, const std::optional<RowTile>& tile) {
+  const auto rows = static_cast<std::size_t>(tile ? tile->rows : 1);
+  return ceil_divide(batch, rows) * rows;
+}
+
+}  // namespace mcdbn
