@@ -50,13 +50,14 @@ INLINE void load_frame(floatN sum[ROWS][COLUMNS], const int count, global const 
       sum[r][c] = loadN((start[r] + frame) * V_LD + column + c * VEC, x);
 }
 
+// Only the first `rows` rows: those past the last sequence repeat it, with other draws.
 INLINE void store_frame(floatN sum[ROWS][COLUMNS], const int count, global float* x,
-                        const int start[ROWS], int frame, int column) {
+                        const int start[ROWS], int rows, int frame, int column) {
 #pragma unroll
   for (int r = 0; r < ROWS; ++r)
 #pragma unroll
     for (int c = 0; c < count; ++c)
-      storeN(sum[r][c], (start[r] + frame) * V_LD + column + c * VEC, x);
+      if (r < rows) storeN(sum[r][c], (start[r] + frame) * V_LD + column + c * VEC, x);
 }
 
 // sum += history · weights, the oldest frame first (eq 16, 17)
@@ -72,9 +73,9 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_means(
     global float* state, int sequences, int frames, int first, int last,
     global const float* weights_a) {
   local float ring[ORDER * ROWS * V_LD];
+  const int row0 = get_group_id(0) * ROWS;
   int start[ROWS];
-  for (int r = 0; r < ROWS; ++r)
-    start[r] = min((int)get_group_id(0) * ROWS + r, sequences - 1) * frames;
+  for (int r = 0; r < ROWS; ++r) start[r] = min(row0 + r, sequences - 1) * frames;
   for (int frame = first - ORDER; frame < first; ++frame)
     take_rows(ring + SLOT(frame), V_LD, state, start, frame);
   SYNC();
@@ -86,7 +87,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_means(
 #if !GAUSSIAN
       apply_sigmoid(sum, count, column, VISIBLE);
 #endif
-      store_frame(sum, count, state, start, frame, column);
+      store_frame(sum, count, state, start, sequences - row0, frame, column);
     });
     SYNC();
     take_rows(ring + SLOT(frame), V_LD, state, start, frame);
@@ -153,7 +154,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_samples(
       load_tile(sum, count, bias_v, V_LD, column);
       add_products(sum, count, h, H_LD, HIDDEN, w_transposed, V_LD, column);
       apply_sigmoid(sum, count, column, VISIBLE);
-      store_frame(sum, count, state, start, frame, column);
+      store_frame(sum, count, state, start, sequences - row0, frame, column);
     });
     SYNC();
     take_rows(ring + SLOT(frame), V_LD, state, start, frame);
