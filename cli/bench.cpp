@@ -2,10 +2,10 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 
 #include "bench_steps.hpp"
+#include "bench_tune.hpp"
 #include "commands.hpp"
 #include "mcdbn/device/peak.hpp"
 
@@ -13,46 +13,26 @@ namespace mcdbn::cli {
 namespace {
 
 struct BenchOptions {
+  bool tune = false;
   std::vector<std::string> layers;
   double seconds = 1.0;
 };
 
-double elapsed_s(const std::chrono::steady_clock::time_point& start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// Seconds of `count` runs, enqueued one after another as an epoch does, a run.
-double time_runs_s(Device& device, const BenchStep& step, std::size_t count) {
-  device.finish();
-  const auto start = std::chrono::steady_clock::now();
-  for (std::size_t i = 0; i < count; ++i) step.run();
-  device.finish();
-  return elapsed_s(start) / static_cast<double>(count);
-}
-
 /// Adds the median time, the launches and what follows from them to the step's description.
 nlohmann::ordered_json measure(Device& device, const BenchStep& step, double seconds,
                                double peak_gflops) {
-  constexpr double kSampleS = 0.01;  // long enough that the clock and the queue's end do not count
-  constexpr std::size_t kFewestSamples = 5;
   step.run();  // builds programs
   const auto launches_before = device.launch_count();
-  const double once_s = time_runs_s(device, step, 1);
+  step.run();
   const auto launches = device.launch_count() - launches_before;
-  const auto runs = static_cast<std::size_t>(std::clamp(kSampleS / once_s, 1.0, 1000.0));
-  std::vector<double> samples_s;
-  const auto start = std::chrono::steady_clock::now();
-  while (samples_s.size() < kFewestSamples || elapsed_s(start) < seconds)
-    samples_s.push_back(time_runs_s(device, step, runs));
-  const auto middle = samples_s.begin() + static_cast<std::ptrdiff_t>(samples_s.size() / 2);
-  std::nth_element(samples_s.begin(), middle, samples_s.end());
+  const double median_s = median_time_s(device, step, seconds);
 
   nlohmann::ordered_json result = step.what;
-  result["median_us"] = *middle * 1e6;
+  result["median_us"] = median_s * 1e6;
   result["launches"] = launches;
   if (step.flops > 0) {
-    result["gflops"] = step.flops / *middle * 1e-9;
-    result["percent_of_peak"] = 100.0 * step.flops / *middle * 1e-9 / peak_gflops;
+    result["gflops"] = step.flops / median_s * 1e-9;
+    result["percent_of_peak"] = 100.0 * step.flops / median_s * 1e-9 / peak_gflops;
   }
   return result;
 }
@@ -78,6 +58,7 @@ void print_line(const BenchStep& step, const nlohmann::ordered_json& result) {
 
 void run_bench(const CommandContext& context, const BenchOptions& options) {
   Device device = Device::open({context.platform, context.device});
+  if (options.tune) tune(device, options.seconds);
   const double peak_gflops = measure_peak_gflops(device);
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   if (!context.json)
@@ -114,6 +95,8 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
                    "regeneration")
       ->check(CLI::IsMember({"gaussian_crbm", "binary_crbm", "mrbm", "gemm", "regeneration"}))
       ->type_name("LAYER");
+  command->add_flag("--tune", options->tune,
+                    "First find what suits the device best and keep it in the user's cache folder");
   command->add_option("--seconds", options->seconds, "Time for each measurement")
       ->check(CLI::Range(0.0, 600.0))
       ->capture_default_str();

@@ -1,5 +1,7 @@
 #include "bench_steps.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <memory>
 
 #include "mcdbn/regeneration/mcdbn_regeneration.hpp"
@@ -152,6 +154,30 @@ BenchStep regeneration_step(Device& device, double temperature) {
 }
 
 }  // namespace
+
+double median_time_s(Device& device, const BenchStep& step, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const auto since_s = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const auto time_s = [&](std::size_t runs) {
+    device.finish();
+    const auto start = Clock::now();
+    for (std::size_t i = 0; i < runs; ++i) step.run();
+    device.finish();
+    return since_s(start) / static_cast<double>(runs);
+  };
+  constexpr double kSampleS = 0.01;  // long enough that the clock and the queue's end do not count
+  constexpr std::size_t kFewestSamples = 5;
+  const auto runs = static_cast<std::size_t>(std::clamp(kSampleS / time_s(1), 1.0, 1000.0));
+  std::vector<double> samples_s;
+  const auto start = Clock::now();
+  while (samples_s.size() < kFewestSamples || since_s(start) < seconds)
+    samples_s.push_back(time_s(runs));
+  const auto middle = samples_s.begin() + static_cast<std::ptrdiff_t>(samples_s.size() / 2);
+  std::nth_element(samples_s.begin(), middle, samples_s.end());
+  return *middle;
+}
 
 std::vector<BenchStepMaker> bench_steps() {
   std::vector<BenchStepMaker> makers;

@@ -15,6 +15,10 @@ struct BenchStep {
   std::function<void()> run;
 };
 
+/// Median seconds of a run, measured for about `seconds`; runs are enqueued one after another, as
+/// an epoch does. Run it once before, so that programs are built.
+double median_time_s(Device& device, const BenchStep& step, double seconds);
+
 /// Makes a step when its turn comes.
 using BenchStepMaker = std::function<BenchStep(Device&)>;
 

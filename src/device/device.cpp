@@ -123,7 +123,8 @@ Device Device::open(const DeviceSelection& selection) {
   return Device(gpu != fitting.end() ? *gpu : fitting.front());
 }
 
-Device::Device(const DeviceInfo& info) : info_(info) {
+Device::Device(const DeviceInfo& info)
+    : info_(info), tuning_(load_tuning(info).value_or(default_tuning(info))) {
   try {
     const auto platform = platforms().at(static_cast<std::size_t>(info.platform_index));
     device_ = devices_of(platform).at(static_cast<std::size_t>(info.device_index));

@@ -87,12 +87,19 @@ void gemm_clblast(const Rows& a, const Rows& b, const Rows& c, float alpha, floa
   device.count_launch();
 }
 
+bool goes_to_clblast(const Rows& c, std::size_t k, GemmBackend backend) {
+  if (k == 0 || backend == GemmBackend::own) return false;
+  if (backend == GemmBackend::clblast) return true;
+  const std::int64_t from = c.matrix->device().tuning().clblast_from;
+  return from > 0 && static_cast<std::int64_t>(c.count * c.columns * k) >= from;
+}
+
 }  // namespace
 
 void gemm(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& options) {
   require_operands(a, b, c, options);
   if (c.count == 0 || c.columns == 0) return;
-  if (options.backend == GemmBackend::clblast && b.count > 0) {
+  if (goes_to_clblast(c, b.count, options.backend)) {
     gemm_clblast(a, b, c, options.alpha, options.beta, clblast::Transpose::kNo);
     if (options.bias || options.activation != Activation::none ||
         options.sampling != Sampling::none)
@@ -109,7 +116,7 @@ void gemm_transposed_a(const Rows& a, const Rows& b, const Rows& c, float alpha,
           "gemm_transposed_a: C's shape is not that of AᵀB");
   require(b.index == nullptr && c.index == nullptr, "gemm_transposed_a: only A may be indexed");
   if (c.count == 0 || c.columns == 0) return;
-  if (backend == GemmBackend::clblast && b.count > 0) {
+  if (goes_to_clblast(c, b.count, backend)) {
     gemm_clblast(a, b, c, alpha, beta, clblast::Transpose::kYes);
     return;
   }

@@ -17,10 +17,6 @@ double busiest_unit_cost(std::size_t batch, std::size_t rows, std::size_t units)
   return static_cast<double>(blocks) * (static_cast<double>(rows) + kBlockOverheadRows);
 }
 
-/// Vector registers of a CPU that hold a tile's sums: few rows take more columns, so that enough
-/// fma() are under way and weights are read in longer pieces.
-constexpr int kAccumulators = 24;
-
 }  // namespace
 
 std::optional<RowTile> choose_row_tile(const Device& device, std::size_t floats_per_row,
@@ -34,16 +30,22 @@ std::optional<RowTile> choose_row_tile(const Device& device, std::size_t floats_
         what, row_bytes, info.local_memory_bytes);
     return std::nullopt;
   }
+  const Tuning& tuning = device.tuning();
   RowTile tile;
-  tile.vector_width = vector_width(device);
-  tile.group = info.is_gpu ? 64 : 1;
-  const std::size_t largest = std::min({fitting, batch, std::size_t{info.is_gpu ? 4U : 14U}});
+  tile.vector_width = tuning.vector_width;
+  tile.group = tuning.group;
+  tile.update_rows = tuning.update_rows;
+  const std::size_t largest =
+      std::min({fitting, batch, static_cast<std::size_t>(tuning.largest_rows)});
   const std::size_t units = std::max(1U, info.compute_units);
   std::size_t best = std::max<std::size_t>(largest, 1);
   for (std::size_t rows = best; rows >= 1; --rows)
     if (busiest_unit_cost(batch, rows, units) < busiest_unit_cost(batch, best, units)) best = rows;
   tile.rows = to_int(best);
-  if (!info.is_gpu) tile.columns = std::clamp(kAccumulators / tile.rows, 1, 8);
+  // Few rows take more columns, so that enough fma() are under way and weights are read in longer
+  // pieces.
+  constexpr int kMostColumns = 8;
+  tile.columns = std::clamp(tuning.accumulators / tile.rows, 1, kMostColumns);
   return tile;
 }
 

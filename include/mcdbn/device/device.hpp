@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mcdbn/device/opencl.hpp"
+#include "mcdbn/device/tuning.hpp"
 
 namespace mcdbn {
 
@@ -52,6 +53,9 @@ class Device {
   const cl::Context& context() const { return context_; }
   const cl::CommandQueue& queue() const { return queue_; }
   ProgramCache& programs() { return *programs_; }
+  /// The user's tuned choices for this device, else what suits its kind.
+  const Tuning& tuning() const { return tuning_; }
+  void set_tuning(const Tuning& tuning) { tuning_ = tuning; }
   /// Waits until everything enqueued has run. @throws DeviceError
   void finish();
   /// Kernel launches since the device was opened: `bench` reports launches a step.
@@ -60,6 +64,7 @@ class Device {
 
  private:
   DeviceInfo info_;
+  Tuning tuning_;
   cl::Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;

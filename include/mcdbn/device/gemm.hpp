@@ -11,8 +11,9 @@ enum class Activation {
   sigmoid_gradient,  ///< times y·(1 − y) of GemmOptions::factor: back-propagation through a sigmoid
 };
 enum class Sampling { none, bernoulli, gaussian };
-/// Who multiplies: our register-tiled kernel, or CLBlast followed by the epilogue as a kernel.
-enum class GemmBackend { own, clblast };
+/// Who multiplies: our register-tiled kernel, or CLBlast followed by the epilogue as a kernel;
+/// tuned: whichever Device::tuning() names for a product of that size.
+enum class GemmBackend { own, clblast, tuned };
 
 /// What happens to a product before it is stored: f(alpha·A·B + beta·C + bias), and a draw from it.
 struct GemmOptions {
@@ -26,7 +27,7 @@ struct GemmOptions {
   const Rows* sample = nullptr;  ///< where the draws go, shaped like C
   float temperature = 1.0F;      ///< sample = mean + temperature · (draw − mean)
   RandomKey random;
-  GemmBackend backend = GemmBackend::own;
+  GemmBackend backend = GemmBackend::tuned;
 };
 
 /// C = f(alpha·A·B + beta·C + bias). Enqueues and returns.
@@ -37,6 +38,6 @@ void gemm(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& option
 /// C = alpha·Aᵀ·B + beta·C: the statistics of eq 37 to 39.
 /// @param a [k x m], possibly indexed  @param b [k x n]  @param c [m x n]
 void gemm_transposed_a(const Rows& a, const Rows& b, const Rows& c, float alpha = 1.0F,
-                       float beta = 0.0F, GemmBackend backend = GemmBackend::own);
+                       float beta = 0.0F, GemmBackend backend = GemmBackend::tuned);
 
 }  // namespace mcdbn

@@ -8,10 +8,9 @@
 
 namespace mcdbn {
 
-/// Floats that one work-item takes at once: PoCL wants whole vector registers, a GPU single lanes
-/// that coalesce, of which four keep enough work in flight.
+/// Floats that one work-item takes at once.
 inline int vector_width(const Device& device) {
-  return device.info().is_gpu ? 4 : 16;
+  return device.tuning().vector_width;
 }
 
 inline std::size_t ceil_divide(std::size_t value, std::size_t by) {

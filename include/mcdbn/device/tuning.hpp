@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mcdbn {
+
+struct DeviceInfo;
+class Device;
+
+/// How the kernels divide their work on a device. No choice changes what a kernel computes (sums
+/// keep their order), only the time it takes; CLBlast's products may differ in the last bits.
+struct Tuning {
+  int vector_width = 16;  ///< floats that a work-item takes at once: 1, 4, 8 or 16
+  int largest_rows = 14;  ///< of a block that a work-group carries through a fused chain
+  int accumulators = 24;  ///< vectors that a work-item of a fused chain sums up at once, at most
+  int group = 1;          ///< work-items that share a block of rows
+  int update_rows = 16;   ///< rows of a gradient's tile: 4, 8 or 16
+  /// Products of at least so many multiply-adds go to CLBlast; 0: none.
+  std::int64_t clblast_from = 0;
+  bool operator==(const Tuning&) const = default;
+};
+
+/// What suits most CPUs or GPUs.
+Tuning default_tuning(const DeviceInfo& info);
+
+/// The default and its variants, one parameter changed in each: what a tuner tries and what the
+/// kernel tests run with.
+std::vector<Tuning> tuning_candidates(const DeviceInfo& info, const Tuning& from);
+
+/// The winners as `mcdbn-cl bench --tune` left them in the user's cache folder; unset where there
+/// is no entry for this device and driver, or one that makes no sense.
+std::optional<Tuning> load_tuning(const DeviceInfo& info);
+void store_tuning(const DeviceInfo& info, const Tuning& tuning);
+
+}  // namespace mcdbn

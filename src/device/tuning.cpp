@@ -1,0 +1,88 @@
+#include "mcdbn/device/tuning.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "mcdbn/device/device.hpp"
+#include "mcdbn/device/user_cache.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr const char* kKind = "tuning";
+
+std::string key_of(const DeviceInfo& info) {
+  return "1|" + info.platform_name + '|' + info.name + '|' + info.driver_version + '|' +
+         std::to_string(info.compute_units);
+}
+
+bool is_one_of(int value, std::initializer_list<int> values) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+bool makes_sense(const Tuning& tuning) {
+  return is_one_of(tuning.vector_width, {1, 4, 8, 16}) && tuning.largest_rows >= 1 &&
+         tuning.largest_rows <= 32 && tuning.accumulators >= 1 && tuning.accumulators <= 64 &&
+         tuning.group >= 1 && tuning.group <= 256 && is_one_of(tuning.update_rows, {4, 8, 16}) &&
+         tuning.clblast_from >= 0;
+}
+
+}  // namespace
+
+Tuning default_tuning(const DeviceInfo& info) {
+  if (!info.is_gpu) return {};
+  // Single lanes that coalesce, of which four keep enough work in flight.
+  return {.vector_width = 4, .largest_rows = 4, .accumulators = 4, .group = 64, .update_rows = 4};
+}
+
+std::vector<Tuning> tuning_candidates(const DeviceInfo& info, const Tuning& from) {
+  std::vector<Tuning> candidates{from};
+  const auto vary = [&](auto Tuning::*parameter, std::initializer_list<int> values) {
+    for (const int value : values) {
+      Tuning tuning = from;
+      tuning.*parameter = value;
+      if (tuning != from) candidates.push_back(tuning);
+    }
+  };
+  if (info.is_gpu) {
+    vary(&Tuning::vector_width, {1, 4});
+    vary(&Tuning::largest_rows, {2, 4, 8});
+    vary(&Tuning::group, {32, 64, 128});
+    vary(&Tuning::update_rows, {4, 8});
+  } else {
+    vary(&Tuning::vector_width, {8, 16});
+    vary(&Tuning::largest_rows, {8, 10, 14});
+    vary(&Tuning::accumulators, {12, 24, 28});
+    vary(&Tuning::update_rows, {8, 16});
+  }
+  return candidates;
+}
+
+std::optional<Tuning> load_tuning(const DeviceInfo& info) {
+  const auto entry = read_cache_entry(kKind, key_of(info));
+  if (!entry) return std::nullopt;
+  try {
+    const auto json = nlohmann::json::parse(*entry);
+    Tuning tuning;
+    tuning.vector_width = json.at("vector_width");
+    tuning.largest_rows = json.at("largest_rows");
+    tuning.accumulators = json.at("accumulators");
+    tuning.group = json.at("group");
+    tuning.update_rows = json.at("update_rows");
+    tuning.clblast_from = json.at("clblast_from");
+    if (makes_sense(tuning)) return tuning;
+  } catch (const nlohmann::json::exception&) {
+    // another version's: as if there were none
+  }
+  return std::nullopt;
+}
+
+void store_tuning(const DeviceInfo& info, const Tuning& tuning) {
+  const nlohmann::json json = {
+      {"vector_width", tuning.vector_width}, {"largest_rows", tuning.largest_rows},
+      {"accumulators", tuning.accumulators}, {"group", tuning.group},
+      {"update_rows", tuning.update_rows},   {"clblast_from", tuning.clblast_from}};
+  write_cache_entry(kKind, key_of(info), json.dump());
+}
+
+}  // namespace mcdbn
