@@ -304,6 +304,23 @@ TEST_CASE("every tile of the fused kernels gives the same bits") {
   });
 }
 
+TEST_CASE("every candidate of the tuner gives the same bits") {
+  on_every_device([](Device& device) {
+    const Tuning usual = device.tuning();
+    const TrainedBits want = train_two(device, kOddCase, RowTile{});
+    for (const Tuning& tuning : tuning_candidates(device.info(), default_tuning(device.info()))) {
+      CAPTURE(tuning.vector_width);
+      CAPTURE(tuning.largest_rows);
+      CAPTURE(tuning.accumulators);
+      device.set_tuning(tuning);
+      const auto tile = choose_chain_tile(device, kOddCase.shape, kOddCase.batch);
+      check_against_reference(device, kOddCase, tile);
+      CHECK(train_two(device, kOddCase, tile) == want);
+    }
+    device.set_tuning(usual);
+  });
+}
+
 TEST_CASE("same seed, same bits; another seed, others") {
   on_every_device([](Device& device) {
     const auto tile = choose_chain_tile(device, kOddCase.shape, kOddCase.batch);

@@ -1,0 +1,101 @@
+#include "mcdbn/device/tuning.hpp"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "device/every_device.hpp"
+#include "device/scoped_variable.hpp"
+#include "mcdbn/device/gemm.hpp"
+#include "mcdbn/device/row_tile.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A user's cache folder of the test's own.
+struct CacheFolder {
+  fs::path path = fs::temp_directory_path() / "mcdbn-tuning-test";
+  ScopedVariable variable{"XDG_CACHE_HOME", path.string()};
+  CacheFolder() { fs::remove_all(path); }
+  ~CacheFolder() { fs::remove_all(path); }
+};
+
+DeviceInfo some_device() {
+  DeviceInfo info;
+  info.name = "some device";
+  info.compute_units = 2;
+  info.local_memory_bytes = 1 << 20;
+  return info;
+}
+
+const Tuning kTuned{8, 10, 12, 1, 8, 1000};
+
+}  // namespace
+
+TEST_CASE("tuning: what was stored for a device is loaded, for that device only") {
+  const CacheFolder folder;
+  CHECK_FALSE(load_tuning(some_device()));
+  store_tuning(some_device(), kTuned);
+  CHECK(load_tuning(some_device()) == kTuned);
+  DeviceInfo other = some_device();
+  other.driver_version = "2";
+  CHECK_FALSE(load_tuning(other));
+}
+
+TEST_CASE("tuning: a damaged or senseless entry is as none") {
+  const CacheFolder folder;
+  store_tuning(some_device(), kTuned);
+  for (const auto& entry : fs::recursive_directory_iterator(folder.path))
+    if (entry.is_regular_file()) std::ofstream(entry.path(), std::ios::app) << "}";
+  CHECK_FALSE(load_tuning(some_device()));
+  Tuning senseless = kTuned;
+  senseless.vector_width = 3;
+  store_tuning(some_device(), senseless);
+  CHECK_FALSE(load_tuning(some_device()));
+  store_tuning(some_device(), kTuned);
+  CHECK(load_tuning(some_device()) == kTuned);
+}
+
+TEST_CASE("tuning: an opened device has what was stored for it") {
+  const CacheFolder folder;
+  on_every_device([](Device& device) {
+    CHECK(Device(device.info()).tuning() == default_tuning(device.info()));
+    store_tuning(device.info(), kTuned);
+    CHECK(Device(device.info()).tuning() == kTuned);
+  });
+}
+
+TEST_CASE("tuning: blocks of rows fill the compute units evenly and fit local memory") {
+  on_every_device([](Device& device) {
+    DeviceInfo info = device.info();
+    if (info.is_gpu || info.compute_units != 2) return;
+    CHECK(choose_row_tile(device, 400, 100, "test")->rows == 10);
+    CHECK(choose_row_tile(device, 400, 1, "test")->rows == 1);
+    const std::size_t floats = info.local_memory_bytes / sizeof(float);
+    CHECK(choose_row_tile(device, floats / 3, 100, "test")->rows <= 3);
+    CHECK_FALSE(choose_row_tile(device, floats + 1, 100, "test"));
+  });
+}
+
+TEST_CASE("tuning: every candidate's products are the same bits as the default's") {
+  on_every_device([](Device& device) {
+    const Matrix a = Matrix::from_host(device, random_matrix(13, 29, 1));
+    const Matrix b = Matrix::from_host(device, random_matrix(29, 37, 2));
+    const Tuning usual = device.tuning();
+    const auto product = [&] {
+      Matrix c(device, 13, 37);
+      gemm(a, b, c);
+      return c.to_host();
+    };
+    const MatrixF want = product();
+    for (const Tuning& tuning : tuning_candidates(device.info(), default_tuning(device.info()))) {
+      device.set_tuning(tuning);
+      CHECK(product() == want);
+    }
+    device.set_tuning(usual);
+  });
+}
