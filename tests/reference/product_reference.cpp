@@ -37,14 +37,6 @@ Bounded plus_bias(const Bounded& x, const MatrixD& bias) {
   return result;
 }
 
-Bounded sigmoid(const Bounded& x) {
-  Bounded result;
-  result.value = sigmoid(x.value);
-  result.bound = 0.25 * x.bound + gamma_n(kSigmoidError) * result.value +
-                 MatrixD::Constant(x.value.rows(), x.value.cols(), kSmallestNormal);
-  return result;
-}
-
 Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y) {
   const MatrixD slope = y.array() * (1.0 - y.array());
   Bounded result;

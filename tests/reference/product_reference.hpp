@@ -1,14 +1,8 @@
 #pragma once
 
-#include "mcdbn/matrix_types.hpp"
+#include "reference/running_error.hpp"
 
 namespace mcdbn::reference {
-
-/// A value and how far single precision may be from it.
-struct Bounded {
-  MatrixD value;
-  MatrixD bound;
-};
 
 /// alpha·A·B + beta·C with the bound (k + 2)·u·(|alpha||A||B| + |beta||C|), k being A's columns.
 Bounded product(const MatrixD& a, const MatrixD& b, double alpha = 1.0, double beta = 0.0,
@@ -16,9 +10,6 @@ Bounded product(const MatrixD& a, const MatrixD& b, double alpha = 1.0, double b
 
 /// x + bias, one rounding more. @param bias as many rows as x, or one for all
 Bounded plus_bias(const Bounded& x, const MatrixD& bias);
-
-/// σ(x), eq 8: ¼ of the input's error, as |σ'| ≤ ¼, plus the function's own.
-Bounded sigmoid(const Bounded& x);
 
 /// x·y·(1 − y): back through a sigmoid whose value was y.
 Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y);

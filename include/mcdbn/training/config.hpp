@@ -35,7 +35,7 @@ struct MultiPredictionSettings {
 struct TrainingConfig {
   std::uint64_t seed = 1;
   double fps = 30.0;
-  std::size_t phases = 4;  ///< sampling grids taken from each clip where its own rate allows
+  std::size_t phases = 1;  ///< sampling grids taken from each clip where its own rate allows
   bool keep_first_frame = false;
   CameraPlacement camera;
 
@@ -63,7 +63,7 @@ template <typename Config, typename Visit>
 void visit_settings(Config& config, Visit&& visit) {
   visit("seed", config.seed, "seed of every random number");
   visit("fps", config.fps, "frame rate that clips are resampled to");
-  visit("phases", config.phases, "sampling grids taken from each clip (free augmentation)");
+  visit("phases", config.phases, "sampling grids taken from each clip");
   visit("keep-first-frame", config.keep_first_frame, "keep a leading calibration pose");
   visit("order", config.order, "frames of history of every CRBM (N)");
   visit("hidden", config.hidden, "hidden units of every CRBM");
