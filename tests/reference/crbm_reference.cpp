@@ -95,14 +95,14 @@ CdResult contrastive_divergence(const Crbm& model, const CrbmBatch& batch, int k
   return result;
 }
 
-void update(Crbm& model, Crbm& velocity, const Crbm& gradient, const MomentumRule& weights,
-            const MomentumRule& autoregressive) {
-  MomentumRule biases = weights;
+void update(Crbm& model, Crbm& velocity, const Crbm& gradient, const MomentumRule& rule_W,
+            const MomentumRule& rule_A, const MomentumRule& rule_B) {
+  MomentumRule biases = rule_W;
   biases.weight_decay = 0.0F;
-  momentum_update(model.weights, velocity.weights, gradient.weights, weights);
+  momentum_update(model.weights, velocity.weights, gradient.weights, rule_W);
   momentum_update(model.visible_history, velocity.visible_history, gradient.visible_history,
-                  autoregressive);
-  momentum_update(model.hidden_history, velocity.hidden_history, gradient.hidden_history, weights);
+                  rule_A);
+  momentum_update(model.hidden_history, velocity.hidden_history, gradient.hidden_history, rule_B);
   update_row(model.visible_bias, velocity.visible_bias, gradient.visible_bias, biases);
   update_row(model.hidden_bias, velocity.hidden_bias, gradient.hidden_bias, biases);
 }

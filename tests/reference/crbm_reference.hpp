@@ -61,9 +61,8 @@ struct CdResult {
 CdResult contrastive_divergence(const Crbm& model, const CrbmBatch& batch, int k,
                                 const HiddenDraws& draws);
 
-/// One update of all parameters. W and B follow `weights`, the biases too but without decay, A
-/// follows `autoregressive`.
-void update(Crbm& model, Crbm& velocity, const Crbm& gradient, const MomentumRule& weights,
-            const MomentumRule& autoregressive);
+/// One update of all parameters, each by its own rule; the biases by that of W without decay.
+void update(Crbm& model, Crbm& velocity, const Crbm& gradient, const MomentumRule& rule_W,
+            const MomentumRule& rule_A, const MomentumRule& rule_B);
 
 }  // namespace mcdbn::reference

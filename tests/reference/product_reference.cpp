@@ -37,14 +37,6 @@ Bounded plus_bias(const Bounded& x, const MatrixD& bias) {
   return result;
 }
 
-Bounded sigmoid(const Bounded& x) {
-  Bounded result;
-  result.value = sigmoid(x.value);
-  result.bound = 0.25 * x.bound + gamma_n(kSigmoidError) * result.value +
-                 MatrixD::Constant(x.value.rows(), x.value.cols(), kSmallestNormal);
-  return result;
-}
-
 Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y) {
   const MatrixD slope = y.array() * (1.0 - y.array());
   Bounded result;
@@ -53,6 +45,15 @@ Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y) {
                  gamma_n(3) * result.value.cwiseAbs() +
                  MatrixD::Constant(y.rows(), y.cols(), kSmallestNormal);
   return result;
+}
+
+Bounded relu(const Bounded& x) {
+  return {x.value.cwiseMax(0.0), x.bound};
+}
+
+Bounded relu_gradient(const Bounded& x, const MatrixD& y) {
+  const MatrixD open = (y.array() > 0.0).cast<double>();
+  return {x.value.cwiseProduct(open), x.bound.cwiseProduct(open)};
 }
 
 Bounded gaussian_sample(const MatrixD& mean, const MatrixD& normal, double temperature) {

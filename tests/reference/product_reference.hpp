@@ -1,14 +1,8 @@
 #pragma once
 
-#include "mcdbn/matrix_types.hpp"
+#include "reference/running_error.hpp"
 
 namespace mcdbn::reference {
-
-/// A value and how far single precision may be from it.
-struct Bounded {
-  MatrixD value;
-  MatrixD bound;
-};
 
 /// alpha·A·B + beta·C with the bound (k + 2)·u·(|alpha||A||B| + |beta||C|), k being A's columns.
 Bounded product(const MatrixD& a, const MatrixD& b, double alpha = 1.0, double beta = 0.0,
@@ -17,11 +11,14 @@ Bounded product(const MatrixD& a, const MatrixD& b, double alpha = 1.0, double b
 /// x + bias, one rounding more. @param bias as many rows as x, or one for all
 Bounded plus_bias(const Bounded& x, const MatrixD& bias);
 
-/// σ(x), eq 8: ¼ of the input's error, as |σ'| ≤ ¼, plus the function's own.
-Bounded sigmoid(const Bounded& x);
-
 /// x·y·(1 − y): back through a sigmoid whose value was y.
 Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y);
+
+/// The positive part, which brings no two numbers further apart.
+Bounded relu(const Bounded& x);
+
+/// x where y is positive, else exactly 0.
+Bounded relu_gradient(const Bounded& x, const MatrixD& y);
 
 /// mean + temperature·(draw − mean) for unit normals z, given the means that the device stored.
 /// Box-Muller's error is that of sqrt(−2·log u)·cospi(2u').
