@@ -24,9 +24,9 @@ struct CacheFolder {
   ~CacheFolder() { fs::remove_all(path); }
 };
 
-DeviceInfo some_device() {
+DeviceInfo some_device(std::string driver = {}) {
   DeviceInfo info;
-  info.name = "some device";
+  info.driver_version = std::move(driver);
   info.compute_units = 2;
   info.local_memory_bytes = 1 << 20;
   return info;
@@ -41,9 +41,7 @@ TEST_CASE("tuning: what was stored for a device is loaded, for that device only"
   CHECK_FALSE(load_tuning(some_device()));
   store_tuning(some_device(), kTuned);
   CHECK(load_tuning(some_device()) == kTuned);
-  DeviceInfo other = some_device();
-  other.driver_version = "2";
-  CHECK_FALSE(load_tuning(other));
+  CHECK_FALSE(load_tuning(some_device("2")));
 }
 
 TEST_CASE("tuning: a damaged or senseless entry is as none") {

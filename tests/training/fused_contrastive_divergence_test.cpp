@@ -219,7 +219,7 @@ void check_against_reference(Device& device, const Case& test, std::optional<Row
     const CrbmParameters got = crbm.to_host();
     const reference::Crbm old_velocity = velocity;
     reference::Crbm after = before;
-    reference::update(after, velocity, want.gradient, rule.W, rule.A);
+    reference::update(after, velocity, want.gradient, rule.W, rule.A, rule.B);
     const reference::Crbm &g = want.gradient, &e = bound.gradient, &v = old_velocity;
     check_parameter("W", got.W, before.weights, after.weights, v.weights, g.weights, e.weights,
                     rule.W, velocity_bound.weights);
