@@ -8,7 +8,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kBins = 24;
 constexpr int kCurvePoints = 121;
 
 struct Series {
@@ -19,13 +18,22 @@ struct Series {
 
 struct Range {
   double low = 1, high = -1;
+  int bins = 24;
+
+  double bin_width() const { return (high - low) / bins; }
 };
+
+/// Few values get few bins, so that bars do not stand alone.
+int bins_for(int count) {
+  return std::clamp(static_cast<int>(2 * std::sqrt(count)), 8, 24);
+}
 
 Range range_of(const std::vector<Series>& all) {
   Range range;
   for (const Series& series : all) {
     const SummaryStatistics& statistics = series.correlations->statistics;
     if (statistics.count == 0) continue;
+    range.bins = bins_for(statistics.count);
     const bool first = range.low > range.high;
     range.low = first ? statistics.minimum : std::min(range.low, statistics.minimum);
     range.high = first ? statistics.maximum : std::max(range.high, statistics.maximum);
@@ -36,11 +44,10 @@ Range range_of(const std::vector<Series>& all) {
 
 /// Expected counts in a bin around each x, so that curve and bars share an axis.
 ordered_json curve_json(const DistributionFit& fit, const Range& range, int count) {
-  const double bin = (range.high - range.low) / kBins;
   ordered_json points = ordered_json::array();
   for (int i = 0; i < kCurvePoints; ++i) {
     const double x = range.low + (range.high - range.low) * i / (kCurvePoints - 1);
-    const double y = fit.density(x) * bin * count;
+    const double y = fit.density(x) * range.bin_width() * count;
     points.push_back(std::isfinite(y) ? ordered_json(std::round(y * 1e4) / 1e4)
                                       : ordered_json(nullptr));
   }
@@ -53,7 +60,7 @@ ordered_json series_json(const Series& series, const Range& range) {
   ordered_json json = {
       {"label", series.label},
       {"count", count},
-      {"counts", histogram_of(correlations.values, range.low, range.high, kBins).counts},
+      {"counts", histogram_of(correlations.values, range.low, range.high, range.bins).counts},
       {"curves", ordered_json::array()}};
   for (const DistributionFit& fit : correlations.fits)
     if (series.all_fits || fit.family == DistributionFamily::weibull)

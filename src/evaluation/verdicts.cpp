@@ -124,9 +124,11 @@ void add_samples(std::vector<Verdict>& list, const ActionReport& action) {
 
 void add_likeness(std::vector<Verdict>& list, const ActionReport& action) {
   if (!action.weibull_kl) {
-    list.push_back({Kind::note, fmt::format("{}: too few different pairs of clips to compare how "
-                                            "alike real and regenerated ones are.",
-                                            action.name)});
+    list.push_back(
+        {Kind::note, fmt::format("{}: how alike real and regenerated clips are cannot be "
+                                 "compared by Weibulls (it takes different, positive "
+                                 "correlations of both).",
+                                 action.name)});
     return;
   }
   const double real = action.pairs_real.statistics.median;

@@ -13,7 +13,7 @@ class Orbit {
     const cy = Math.cos(this.yaw), sy = Math.sin(this.yaw), cp = Math.cos(this.pitch), sp = Math.sin(this.pitch);
     const right = cy * x - sy * z, back = sy * x + cy * z;
     const up = cp * y - sp * back, near = sp * y + cp * back;
-    const distance = 5200 - near, focal = 2.25 * Math.min(panel.height, panel.width * 1.25) * this.zoom;
+    const distance = 5200 - near, focal = 2.25 * Math.min(panel.height, panel.width * 1.7) * this.zoom;
     return {x: panel.x + panel.width / 2 + focal * right / distance,
             y: panel.y + panel.height * .5 - focal * up / distance, distance, scale: focal / distance};
   }
@@ -89,13 +89,8 @@ class Scene {
     if (seen.some(p => p.distance < 100)) return;
     c.lineCap = "round";
     c.lineJoin = "round";
-    c.strokeStyle = this.colour("ink");
     const bones = clip.parents.map((from, to) => ({from, to})).filter(bone => bone.from >= 0);
-    c.globalAlpha = .1 * opacity;
-    for (const {from, to} of bones) {
-      const [a, b] = [from, to].map(i => this.orbit.project([points[i][0], height, points[i][2]], target, panel));
-      this.segment(a, b, 60 * a.scale);
-    }
+    this.shadow(panel, target, bones, points, height);
     c.globalAlpha = opacity;
     const depth = bone => seen[bone.from].distance + seen[bone.to].distance;
     for (const bone of bones.sort((a, b) => depth(b) - depth(a))) {
@@ -111,6 +106,21 @@ class Scene {
       }
     }
     c.globalAlpha = 1;
+  }
+  // On the ground below the figure, as one stroke, so that it is evenly dark.
+  shadow(panel, target, bones, points, height) {
+    const c = this.context;
+    c.strokeStyle = this.colour("shadow");
+    c.beginPath();
+    let scale = 0;
+    for (const {from, to} of bones) {
+      const [a, b] = [from, to].map(i => this.orbit.project([points[i][0], height, points[i][2]], target, panel));
+      c.moveTo(a.x, a.y);
+      c.lineTo(b.x, b.y);
+      scale = a.scale;
+    }
+    c.lineWidth = 70 * scale;
+    c.stroke();
   }
   segment(a, b, width) {
     this.context.lineWidth = width;

@@ -1,3 +1,10 @@
+// Centre and larger side of the box around points.
+function boundsOf(points) {
+  const range = axis => [Math.min(...points.map(p => p[axis])), Math.max(...points.map(p => p[axis]))];
+  const [left, right] = range("x"), [top, bottom] = range("y");
+  return {x: (left + right) / 2, y: (top + bottom) / 2, size: Math.max(right - left, bottom - top)};
+}
+
 // The player: what is chosen, what time it is, and drawing it.
 class Viewer {
   constructor(clips) {
@@ -167,30 +174,44 @@ class Viewer {
     return side < 0 ? `color-mix(in srgb, ${colour} 60%, ${this.scene.colour("panel")})`
       : side > 0 ? colour : `color-mix(in srgb, ${colour} 78%, ${this.scene.colour("ink")})`;
   }
+  // The joints as large as they can be, and where in the whole image they are.
   drawInput() {
     if (!this.input.fit()) return;
-    const {track, parents, joints} = this.clip, c = this.input.context;
-    this.clip.box ??= [0, 1].map(axis => {
-      const columns = track.filter((_, i) => i % 2 === axis);
-      const finite = columns.flatMap(column => [...column]).filter(Number.isFinite);
-      return {low: finite.reduce((a, b) => Math.min(a, b), Infinity), high: finite.reduce((a, b) => Math.max(a, b), -Infinity)};
-    });
-    const [across, down] = this.clip.box, margin = 18;
-    const scale = Math.min((this.input.width - 2 * margin) / (across.high - across.low),
-                           (this.input.height - 2 * margin) / (down.high - down.low));
-    const place = joint => ({
-      x: this.input.width / 2 + (valueAt(track[2 * joint], this.frame) - (across.low + across.high) / 2) * scale,
-      y: this.input.height / 2 + (valueAt(track[2 * joint + 1], this.frame) - (down.low + down.high) / 2) * scale});
+    const {track, parents, joints} = this.clip, {context: c, width, height} = this.input;
+    const at = joint => ({x: valueAt(track[2 * joint], this.frame), y: valueAt(track[2 * joint + 1], this.frame)});
+    const all = Array.from({length: joints}, (_, joint) => at(joint)), seen = all.filter(p => Number.isFinite(p.x + p.y));
+    if (seen.length === 0) return;
+    const box = boundsOf(seen), scale = .8 * Math.min(width, height) / this.largestInput();
+    const place = p => ({x: width / 2 + (p.x - box.x) * scale, y: height / 2 + (p.y - box.y) * scale});
     c.lineCap = "round";
-    for (let joint = 0; joint < joints; ++joint) {
-      const to = place(joint), from = parents[joint] >= 0 ? place(parents[joint]) : null;
-      c.strokeStyle = c.fillStyle = this.sideColour("note", this.clip.sides[joint]);
-      if (from && Number.isFinite(to.x + from.x)) this.input.segment(from, to, 2);
-      if (!Number.isFinite(to.x)) continue;
+    all.map(place).forEach((to, joint, placed) => {
+      const from = placed[parents[joint]];
+      c.strokeStyle = c.fillStyle = this.sideColour("quiet", this.clip.sides[joint]);
+      if (from && Number.isFinite(to.x + from.x)) this.input.segment(from, to, 2.5);
+      if (!Number.isFinite(to.x)) return;
       c.beginPath();
-      c.arc(to.x, to.y, 2.6, 0, 2 * Math.PI);
+      c.arc(to.x, to.y, 3.2, 0, 2 * Math.PI);
       c.fill();
-    }
+    });
+    this.drawImageMap(box);
+  }
+  // Over the whole clip, so that the figure keeps its size from frame to frame.
+  largestInput() {
+    const {track, joints, frames} = this.clip;
+    this.clip.inputSize ??= Math.max(1, ...Array.from({length: Math.ceil(frames / 5)}, (_, i) => {
+      const points = Array.from({length: joints}, (_, j) => ({x: track[2 * j][5 * i], y: track[2 * j + 1][5 * i]}));
+      return boundsOf(points.filter(p => Number.isFinite(p.x + p.y))).size;
+    }).filter(Number.isFinite));
+    return this.clip.inputSize;
+  }
+  drawImageMap(box) {
+    const {context: c, width} = this.input, w = 64, h = w * this.clip.height / this.clip.width;
+    c.strokeStyle = this.input.colour("note");
+    c.lineWidth = 1;
+    c.strokeRect(width - w - 10, 10, w, h);
+    c.fillStyle = this.input.colour("other");
+    const size = Math.max(3, box.size / this.clip.width * w);
+    c.fillRect(width - w - 10 + box.x / this.clip.width * w - 1.5, 10 + box.y / this.clip.height * h - size / 2, 3, size);
   }
   drawStrip() {
     if (!this.strip.fit()) return;
