@@ -9,7 +9,7 @@ const answer = summary.model_mean_field ?? summary.model;
 function showAbout() {
   const parts = [summary.model_file, `${summary.clips} clips, ${summary.frames} frames`, `protocol: ${summary.protocol}`];
   parts.push(summary.samples > 1 ? `${summary.samples} samples a clip at temperature ${summary.temperature}` : "mean field");
-  if (summary.training_clips) parts.push(`${summary.training_clips} clips were trained on`);
+  if (summary.training_clips) parts.push(`trained on: ${summary.training_clips}`);
   byId("about").textContent = parts.join(" · ");
   byId("omission").textContent = report.omission;
 }

@@ -181,7 +181,7 @@ class Viewer {
     const at = joint => ({x: valueAt(track[2 * joint], this.frame), y: valueAt(track[2 * joint + 1], this.frame)});
     const all = Array.from({length: joints}, (_, joint) => at(joint)), seen = all.filter(p => Number.isFinite(p.x + p.y));
     if (seen.length === 0) return;
-    const box = boundsOf(seen), scale = .8 * Math.min(width, height) / this.largestInput();
+    const box = boundsOf(seen), scale = .85 * Math.min(width * 1.6, height) / this.largestInput();
     const place = p => ({x: width / 2 + (p.x - box.x) * scale, y: height / 2 + (p.y - box.y) * scale});
     c.lineCap = "round";
     all.map(place).forEach((to, joint, placed) => {
