@@ -138,7 +138,7 @@ void add_likeness(std::vector<Verdict>& list, const ActionReport& action) {
                                                            : "less alike than";
   list.push_back({*action.weibull_kl < 0.4 ? Kind::good : Kind::note,
                   fmt::format("{}: regenerated clips are {} real ones (median pairwise PCC {:.3f} "
-                              "against {:.3f}; KL of the fitted Weibulls {:.3f} nats).",
+                              "against {:.3f}; KL of the fitted Weibulls {:.3g} nats).",
                               action.name, alike, regenerated, real, *action.weibull_kl)});
 }
 

@@ -178,7 +178,8 @@ TEST_CASE("evaluate prints one object, and refuses clips that were trained on") 
     CHECK(scores.at("mpjpe_mm").get<double>() > 0.0);
   };
   check_scores(summary.at("model"));
-  for (const char* baseline : {"mean_pose", "hold_last_frame", "nearest_neighbour", "ridge_window"}) {
+  for (const char* baseline :
+       {"mean_pose", "hold_last_frame", "nearest_neighbour", "ridge_window"}) {
     CAPTURE(baseline);
     check_scores(summary.at("baselines").at(baseline));
   }
@@ -194,9 +195,9 @@ TEST_CASE("evaluate --report writes the tables, by action, training clips marked
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const fs::path report = pipeline.folder("report");
-  const std::string evaluate = fmt::format(
-      "evaluate --model '{}' --quiet --report '{}' --json --test ", pipeline.model().string(),
-      report.string());
+  const std::string evaluate =
+      fmt::format("evaluate --model '{}' --quiet --report '{}' --json --test ",
+                  pipeline.model().string(), report.string());
   const CliResult result = run_cli(evaluate + pipeline.test_clips() +
                                    " --samples 3 --temperature 0.5 --actions by-folder");
   CAPTURE(result.standard_error);
