@@ -9,15 +9,23 @@
 namespace mcdbn {
 namespace {
 
-std::vector<std::string> joint_names(const Skeleton& skeleton) {
-  std::vector<std::string> names;
-  for (const Joint& joint : skeleton.joints) names.push_back(joint.name);
+/// The joints that the model looks at: others, such as a node that stays on the floor, may move in
+/// the file unlike anything that a camera sees.
+std::vector<std::string> tracked_joints(const TrackFeatures& features) {
+  std::vector<std::string> names = features.joint_names();
+  names.push_back(features.root_name());
   return names;
 }
 
-MatrixD relative_to_joint(MatrixD positions, int joint) {
-  const MatrixD origin = positions.middleCols(3 * joint, 3);
-  for (Eigen::Index j = 0; j < positions.cols() / 3; ++j) positions.middleCols(3 * j, 3) -= origin;
+/// @return [frames x 3·names], relative to joint `origin`
+MatrixD positions_of(const Motion& motion, const std::vector<std::string>& names,
+                     const std::string& origin) {
+  const MatrixD all = joint_positions(motion);
+  const MatrixD zero = all.middleCols(3 * motion.skeleton.find(origin), 3);
+  MatrixD positions(all.rows(), 3 * static_cast<Eigen::Index>(names.size()));
+  for (std::size_t i = 0; i < names.size(); ++i)
+    positions.middleCols(3 * static_cast<Eigen::Index>(i), 3) =
+        all.middleCols(3 * motion.skeleton.find(names[i]), 3) - zero;
   return positions;
 }
 
@@ -65,13 +73,13 @@ Motion motion_from_features(const Modalities& modalities, const MatrixF& pose, c
     return modalities.pose_features.decode(features, camera.camera_from_world, skeleton,
                                            modalities.fps, root);
   };
-  const int root_joint = skeleton.find(modalities.root_name());
   const Motion in_place = decode(MatrixD::Zero(features.rows(), 3));
   const double units = file_units_per_metre(skeleton);
   const MatrixD root_features = modalities.pose_features.root_features(features);
   const MatrixD velocity = units * root_features.rightCols(3) * camera.camera_from_world;
-  MatrixD root = root_trajectory(relative_to_joint(joint_positions(in_place), root_joint),
-                                 joint_names(skeleton), track, camera, velocity);
+  const std::vector<std::string> names = tracked_joints(modalities.track_features);
+  MatrixD root = root_trajectory(positions_of(in_place, names, modalities.root_name()), names,
+                                 track, camera, velocity);
   if (!placement.camera) put_at_origin(root, units * root_features.col(0).mean());
   return decode(root);
 }

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -9,12 +10,13 @@
 
 namespace mcdbn::test {
 
-/// Every OpenCL device of this machine, opened once, so that programs are built once.
+/// Every OpenCL device of this machine, opened once, so that programs are built once. Never closed:
+/// at the end of a process the OpenCL platform may be gone before its devices.
 inline std::vector<Device>& devices() {
-  static std::vector<Device> open = [] {
-    std::vector<Device> all;
-    for (const DeviceInfo& info : list_devices()) all.emplace_back(info);
-    return all;
+  static std::vector<Device>& open = *[] {
+    auto all = std::make_unique<std::vector<Device>>();
+    for (const DeviceInfo& info : list_devices()) all->emplace_back(info);
+    return all.release();
   }();
   return open;
 }

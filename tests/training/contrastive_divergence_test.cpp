@@ -21,12 +21,14 @@ struct CdCase {
   std::size_t gibbs_steps;
 };
 
-const std::vector<CdCase> kCases = {
-    {{1, 1, 0, VisibleKind::gaussian}, 1, 1},      {{3, 1, 1, VisibleKind::gaussian}, 1, 5},
-    {{3, 5, 2, VisibleKind::binary}, 3, 2},        {{7, 13, 3, VisibleKind::gaussian}, 13, 5},
-    {{17, 9, 0, VisibleKind::binary}, 9, 1},       {{17, 33, 1, VisibleKind::binary}, 21, 3},
-    {{31, 23, 5, VisibleKind::gaussian}, 7, 5},    {{96, 300, 5, VisibleKind::gaussian}, 2, 5},
-    {{96, 300, 5, VisibleKind::gaussian}, 100, 1}, {{300, 300, 5, VisibleKind::binary}, 100, 1}};
+const std::vector<CdCase> kSmallCases = {
+    {{1, 1, 0, VisibleKind::gaussian}, 1, 1},  {{3, 1, 1, VisibleKind::gaussian}, 1, 5},
+    {{3, 5, 2, VisibleKind::binary}, 3, 2},    {{7, 13, 3, VisibleKind::gaussian}, 13, 5},
+    {{17, 9, 0, VisibleKind::binary}, 9, 1},   {{17, 33, 1, VisibleKind::binary}, 21, 3},
+    {{31, 23, 5, VisibleKind::gaussian}, 7, 5}};
+const std::vector<CdCase> kModelCases = {{{96, 300, 5, VisibleKind::gaussian}, 2, 5},
+                                         {{96, 300, 5, VisibleKind::gaussian}, 100, 1},
+                                         {{300, 300, 5, VisibleKind::binary}, 100, 1}};
 
 /// A CRBM in the middle of its training, with frames it could have seen.
 class Scene {
@@ -120,10 +122,8 @@ void check_parameter(const char* name, const MatrixF& got, const reference::Boun
   CHECK(misfit(got, want.value, want.bound) == "");
 }
 
-}  // namespace
-
-TEST_CASE("one CD step gives the double reference's parameters within the rounding bound") {
-  for (const CdCase& cd : kCases) {
+void check_one_step(const std::vector<CdCase>& cases) {
+  for (const CdCase& cd : cases) {
     const Scene scene(cd);
     INFO("visible ", cd.shape.visible, ", hidden ", cd.shape.hidden, ", order ", cd.shape.order,
          ", batch ", cd.batch, ", k ", cd.gibbs_steps);
@@ -151,8 +151,18 @@ TEST_CASE("one CD step gives the double reference's parameters within the roundi
   }
 }
 
+}  // namespace
+
+TEST_CASE("small: one CD step gives the double reference's parameters within rounding") {
+  check_one_step(kSmallCases);
+}
+
+TEST_CASE("one CD step at the model's sizes, within rounding") {
+  check_one_step(kModelCases);
+}
+
 TEST_CASE("the bounded CD step computes what the plain reference computes") {
-  for (const CdCase& cd : kCases) {
+  for (const CdCase& cd : kSmallCases) {
     const Scene scene(cd);
     const CdRule rule = rule_of(cd);
     const int k = static_cast<int>(cd.gibbs_steps);
@@ -175,8 +185,8 @@ TEST_CASE("the bounded CD step computes what the plain reference computes") {
   }
 }
 
-TEST_CASE("the loss of a CD step is the mean squared reconstruction error of a unit") {
-  for (const CdCase& cd : kCases) {
+TEST_CASE("small: the loss of a CD step is the mean squared reconstruction error of a unit") {
+  for (const CdCase& cd : kSmallCases) {
     const Scene scene(cd);
     const auto want = reference::contrastive_divergence(
         scene.model(), scene.batch(), static_cast<int>(cd.gibbs_steps), scene.draws());
@@ -190,12 +200,12 @@ TEST_CASE("the loss of a CD step is the mean squared reconstruction error of a u
   }
 }
 
-TEST_CASE("CD steps with one seed give the same bits, with another seed others") {
-  const Scene scene(kCases[3]);
+TEST_CASE("small: CD steps with one seed give the same bits, with another seed others") {
+  const Scene scene(kSmallCases[3]);
   on_every_device([&](Device& device) {
     float loss = 0;
-    const CrbmParameters once = scene.train(device, rule_of(kCases[3]), 7, loss);
-    const CrbmParameters again = scene.train(device, rule_of(kCases[3]), 7, loss);
+    const CrbmParameters once = scene.train(device, rule_of(kSmallCases[3]), 7, loss);
+    const CrbmParameters again = scene.train(device, rule_of(kSmallCases[3]), 7, loss);
     CHECK((once.W.array() == again.W.array()).all());
     CHECK((once.A.array() == again.A.array()).all());
     CHECK((once.B.array() == again.B.array()).all());
@@ -203,8 +213,8 @@ TEST_CASE("CD steps with one seed give the same bits, with another seed others")
   });
 }
 
-TEST_CASE("momentum carries a CD step into the next one") {
-  const CdCase& cd = kCases[4];
+TEST_CASE("small: momentum carries a CD step into the next one") {
+  const CdCase& cd = kSmallCases[4];
   const Scene scene(cd);
   CdRule rule = rule_of(cd);
   const int k = static_cast<int>(cd.gibbs_steps);

@@ -18,9 +18,9 @@ struct MrbmCase {
   std::size_t track, pose, hidden, batch;
   int steps;
 };
-const std::vector<MrbmCase> kCases = {{1, 1, 1, 1, 1},     {3, 5, 2, 1, 2},
-                                      {4, 3, 7, 3, 5},     {17, 13, 9, 13, 3},
-                                      {33, 21, 17, 5, 10}, {300, 300, 150, 100, 5}};
+const std::vector<MrbmCase> kSmallCases = {
+    {1, 1, 1, 1, 1}, {3, 5, 2, 1, 2}, {4, 3, 7, 3, 5}, {17, 13, 9, 13, 3}, {33, 21, 17, 5, 10}};
+const std::vector<MrbmCase> kModelCases = {{300, 300, 150, 100, 5}};
 
 class Scene {
  public:
@@ -81,10 +81,8 @@ void check(const char* name, const MatrixF& got, const reference::Bounded& want)
   CHECK(misfit(got, want.value, want.bound) == "");
 }
 
-}  // namespace
-
-TEST_CASE("multi-prediction gradients are the double reference's within the rounding bound") {
-  for (const MrbmCase& shape : kCases) {
+void check_gradients(const std::vector<MrbmCase>& cases) {
+  for (const MrbmCase& shape : cases) {
     const Scene scene(shape);
     INFO(shape.track, " + ", shape.pose, " / ", shape.hidden, ", batch ", shape.batch, ", steps ",
          shape.steps);
@@ -101,8 +99,18 @@ TEST_CASE("multi-prediction gradients are the double reference's within the roun
   }
 }
 
+}  // namespace
+
+TEST_CASE("small: multi-prediction gradients are the double reference's within rounding") {
+  check_gradients(kSmallCases);
+}
+
+TEST_CASE("multi-prediction gradients at the model's sizes, within rounding") {
+  check_gradients(kModelCases);
+}
+
 TEST_CASE("the bounded gradients are the plain reference's") {
-  for (const MrbmCase& shape : kCases) {
+  for (const MrbmCase& shape : kSmallCases) {
     const Scene scene(shape);
     const auto bounded =
         reference::bounded_multi_prediction(scene.model(), scene.batch(), shape.steps);
@@ -116,7 +124,7 @@ TEST_CASE("the bounded gradients are the plain reference's") {
   }
 }
 
-TEST_CASE("multi-prediction gradients on the device agree with finite differences") {
+TEST_CASE("small: multi-prediction gradients on the device agree with finite differences") {
   const MrbmCase shape{5, 4, 3, 6, 4};
   const Scene scene(shape);
   const reference::Mrbm model = scene.model();
@@ -136,8 +144,8 @@ TEST_CASE("multi-prediction gradients on the device agree with finite difference
   });
 }
 
-TEST_CASE("multi-prediction reports the mean cross-entropy of a unit in each direction") {
-  for (const MrbmCase& shape : kCases) {
+TEST_CASE("small: multi-prediction reports the mean cross-entropy of a unit in each direction") {
+  for (const MrbmCase& shape : kSmallCases) {
     const Scene scene(shape);
     const double total =
         reference::multi_prediction(scene.model(), scene.batch(), scene.options()).loss;
@@ -152,7 +160,7 @@ TEST_CASE("multi-prediction reports the mean cross-entropy of a unit in each dir
 }
 
 TEST_CASE("Adam on the multi-prediction gradients lowers the loss, the same way each time") {
-  const Scene scene(kCases[3]);
+  const Scene scene(kSmallCases[3]);
   on_every_device([&](Device& device) {
     AdamRule rule;
     rule.rate = 0.01F;
@@ -167,9 +175,9 @@ TEST_CASE("Adam on the multi-prediction gradients lowers the loss, the same way 
   });
 }
 
-TEST_CASE("multi-prediction wants mini-batches of the size that it was made for") {
+TEST_CASE("small: multi-prediction wants mini-batches of the size that it was made for") {
   on_every_device([&](Device& device) {
-    const Scene scene(kCases[2]);
+    const Scene scene(kSmallCases[2]);
     Mrbm mrbm(device, scene.parameters);
     CHECK_THROWS_AS(MultiPrediction(mrbm, 0, 3), ConfigError);
     MultiPrediction trainer(mrbm, 2, 4);
