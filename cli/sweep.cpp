@@ -112,8 +112,17 @@ class Sweep {
       throw InputError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
   }
 
+  /// An epoch of everything first, so that no configuration is charged for compiling.
+  void build_kernels(TrainingConfig config, const fs::path& folder) {
+    config.gaussian.epochs = config.binary.epochs = config.mrbm.epochs = 1;
+    CommandContext silent = context_;
+    silent.quiet = true;
+    train_to_folder(silent, device_, clips_, config, folder, interrupt_);
+  }
+
   void score(const TrainingConfig& config, ordered_json& record) {
     const fs::path folder = run_ / record["name"].get<std::string>();
+    build_kernels(config, folder);
     const TrainedRun trained =
         train_to_folder(context_, device_, clips_, config, folder, interrupt_);
     TestRunOptions options;

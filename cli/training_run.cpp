@@ -15,22 +15,32 @@
 namespace mcdbn::cli {
 namespace {
 
-/// metrics.jsonl: one object an epoch.
+/// metrics.jsonl: one object an epoch, with the layer's health now and then.
 class MetricsLog {
  public:
   explicit MetricsLog(const std::filesystem::path& path) : path_(path), stream_(path) {
     if (!stream_) throw InputError(fmt::format("{}: cannot be written", path.string()));
   }
   void add(const EpochReport& report) {
-    const nlohmann::ordered_json line = {{"stage", report.stage},
-                                         {"epoch", report.epoch},
-                                         {"loss", report.loss},
-                                         {"windows_per_s", report.windows_per_s}};
+    nlohmann::ordered_json line = {{"stage", report.stage},
+                                   {"epoch", report.epoch},
+                                   {"loss", report.loss},
+                                   {"windows_per_s", report.windows_per_s}};
+    if (report.health) append(line, *report.health);
     stream_ << line.dump() << '\n' << std::flush;
     if (!stream_) throw InputError(fmt::format("{}: cannot be written", path_.string()));
   }
 
  private:
+  static void append(nlohmann::ordered_json& line, const LayerHealth& health) {
+    line["hidden_activity"] = health.hidden_activity;
+    line["saturation"] = health.saturation;
+    line["weight_norm"] = health.weight_norm;
+    if (health.weight_norm_A) line["weight_norm_A"] = *health.weight_norm_A;
+    if (health.weight_norm_B) line["weight_norm_B"] = *health.weight_norm_B;
+    if (health.free_run_error) line["free_run_error"] = *health.free_run_error;
+  }
+
   std::filesystem::path path_;
   std::ofstream stream_;
 };
