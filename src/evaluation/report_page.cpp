@@ -42,13 +42,23 @@ std::string omission(const EvaluationReport& report, const PageMotion& motion) {
                             text.substr(0, text.size() - 2) + ". The figures count everything.";
 }
 
+/// Six digits, as in the CSV files.
+nlohmann::json rounded(const nlohmann::json& cell) {
+  if (!cell.is_number_float()) return cell;
+  return nlohmann::json::parse(fmt::format("{:.6g}", cell.get<double>()));
+}
+
 ordered_json tables_json(const EvaluationReport& report) {
+  std::vector<ReportTable> all = report_tables(report);
   ordered_json tables = ordered_json::array();
-  for (const ReportTable& table : report_tables(report))
+  for (ReportTable& table : all) {
+    for (auto& row : table.rows)
+      for (nlohmann::json& cell : row) cell = rounded(cell);
     tables.push_back({{"file", table.file},
                       {"title", table.title},
                       {"columns", table.columns},
                       {"rows", table.rows}});
+  }
   return tables;
 }
 

@@ -48,9 +48,13 @@ function tableView(table, open) {
     });
     head.append(cell);
   });
-  body.replaceChildren(...tableBody(table));
-  return element("details", {class: "panel table", ...(open ? {open: ""} : {})},
+  const view = element("details", {class: "panel table", ...(open ? {open: ""} : {})},
                  element("summary", {}, table.title, element("span", {}, table.file)),
                  element("div", {class: "scroll", tabindex: "0"},
                          element("table", {}, element("thead", {}, head), body)));
+  // Rows are made when somebody looks: thousands of them would slow the page down.
+  const fill = () => { if (view.open && !body.hasChildNodes()) body.replaceChildren(...tableBody(table)); };
+  view.addEventListener("toggle", fill);
+  fill();
+  return view;
 }
