@@ -116,9 +116,12 @@ ReportTable methods_table(const EvaluationReport& report) {
                     {"action", "training_clips", "method"},
                     {}};
   append_figure_names(table);
+  table.columns.emplace_back("diversity_mm");
   const auto add = [&](const ActionReport& action, const MethodReport& method) {
     Row row{action.name, action.trained_clips, method.name};
     append(row, score_cells(method.mean));
+    const bool sampled = &method == &action.model && action.diversity_mm;
+    row.push_back(sampled ? number(*action.diversity_mm) : json(nullptr));
     table.rows.push_back(std::move(row));
   };
   for (const ActionReport& action : report.actions) {

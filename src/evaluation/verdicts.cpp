@@ -1,7 +1,8 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "mcdbn/evaluation/evaluation_report.hpp"
 
@@ -161,6 +162,22 @@ void add_training_warning(std::vector<Verdict>& list, const EvaluationReport& re
                                          trained, report.clips.size())});
 }
 
+/// The subject protocol is about people that the model has never seen.
+void add_known_people(std::vector<Verdict>& list, const EvaluationReport& report) {
+  std::set<std::string> people;
+  int clips = 0;
+  for (const ReportClip& clip : report.clips) {
+    if (clip.trained_on || clip.known_person.empty()) continue;
+    people.insert(clip.known_person);
+    ++clips;
+  }
+  if (clips == 0) return;
+  list.push_back({Kind::note, fmt::format("{} of {} clips show a person whom the model was trained "
+                                          "on in other clips ({}): for people that it has never "
+                                          "seen expect less.",
+                                          clips, report.clips.size(), fmt::join(people, ", "))});
+}
+
 }  // namespace
 
 std::vector<Verdict> verdicts(const EvaluationReport& report) {
@@ -169,6 +186,7 @@ std::vector<Verdict> verdicts(const EvaluationReport& report) {
   if (methods.empty()) return list;
   const ClipScore& answer = answer_of(methods).mean;
   add_training_warning(list, report);
+  add_known_people(list, report);
   for (std::size_t i = 1; i < methods.size(); ++i)
     if (methods[i].name != kMeanField) list.push_back(against(report, answer, methods[i]));
   add_flat_warning(list, answer, methods);

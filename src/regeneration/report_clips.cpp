@@ -114,6 +114,7 @@ std::vector<ReportClip> report_clips(const Model& model, const std::vector<ClipR
             ? std::filesystem::weakly_canonical(result.truth.file).parent_path().filename().string()
             : "all clips";
     clip.trained_on = result.trained_on;
+    clip.known_person = result.known_person;
     clip.fps = result.truth.motion.fps();
     clip.point_names = figure.names();
     clip.parents = figure.parents();

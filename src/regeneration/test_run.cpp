@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
 
 #include "mcdbn/baselines/baseline.hpp"
 #include "mcdbn/errors.hpp"
@@ -17,6 +18,15 @@ bool was_trained_on(const Model& model, const std::filesystem::path& file) {
   const std::string fingerprint = identify_clip(file).fingerprint;
   return std::any_of(model.training_clips.begin(), model.training_clips.end(),
                      [&](const TrainingClip& clip) { return clip.fingerprint == fingerprint; });
+}
+
+/// The person of a clip if a training clip shows the same one; else empty.
+std::string known_person(const Model& model, const std::filesystem::path& file) {
+  const std::string person = person_of(file);
+  const bool known =
+      std::any_of(model.training_clips.begin(), model.training_clips.end(),
+                  [&](const TrainingClip& clip) { return person_of(clip.path) == person; });
+  return known ? person : "";
 }
 
 /// Joints worth judging: not the root, not those that stand where their parent stands.
@@ -124,6 +134,15 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
 
 }  // namespace
 
+std::string person_of(const std::filesystem::path& file) {
+  static const std::regex cmu("(\\d+)_\\d+.*"), synthesized(".*_(s\\d+)_\\d+");
+  const std::string name = file.stem().string();
+  std::smatch found;
+  const bool tells =
+      std::regex_match(name, found, cmu) || std::regex_match(name, found, synthesized);
+  return tells ? found[1].str() : "";
+}
+
 ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                      const std::string& root_name) {
   const int root = truth.motion.skeleton.find(root_name);
@@ -161,6 +180,7 @@ std::vector<ClipResult> run_test(const Model& model,
     ClipResult result;
     result.truth = encode_clip(file, model.modalities, options.camera, options.keep_first_frame);
     result.trained_on = trained_on;
+    result.known_person = known_person(model, file);
     results.push_back(std::move(result));
   }
   regenerate_clips(model, options, progress, results);

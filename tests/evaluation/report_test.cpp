@@ -115,6 +115,9 @@ TEST_CASE("verdicts say in words who wins") {
   CHECK(says(verdicts(report), Kind::good, "beats ridge regression"));
   CHECK(says(verdicts(report), Kind::note, "already reaches a flattened PCC of 0.9500"));
   CHECK(!says(verdicts(report), Kind::bad, "trained on"));
+  CHECK(!says(verdicts(report), Kind::note, "show a person"));
+  report.clips[0].known_person = "08";
+  CHECK(says(verdicts(report), Kind::note, "1 of 4 clips show a person"));
 
   for (ReportClip& clip : report.clips)
     clip.others["ridge_window"].score = test::score_of(5, 0.999, 0.9);
@@ -170,6 +173,9 @@ TEST_CASE("tables: corrected columns, one row an action, training clips marked")
   CHECK(cell(table_of(tables, "table_5.csv"), 1, "kl_nats").is_null());
   CHECK(table_of(tables, "table_6.csv").columns == statistics.columns);
   CHECK(table_of(tables, "table_7.csv").rows.size() == 2);
+  CHECK(cell(table_of(tables, "methods.csv"), 0, "diversity_mm") ==
+        *report.actions[0].diversity_mm);
+  CHECK(cell(table_of(tables, "methods.csv"), 1, "diversity_mm").is_null());
   CHECK(cell(table_of(tables, "clips.csv"), 5, "trained_on") == "yes");
   for (const ReportTable& table : tables)
     for (const auto& row : table.rows) CHECK(row.size() == table.columns.size());
@@ -208,7 +214,7 @@ TEST_CASE("write_report: every file, a page of its own without network") {
 TEST_CASE("the page stays within its budget, and says what it leaves out") {
   std::vector<ReportClip> clips;
   for (unsigned i = 0; i < 20; ++i)
-    clips.push_back(test::report_clip("clip" + std::to_string(i), "walk", 10 * i, 4000, 4));
+    clips.push_back(test::report_clip("clip" + std::to_string(i), "walk", 10 * i, 2500, 4));
   const EvaluationReport report = report_of(clips);
   const std::string page = report_page(report);
   CHECK(page.size() < 5'000'000);

@@ -21,6 +21,7 @@ struct ReportClip {
   std::string name;    ///< unique in the report
   std::string action;  ///< what it is counted under
   bool trained_on = false;
+  std::string known_person;  ///< if another clip of the same person was trained on: who it is
   double fps = 30.0;
   std::vector<std::string> point_names;
   std::vector<int> parents;  ///< of each point, −1 for the root

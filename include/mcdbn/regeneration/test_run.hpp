@@ -35,10 +35,15 @@ struct Regeneration {
 struct ClipResult {
   EncodedClip truth;
   bool trained_on = false;
+  std::string known_person;  ///< as person_of says, if a training clip shows the same one
   std::vector<Regeneration> samples;
   /// The baselines by name, and kMeanField, the model's single answer, if samples were drawn.
   std::map<std::string, Regeneration> others;
 };
+
+/// Who a clip shows, where its name tells: `08` of CMU's 08_01.bvh, `s02` of walk_s02_01.bvh as
+/// `synthesize` names them. Empty where it does not.
+std::string person_of(const std::filesystem::path& file);
 
 /// @throws InputError if a clip was trained on, or a training clip that the baselines need is gone
 std::vector<ClipResult> run_test(const Model& model,
