@@ -22,6 +22,7 @@ TrainingConfig TrainingConfig::paper() {
   config.mrbm.initial_deviation = 1.0;
   config.mrbm_hidden = 150;
   config.look_ahead = 0;
+  config.least_batches = 1;
   return config;
 }
 
@@ -36,6 +37,7 @@ void TrainingConfig::validate() const {
   positive("layers", layers);
   positive("mrbm-hidden", mrbm_hidden);
   positive("batch", batch);
+  positive("least-batches", least_batches);
   for (const CdSettings* settings : {&gaussian, &binary}) {
     positive("gibbs-steps", settings->gibbs_steps);
     positive("rate", settings->rate);

@@ -214,7 +214,8 @@ Crbm train_crbm(Device& device, const Sequences& visible, const CrbmShape& shape
                                                   key_of(config, stream, 0, kWeightPhase));
   initial.visible_mean = mean_of(visible);
   Crbm crbm(device, initial);
-  MinibatchSchedule schedule(device, visible.window_rows(shape.order), config.batch);
+  MinibatchSchedule schedule(device, visible.window_rows(shape.order), config.batch,
+                             config.least_batches);
   ContrastiveDivergence cd(crbm, schedule.batch());
   LossAccumulator losses(device, 1, schedule.batch());
   const std::vector<MatrixF> windows =
@@ -245,7 +246,8 @@ Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
   // So that the mean field starts near the codes' own means rather than at one half.
   initial.a = {logit(mean_of(track)), logit(mean_of(pose))};
   Mrbm mrbm(device, initial);
-  MinibatchSchedule schedule(device, paired_rows(pose, config.look_ahead), config.batch);
+  MinibatchSchedule schedule(device, paired_rows(pose, config.look_ahead), config.batch,
+                             config.least_batches);
   MultiPrediction multi_prediction(mrbm, settings.mean_field_steps, schedule.batch());
   LossAccumulator losses(device, 2, schedule.batch());
   DivergenceGuard guard(

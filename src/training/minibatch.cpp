@@ -7,14 +7,15 @@
 
 namespace mcdbn {
 
-MinibatchSchedule::MinibatchSchedule(Device& device, std::vector<std::int32_t> rows,
-                                     std::size_t batch)
-    : device_(&device),
-      rows_(std::move(rows)),
-      batch_(std::min(batch, rows_.size())),
-      index_(device, rows_) {
-  if (rows_.empty() || batch_ == 0)
+MinibatchSchedule::MinibatchSchedule(Device& device, const std::vector<std::int32_t>& rows,
+                                     std::size_t batch, std::size_t least_batches)
+    : device_(&device), batch_(std::min(batch, rows.size())) {
+  if (rows.empty() || batch_ == 0)
     throw ShapeError("mini-batches: no clip is longer than the history");
+  do {
+    rows_.insert(rows_.end(), rows.begin(), rows.end());
+  } while (batch_count() < least_batches);
+  index_ = IndexBuffer(device, rows_);
 }
 
 void MinibatchSchedule::shuffle(const RandomKey& key) {

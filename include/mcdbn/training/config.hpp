@@ -45,6 +45,9 @@ struct TrainingConfig {
   std::size_t mrbm_hidden = 300;
   std::size_t look_ahead = 5;  ///< the MRBM pairs the 2D code of frame t + look_ahead with 3D of t
   std::size_t batch = 100;
+  /// An epoch has at least so many mini-batches: few clips are gone over several times in it, or
+  /// the rates and epochs that suit an hour of motion would stop long before a minute's was learnt.
+  std::size_t least_batches = 40;
 
   CdSettings gaussian;
   CdSettings binary{.gibbs_steps = 1, .rate = 1e-2, .rate_A = 1e-3, .rate_B = 1e-3, .epochs = 50};
@@ -71,6 +74,8 @@ void visit_settings(Config& config, Visit&& visit) {
   visit("mrbm-hidden", config.mrbm_hidden, "hidden units of the MRBM");
   visit("look-ahead", config.look_ahead, "frames of 2D seen ahead; 0 is causal, the paper's");
   visit("batch", config.batch, "windows in a mini-batch");
+  visit("least-batches", config.least_batches,
+        "mini-batches an epoch at least: small data is gone over several times");
   const auto visit_cd = [&visit](const std::string& prefix, auto& settings) {
     visit(prefix + ".gibbs-steps", settings.gibbs_steps, "k of CD-k");
     visit(prefix + ".rate", settings.rate, "learning rate of W and the biases");

@@ -10,11 +10,13 @@ namespace mcdbn {
 
 /// The order in which an epoch visits the windows: "each of N + 1 frames are mixed into a
 /// mini-batch" (section IV.B). Whole batches only; what is left over differs from epoch to epoch.
-/// With fewer rows than a batch all of them make one batch.
+/// With fewer rows than a batch all of them make one batch; with fewer batches than `least_batches`
+/// every row comes several times.
 class MinibatchSchedule {
  public:
   /// @param rows frame numbers that have a history within their clip  @throws ShapeError if none
-  MinibatchSchedule(Device& device, std::vector<std::int32_t> rows, std::size_t batch);
+  MinibatchSchedule(Device& device, const std::vector<std::int32_t>& rows, std::size_t batch,
+                    std::size_t least_batches = 1);
 
   /// Shuffles anew, as the key says, and uploads.
   void shuffle(const RandomKey& key);
