@@ -260,6 +260,22 @@ class ReportPage(unittest.TestCase):
         self.find("#theme").click()
         self.assertEqual(background(), light)
 
+    def test_touch_turns(self):
+        scene = self.find("#scene")
+        self.show(scene)
+        before = self.picture()[1]
+        x, y = scene.rect["x"], self.browser.execute_script(
+            "return arguments[0].getBoundingClientRect().top", scene)
+        self.browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True})
+        try:
+            for kind, points in (("touchStart", [(200, 100)]), ("touchMove", [(230, 102)]),
+                                 ("touchMove", [(300, 104)]), ("touchEnd", [])):
+                self.browser.execute_cdp_cmd("Input.dispatchTouchEvent", {
+                    "type": kind, "touchPoints": [{"x": x + a, "y": y + b} for a, b in points]})
+            self.assertNotEqual(self.picture()[1], before)
+        finally:
+            self.browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": False})
+
     def test_phone(self):
         self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
             "width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": True})

@@ -58,7 +58,7 @@ function showFigures() {
   const actions = [...new Set(report.figures.map(figure => figure.action))];
   for (const action of actions) {
     const about = summary.actions.find(a => a.name === action);
-    const title = element("h3", {class: "action-title"}, `${action} (${about.clips} clips)`);
+    const title = element("h3", {class: "action-title"}, `${action} (${about.clips} ${about.clips === 1 ? "clip" : "clips"})`);
     if (about.training_clips) title.append(element("span", {class: "mark"}, `${about.training_clips} trained on`));
     byId("figure-list").append(title, element("div", {class: "figure-grid"},
       ...report.figures.filter(f => f.action === action && f.series.length).map(histogramFigure)));

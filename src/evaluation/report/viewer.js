@@ -43,10 +43,15 @@ class Viewer {
     on("farther", "click", () => this.zoom(1 / 1.15));
     for (const radio of this.root.querySelectorAll("[name=layout]")) radio.addEventListener("change", () => this.draw());
     const canvas = this.part("scene");
-    canvas.addEventListener("pointerdown", e => canvas.setPointerCapture(e.pointerId));
+    let held = null;  // where the pointer was last: not every browser tells how far it moved
+    canvas.addEventListener("pointerdown", e => {
+      canvas.setPointerCapture(e.pointerId);
+      held = {x: e.clientX, y: e.clientY};
+    });
     canvas.addEventListener("pointermove", e => {
       if (!canvas.hasPointerCapture(e.pointerId)) return;
-      this.scene.orbit.turn(e.movementX * .009, e.movementY * .006);
+      this.scene.orbit.turn((e.clientX - held.x) * .009, (e.clientY - held.y) * .006);
+      held = {x: e.clientX, y: e.clientY};
       this.draw();
     });
     const seekTo = e => {
