@@ -7,7 +7,8 @@
 // columns zero); *_offset is the first element used. With A_ROWS row r of A is row a_rows[r] +
 // a_shift of the frames, and may run on over several frames (history windows, eq 15).
 //   BIAS        0 none, 1 one row for all, 2 a row each            (eq 16, 17: dynamic biases)
-//   ACTIVATION  0 none, 1 sigmoid (eq 6, 7, 32, 33), 2 times y·(1 − y) of the matrix `factor`
+//   ACTIVATION  0 none, 1 sigmoid (eq 6, 7, 32, 33), 2 times y·(1 − y) of the matrix `factor`,
+//               3 positive part, 4 zero where `factor` is not positive
 //   SAMPLE      0 none, 1 Bernoulli, 2 Gaussian of unit variance (sampling.clh); written to `sample` as
 //               mean + temperature · (draw − mean)
 // One work-item makes TILE_ROWS x VEC of C, its accumulators in registers.
@@ -83,6 +84,10 @@ kernel void gemm(global const float* a, int a_offset, int lda, global const int*
 #elif ACTIVATION == 2
     const floatN y = loadN(factor_offset + row * factor_ld + column, factor);
     value *= y * (1.0f - y);
+#elif ACTIVATION == 3
+    value = relu(value);
+#elif ACTIVATION == 4
+    value = relu_gradient(value, loadN(factor_offset + row * factor_ld + column, factor));
 #endif
     value *= mask;
     storeN(value, c_at, c);

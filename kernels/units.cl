@@ -32,6 +32,10 @@ kernel void epilogue(global float* c, int c_offset, int ldc, int n, global const
 #elif ACTIVATION == 2
   const floatN y = loadN(factor_offset + row * factor_ld + column, factor);
   value *= y * (1.0f - y);
+#elif ACTIVATION == 3
+  value = relu(value);
+#elif ACTIVATION == 4
+  value = relu_gradient(value, loadN(factor_offset + row * factor_ld + column, factor));
 #endif
   value *= mask;
   storeN(value, c_offset + row * ldc + column, c);
@@ -64,6 +68,21 @@ kernel void scaled_difference(global const float* x, int x_offset, int x_ld, glo
   storeN(scale * (loadN(x_offset + row * x_ld + column, x) - loadN(y_offset + row * y_ld + column, y)),
          out_offset + row * out_ld + column, out);
 }
+
+#if SAMPLE == 1
+// Drop-out: keeps an entry, divided by the share that is kept, or makes it zero.
+kernel void dropout(global float* c, int c_offset, int ldc, int columns, float kept_share,
+                    uint4 random) {
+  const int column = get_global_id(0) * VEC;
+  const int row = get_global_id(1);
+  if (column >= columns) return;
+  uintN draws[DRAW_WORDS];
+  draw_four_rows(draws, column, row / 4, random);
+  const floatN kept = sample_units((floatN)(kept_share), draws, row);
+  const int at = c_offset + row * ldc + column;
+  storeN(kept * (loadN(at, c) / kept_share), at, c);
+}
+#endif
 
 // out[c, r] = in[r, c]; global: (columns, rows)
 kernel void transpose(global const float* in, int ld, global float* out, int out_ld) {

@@ -27,8 +27,10 @@ void require_operands(const Rows& a, const Rows& b, const Rows& c, const GemmOpt
   if (options.sample) require(same_shape(*options.sample, c), "gemm: the sample does not fit C");
   require((options.sampling == Sampling::none) == (options.sample == nullptr),
           "gemm: sampling needs a matrix for the draws, and the other way round");
-  require((options.activation == Activation::sigmoid_gradient) == (options.factor != nullptr),
-          "gemm: a sigmoid's gradient needs its values, and the other way round");
+  const bool is_gradient = options.activation == Activation::sigmoid_gradient ||
+                           options.activation == Activation::relu_gradient;
+  require(is_gradient == (options.factor != nullptr),
+          "gemm: an activation's gradient needs its values, and the other way round");
 }
 
 void gemm_own(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& options) {

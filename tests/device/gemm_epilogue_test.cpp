@@ -24,8 +24,10 @@ struct Epilogue {
   float temperature = 1.0F;
 };
 
+/// Those of the model's stochastic units, all combined, and those of the perceptron.
 std::vector<Epilogue> all_epilogues() {
-  std::vector<Epilogue> all;
+  std::vector<Epilogue> all{{BiasKind::row, Activation::relu},
+                            {BiasKind::none, Activation::relu_gradient}};
   for (const auto bias : {BiasKind::none, BiasKind::row, BiasKind::matrix})
     for (const auto activation :
          {Activation::none, Activation::sigmoid, Activation::sigmoid_gradient})
@@ -112,7 +114,9 @@ class Operands {
     if (epilogue_.bias != BiasKind::none) options.bias = &bias_device_;
     if (epilogue_.bias == BiasKind::matrix) options.bias_first = kBiasFirst;
     options.activation = epilogue_.activation;
-    if (epilogue_.activation == Activation::sigmoid_gradient) options.factor = &factor_rows_;
+    if (epilogue_.activation == Activation::sigmoid_gradient ||
+        epilogue_.activation == Activation::relu_gradient)
+      options.factor = &factor_rows_;
     options.sampling = epilogue_.sampling;
     if (epilogue_.sampling != Sampling::none) options.sample = &sample_rows_;
     options.temperature = epilogue_.temperature;
@@ -129,6 +133,9 @@ class Operands {
     if (epilogue_.activation == Activation::sigmoid) x = reference::sigmoid(x);
     if (epilogue_.activation == Activation::sigmoid_gradient)
       x = reference::sigmoid_gradient(x, factor_.bottomRows(m).cast<double>());
+    if (epilogue_.activation == Activation::relu) x = reference::relu(x);
+    if (epilogue_.activation == Activation::relu_gradient)
+      x = reference::relu_gradient(x, factor_.bottomRows(m).cast<double>());
     return x;
   }
 

@@ -133,6 +133,32 @@ TEST_CASE("small: gather picks single rows in any order") {
   });
 }
 
+TEST_CASE("small: drop-out keeps what the host's draws keep, and what is expected stays") {
+  on_every_device([](Device& device) {
+    const RandomKey key{.seed = 5, .step = 2, .stream = 9, .phase = 1};
+    for (const auto& [rows, columns] : {std::pair{1, 1}, {5, 17}, {13, 33}}) {
+      const MatrixF x = random_matrix(rows, columns, 3);
+      const GuardedBlock block(device, rows, columns, x);
+      dropout(block.rows(), 0.75F, key);
+      const MatrixF got = block.values();
+      for (Eigen::Index r = 0; r < rows; ++r)
+        for (Eigen::Index c = 0; c < columns; ++c) {
+          const bool kept = random_uniform(key, static_cast<std::uint32_t>(r),
+                                           static_cast<std::uint32_t>(c)) < 0.75F;
+          // One division, of 2.5 ulp.
+          const double want = kept ? double{x(r, c)} / 0.75 : 0.0;
+          CHECK(std::abs(got(r, c) - want) <= 5.0 * 0x1p-24 * std::abs(want));
+        }
+      CHECK(block.intact());
+    }
+    const Matrix ones = Matrix::from_host(device, MatrixF::Ones(200, 100));
+    dropout(ones, 0.75F, key);
+    // 20,000 draws: the mean's standard deviation is sqrt(1/3 / 20000) = 0.0041.
+    CHECK(ones.to_host().mean() == doctest::Approx(1.0).epsilon(0.02));
+    CHECK_THROWS_AS(dropout(ones, 0.0F, key), ShapeError);
+  });
+}
+
 TEST_CASE("small: shapes that differ are refused") {
   on_every_device([](Device& device) {
     const Matrix x(device, 3, 5), y(device, 3, 6);

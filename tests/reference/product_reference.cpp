@@ -47,6 +47,15 @@ Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y) {
   return result;
 }
 
+Bounded relu(const Bounded& x) {
+  return {x.value.cwiseMax(0.0), x.bound};
+}
+
+Bounded relu_gradient(const Bounded& x, const MatrixD& y) {
+  const MatrixD open = (y.array() > 0.0).cast<double>();
+  return {x.value.cwiseProduct(open), x.bound.cwiseProduct(open)};
+}
+
 Bounded gaussian_sample(const MatrixD& mean, const MatrixD& normal, double temperature) {
   Bounded drawn;
   drawn.value = mean + normal;

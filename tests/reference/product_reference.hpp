@@ -14,6 +14,12 @@ Bounded plus_bias(const Bounded& x, const MatrixD& bias);
 /// x·y·(1 − y): back through a sigmoid whose value was y.
 Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y);
 
+/// The positive part, which brings no two numbers further apart.
+Bounded relu(const Bounded& x);
+
+/// x where y is positive, else exactly 0.
+Bounded relu_gradient(const Bounded& x, const MatrixD& y);
+
 /// mean + temperature·(draw − mean) for unit normals z, given the means that the device stored.
 /// Box-Muller's error is that of sqrt(−2·log u)·cospi(2u').
 Bounded gaussian_sample(const MatrixD& mean, const MatrixD& normal, double temperature);

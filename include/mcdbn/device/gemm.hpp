@@ -9,6 +9,8 @@ enum class Activation {
   none,
   sigmoid,           ///< eq 8
   sigmoid_gradient,  ///< times y·(1 − y) of GemmOptions::factor: back-propagation through a sigmoid
+  relu,              ///< the positive part
+  relu_gradient,     ///< zero where GemmOptions::factor is not positive
 };
 enum class Sampling { none, bernoulli, gaussian };
 /// Who multiplies: our register-tiled kernel, or CLBlast followed by the epilogue as a kernel.
@@ -21,7 +23,7 @@ struct GemmOptions {
   const Matrix* bias = nullptr;  ///< [1 x n], or a row each (dynamic biases, eq 16 and 17)
   std::size_t bias_first = 0;    ///< first row of a bias with a row each
   Activation activation = Activation::none;
-  const Rows* factor = nullptr;  ///< y for sigmoid_gradient, shaped like C
+  const Rows* factor = nullptr;  ///< y for the gradients, shaped like C
   Sampling sampling = Sampling::none;
   const Rows* sample = nullptr;  ///< where the draws go, shaped like C
   float temperature = 1.0F;      ///< sample = mean + temperature · (draw − mean)

@@ -12,6 +12,8 @@ void apply_epilogue(const Rows& c, const GemmOptions& options);
 void gather(const Rows& rows, const Rows& out);
 /// out = scale · (x − y), all of one shape, none indexed.
 void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& out);
+/// Drop-out, in place: an entry is divided by `kept_share` with that probability, else zero.
+void dropout(const Rows& c, float kept_share, const RandomKey& key);
 /// @param out [in.columns x in.rows]
 void transpose(const Matrix& in, Matrix& out);
 /// out = beta · out + scale · (sum over rows). @param out [1 x in.columns]
