@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "mcdbn/baselines/baseline.hpp"
+#include "mcdbn/baselines/mlp_window.hpp"
 #include "mcdbn/errors.hpp"
 #include "mcdbn/evaluation/bone_length.hpp"
 #include "mcdbn/evaluation/foot_slide.hpp"
@@ -121,7 +122,8 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
     tracks.push_back(std::move(clip.track_features));
     poses.push_back(std::move(clip.pose_features));
   }
-  const auto baselines = default_baselines();
+  auto baselines = default_baselines();
+  baselines.push_back(std::make_unique<MlpWindow>(model.network.mrbm.device()));
   for (std::size_t i = 0; i < baselines.size(); ++i) {
     const std::string name = baselines[i]->name();
     progress.show("baseline " + name, Progress::kBaselines, i, baselines.size());

@@ -179,7 +179,7 @@ TEST_CASE("evaluate prints one object, and refuses clips that were trained on") 
   };
   check_scores(summary.at("model"));
   for (const char* baseline :
-       {"mean_pose", "hold_last_frame", "nearest_neighbour", "ridge_window"}) {
+       {"mean_pose", "hold_last_frame", "nearest_neighbour", "ridge_window", "mlp_window"}) {
     CAPTURE(baseline);
     check_scores(summary.at("baselines").at(baseline));
   }
