@@ -1,80 +1,135 @@
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
+#include "mcdbn/evaluation/report_page.hpp"
 #include "mcdbn/motion/clip.hpp"
 #include "mcdbn/regeneration/test_run.hpp"
+#include "progress.hpp"
 
 namespace mcdbn::cli {
 namespace {
 
-using nlohmann::ordered_json;
-
 struct EvaluateOptions {
-  std::filesystem::path model;
+  std::filesystem::path model, report;
   std::vector<std::filesystem::path> test;
+  std::string protocol = "subject", actions;
   TestRunOptions run;
-  std::optional<double> azimuth_deg, elevation_deg;
+  std::optional<std::size_t> samples;
+  std::optional<double> azimuth_deg, elevation_deg, temperature;
 };
 
-ordered_json score_json(const ClipScore& score) {
-  return {{"pcc_flat", score.pcc_flat},
-          {"pcc_channel", score.pcc_channel},
-          {"mpjpe_mm", score.error.mpjpe_mm},
-          {"pa_mpjpe_mm", score.error.pa_mpjpe_mm},
-          {"mpjve_mm_s", score.error.mpjve_mm_s},
-          {"acceleration_error_mm_s2", score.error.acceleration_error_mm_s2},
-          {"pck_150mm", score.error.pck_150mm},
-          {"root_mm", score.root_mm}};
+/// What the protocol leaves open is filled in; what was said stays.
+/// `paper` is section V: every clip, those trained on too, regenerated ten times.
+void apply_protocol(EvaluateOptions& options) {
+  const bool paper = options.protocol == "paper";
+  options.run.include_training |= paper;
+  options.run.regeneration.samples = options.samples.value_or(paper ? 10 : 1);
+  options.run.regeneration.temperature =
+      options.temperature.value_or(options.run.regeneration.samples > 1 ? 1.0 : 0.0);
+  if (options.actions.empty()) options.actions = paper ? "by-folder" : "together";
 }
 
-ordered_json summary_json(const std::vector<ClipResult>& results) {
-  std::vector<ClipScore> model;
-  std::map<std::string, std::vector<ClipScore>> baselines;
+void print_table(const EvaluationReport& report) {
   int frames = 0;
-  for (const ClipResult& result : results) {
-    frames += result.truth.motion.frames();
-    model.insert(model.end(), result.scores.begin(), result.scores.end());
-    for (const auto& [name, score] : result.baseline_scores) baselines[name].push_back(score);
-  }
-  ordered_json summary = {
-      {"clips", results.size()}, {"frames", frames}, {"model", score_json(mean_score(model))}};
-  summary["baselines"] = ordered_json::object();
-  for (const auto& [name, scores] : baselines)
-    summary["baselines"][name] = score_json(mean_score(scores));
-  return summary;
+  for (const ReportClip& clip : report.clips) frames += clip.frames();
+  fmt::print("{} clips, {} frames\n{:<20}{:>10}{:>12}{:>11}{:>14}{:>10}\n", report.clips.size(),
+             frames, "", "PCC flat", "PCC channel", "MPJPE mm", "PA-MPJPE mm", "root mm");
+  for (const MethodReport& method : overall_methods(report))
+    fmt::print("{:<20}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n", method.name,
+               method.mean.pcc_flat, method.mean.pcc_channel, method.mean.error.mpjpe_mm,
+               method.mean.error.pa_mpjpe_mm, method.mean.root_mm);
+  fmt::print("\n");
+  for (const Verdict& verdict : verdicts(report))
+    fmt::print("{} {}\n",
+               verdict.kind == Verdict::Kind::good  ? "+"
+               : verdict.kind == Verdict::Kind::bad ? "-"
+                                                    : " ",
+               verdict.text);
 }
 
-void print_table(const ordered_json& summary) {
-  fmt::print("{} clips, {} frames\n{:<20}{:>10}{:>12}{:>11}{:>14}{:>10}\n",
-             summary["clips"].get<int>(), summary["frames"].get<int>(), "", "PCC flat",
-             "PCC channel", "MPJPE mm", "PA-MPJPE mm", "root mm");
-  const auto row = [](const std::string& name, const ordered_json& score) {
-    fmt::print("{:<20}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n", name,
-               score["pcc_flat"].get<double>(), score["pcc_channel"].get<double>(),
-               score["mpjpe_mm"].get<double>(), score["pa_mpjpe_mm"].get<double>(),
-               score["root_mm"].get<double>());
-  };
-  row("model", summary["model"]);
-  for (const auto& [name, score] : summary["baselines"].items()) row(name, score);
-}
-
-void run_evaluate(const CommandContext& context, const EvaluateOptions& options) {
+void run_evaluate(const CommandContext& context, EvaluateOptions options) {
+  apply_protocol(options);
   Device device = Device::open({context.platform, context.device});
   const Model model = load_model(device, options.model);
-  TestRunOptions run = options.run;
-  run.camera = model.modalities.camera;
-  if (options.azimuth_deg) run.camera.azimuth_deg = *options.azimuth_deg;
-  if (options.elevation_deg) run.camera.elevation_deg = *options.elevation_deg;
-  run.regeneration.seed = context.seed;
-  const ordered_json summary = summary_json(run_test(model, find_clips(options.test), run));
+  const InterruptGuard interrupt;
+  EvaluationReport report;
+  {
+    ProgressLine progress(context.quiet);
+    const auto show = [&](double from, double to) {
+      return [&, from, to](const std::string& what, double fraction) {
+        interrupt.check();
+        progress.show(what, from + (to - from) * fraction);
+      };
+    };
+    TestRunOptions run = options.run;
+    run.camera = model.modalities.camera;
+    if (options.azimuth_deg) run.camera.azimuth_deg = *options.azimuth_deg;
+    if (options.elevation_deg) run.camera.elevation_deg = *options.elevation_deg;
+    run.regeneration.seed = context.seed;
+    run.progress = show(0.0, 0.9);
+    report.clips = report_clips(model, run_test(model, find_clips(options.test), run),
+                                options.actions == "by-folder");
+    report.actions = analyse_actions(report.clips, context.seed, show(0.9, 1.0));
+  }
+  report.model = options.model.filename().string();
+  report.protocol = options.protocol;
+  report.temperature = options.run.regeneration.temperature;
+  if (!options.report.empty()) {
+    write_report(options.report, report);
+    spdlog::info("{}: open report.html in a browser", options.report.string());
+  }
   if (context.json)
-    print_json(summary);
+    print_json(summary_json(report));
   else
-    print_table(summary);
+    print_table(report);
+}
+
+void add_test_options(CLI::App& command, EvaluateOptions& options) {
+  command.add_option("--model", options.model, "Trained model")->required()->type_name("FILE");
+  command.add_option("--test", options.test, "BVH files, or folders that hold some")
+      ->required()
+      ->type_name("PATH");
+  command
+      .add_option("--report", options.report,
+                  "Folder to write report.html, summary.json and the tables (CSV) to")
+      ->type_name("DIR");
+  command
+      .add_option("--protocol", options.protocol,
+                  "subject: clips of people that were not trained on; paper: every clip, also "
+                  "those trained on, 10 samples, by folder")
+      ->check(CLI::IsMember({"subject", "paper"}))
+      ->capture_default_str();
+  command
+      .add_option("--actions", options.actions,
+                  "together, or by-folder: each folder's name is an action")
+      ->check(CLI::IsMember({"together", "by-folder"}));
+  command.add_flag("--include-training", options.run.include_training,
+                   "Accept clips that were trained on");
+  command.add_flag("--keep-first-frame", options.run.keep_first_frame,
+                   "Keep a leading calibration pose");
+}
+
+void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
+  command.add_option("--samples", options.samples, "Regenerations of each clip (default: 1)")
+      ->check(CLI::Range(1, 1000));
+  command
+      .add_option("--temperature", options.temperature,
+                  "0: mean field; towards 1: sampled (default: 1 with several samples, else 0)")
+      ->check(CLI::Range(0.0, 10.0));
+  command
+      .add_option("--gibbs-steps", options.run.regeneration.gibbs_steps,
+                  "k of a sampled frame (Algorithm 5)")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command.add_option("--camera-azimuth", options.azimuth_deg, "Degrees (default: as trained)");
+  command.add_option("--camera-elevation", options.elevation_deg, "Degrees (default: as trained)")
+      ->check(CLI::Range(-89.0, 89.0));
 }
 
 }  // namespace
@@ -83,31 +138,16 @@ void add_evaluate_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<EvaluateOptions>();
   CLI::App* command = app.add_subcommand(
       "evaluate", "Scores a model and its baselines on clips that it was not trained on");
-  command->add_option("--model", options->model, "Trained model")->required()->type_name("FILE");
-  command->add_option("--test", options->test, "BVH files, or folders that hold some")
-      ->required()
-      ->type_name("PATH");
-  command->add_flag("--include-training", options->run.include_training,
-                    "Accept clips that were trained on");
-  command->add_flag("--keep-first-frame", options->run.keep_first_frame,
-                    "Keep a leading calibration pose");
-  command->add_option("--samples", options->run.regeneration.samples, "Regenerations of each clip")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command
-      ->add_option("--temperature", options->run.regeneration.temperature,
-                   "0: mean field; towards 1: sampled")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
-  command->add_option("--camera-azimuth", options->azimuth_deg, "Degrees (default: as trained)");
-  command->add_option("--camera-elevation", options->elevation_deg, "Degrees (default: as trained)")
-      ->check(CLI::Range(-89.0, 89.0));
+  add_test_options(*command, *options);
+  add_regeneration_options(*command, *options);
   add_json_option(*command, context);
   add_seed_option(*command, context);
   add_device_options(*command, context);
   add_quiet_option(*command, context);
   command->footer(
-      "Example:\n  mcdbn-cl evaluate --model run/model.safetensors --test held_out/ --json");
+      "Example:\n  mcdbn-cl evaluate --model run/model.safetensors --test held_out/ --report "
+      "report\n"
+      "  mcdbn-cl evaluate --model run/model.safetensors --test held_out/ --json");
   command->callback([&context, options] {
     context.run = [&context, options] { run_evaluate(context, *options); };
   });

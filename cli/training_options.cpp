@@ -28,25 +28,20 @@ std::string place(const std::filesystem::path& file, const toml::source_region& 
   return fmt::format("{}:{}", file.string(), source.begin.line);
 }
 
-/// Sets the setting called `name` from a TOML value; false if there is no such setting.
-bool assign(TrainingConfig& config, const std::string& name, const toml::node& node,
-            const std::string& where) {
-  bool found = false;
-  visit_settings(config, [&](const std::string& setting, auto& member, const char*) {
-    if (setting != name) return;
-    found = true;
-    using Member = std::decay_t<decltype(member)>;
-    const auto value = node.value<
-        std::conditional_t<std::is_floating_point_v<Member>, double,
-                           std::conditional_t<std::is_same_v<Member, bool>, bool, std::int64_t>>>();
-    bool fits = value.has_value();
-    if constexpr (std::is_unsigned_v<Member> && !std::is_same_v<Member, bool>)
-      fits = fits && *value >= 0;
-    if (!fits)
-      throw ConfigError(fmt::format("{}: '{}' has a value of the wrong kind", where, name));
-    member = static_cast<Member>(*value);
-  });
-  return found;
+/// Null for what no setting can be.
+nlohmann::json scalar_of(const toml::node& node) {
+  if (const auto* boolean = node.as_boolean()) return boolean->get();
+  if (const auto* integer = node.as_integer()) return integer->get();
+  if (const auto* number = node.as_floating_point()) return number->get();
+  return nullptr;
+}
+
+template <typename Member>
+bool fits(const nlohmann::json& value) {
+  if constexpr (std::is_same_v<Member, bool>) return value.is_boolean();
+  if constexpr (std::is_floating_point_v<Member>) return value.is_number();
+  if (!value.is_number_integer()) return false;
+  return std::is_signed_v<Member> || value.is_number_unsigned() || value.get<std::int64_t>() >= 0;
 }
 
 void apply_table(TrainingConfig& config, const toml::table& table, const std::string& prefix,
@@ -55,10 +50,8 @@ void apply_table(TrainingConfig& config, const toml::table& table, const std::st
     const std::string name = prefix + std::string(key.str());
     if (const toml::table* inner = node.as_table())
       apply_table(config, *inner, name + ".", file);
-    else if (const std::string where = place(file, node.source());
-             !assign(config, name, node, where))
-      throw ConfigError(
-          fmt::format("{}: unknown setting '{}'; see mcdbn-cl train --help", where, name));
+    else
+      assign_setting(config, name, scalar_of(node), place(file, node.source()));
   }
 }
 
@@ -110,6 +103,22 @@ TrainingConfig TrainingOptions::resolve() const {
   for (const auto& flag : flags_) flag(config);
   config.validate();
   return config;
+}
+
+void assign_setting(TrainingConfig& config, const std::string& name, const nlohmann::json& value,
+                    const std::string& where) {
+  bool found = false;
+  visit_settings(config, [&](const std::string& setting, auto& member, const char*) {
+    if (setting != name) return;
+    found = true;
+    using Member = std::decay_t<decltype(member)>;
+    if (!fits<Member>(value))
+      throw ConfigError(fmt::format("{}: '{}' has a value of the wrong kind", where, name));
+    member = value.get<Member>();
+  });
+  if (!found)
+    throw ConfigError(
+        fmt::format("{}: unknown setting '{}'; see mcdbn-cl train --help", where, name));
 }
 
 nlohmann::json settings_json(const TrainingConfig& config) {

@@ -25,6 +25,12 @@ class TrainingOptions {
   std::vector<std::function<void(TrainingConfig&)>> flags_;
 };
 
+/// Sets the setting of that name, with dots between the parts of it.
+/// @param where what to name in an error: file:line
+/// @throws ConfigError if there is no such setting or the value is of the wrong kind
+void assign_setting(TrainingConfig& config, const std::string& name, const nlohmann::json& value,
+                    const std::string& where);
+
 /// Every setting by its name, nested at the dots.
 nlohmann::json settings_json(const TrainingConfig& config);
 /// The same as a TOML file that --config reads.

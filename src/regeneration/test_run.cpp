@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
 
 #include "mcdbn/baselines/baseline.hpp"
+#include "mcdbn/baselines/mlp_window.hpp"
 #include "mcdbn/errors.hpp"
+#include "mcdbn/evaluation/bone_length.hpp"
+#include "mcdbn/evaluation/foot_slide.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
 
 namespace mcdbn {
@@ -15,6 +19,15 @@ bool was_trained_on(const Model& model, const std::filesystem::path& file) {
   const std::string fingerprint = identify_clip(file).fingerprint;
   return std::any_of(model.training_clips.begin(), model.training_clips.end(),
                      [&](const TrainingClip& clip) { return clip.fingerprint == fingerprint; });
+}
+
+/// The person of a clip if a training clip shows the same one; else empty.
+std::string known_person(const Model& model, const std::filesystem::path& file) {
+  const std::string person = person_of(file);
+  const bool known =
+      std::any_of(model.training_clips.begin(), model.training_clips.end(),
+                  [&](const TrainingClip& clip) { return person_of(clip.path) == person; });
+  return known ? person : "";
 }
 
 /// Joints worth judging: not the root, not those that stand where their parent stands.
@@ -51,26 +64,86 @@ std::vector<EncodedClip> encode_training_clips(const Model& model, const TestRun
   return clips;
 }
 
-void score_baselines(const Model& model, const TestRunOptions& options,
-                     std::vector<ClipResult>& results) {
+/// Reading is the first tenth of a run, regenerating up to seven tenths, then baselines.
+class Progress {
+ public:
+  explicit Progress(const TestRunOptions& options) : options_(options) {}
+  void show(const std::string& what, double from, std::size_t done, std::size_t of) const {
+    if (!options_.progress) return;
+    const double to = from == kRegeneration ? kBaselines : from == kBaselines ? 1.0 : kRegeneration;
+    options_.progress(what,
+                      from + (to - from) * static_cast<double>(done) / static_cast<double>(of));
+  }
+  static constexpr double kRegeneration = 0.1, kBaselines = 0.7;
+
+ private:
+  const TestRunOptions& options_;
+};
+
+Regeneration answer(const Model& model, const EncodedClip& truth, const MatrixF& pose) {
+  Regeneration result;
+  result.motion = motion_from_features(model.modalities, pose, truth.track,
+                                       {truth.camera, truth.motion.skeleton});
+  result.score = score_clip(truth, result.motion, model.modalities.root_name());
+  return result;
+}
+
+/// Clips go to the device some at a time, so that memory does not grow with the test.
+void regenerate_clips(const Model& model, const TestRunOptions& options, const Progress& progress,
+                      std::vector<ClipResult>& results) {
+  constexpr std::size_t kSequencesAtOnce = 64;
+  const std::size_t samples = options.regeneration.samples;
+  const std::size_t at_once = std::max<std::size_t>(1, kSequencesAtOnce / samples);
+  for (std::size_t first = 0; first < results.size(); first += at_once) {
+    progress.show("regenerating", Progress::kRegeneration, first, results.size());
+    const std::size_t last = std::min(results.size(), first + at_once);
+    std::vector<MatrixF> tracks;
+    for (std::size_t i = first; i < last; ++i) tracks.push_back(results[i].truth.track_features);
+    RegenerationOptions regeneration = options.regeneration;
+    regeneration.seed += first;  // other random numbers for other clips
+    const auto poses = regenerate(model.network, tracks, regeneration);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      ClipResult& result = results[first + i / samples];
+      result.samples.push_back(answer(model, result.truth, poses[i]));
+    }
+    if (regeneration.temperature <= 0) continue;
+    regeneration.temperature = 0;
+    regeneration.samples = 1;
+    const auto single = regenerate(model.network, tracks, regeneration);
+    for (std::size_t i = 0; i < single.size(); ++i)
+      results[first + i].others[kMeanField] = answer(model, results[first + i].truth, single[i]);
+  }
+}
+
+void run_baselines(const Model& model, const TestRunOptions& options, const Progress& progress,
+                   std::vector<ClipResult>& results) {
   std::vector<MatrixF> tracks, poses;
   for (EncodedClip& clip : encode_training_clips(model, options)) {
     tracks.push_back(std::move(clip.track_features));
     poses.push_back(std::move(clip.pose_features));
   }
-  for (const auto& baseline : default_baselines()) {
-    baseline->fit(tracks, poses);
-    for (ClipResult& result : results) {
-      const Motion motion = motion_from_features(
-          model.modalities, baseline->predict(result.truth.track_features), result.truth.track,
-          {result.truth.camera, result.truth.motion.skeleton});
-      result.baseline_scores[baseline->name()] =
-          score_clip(result.truth, motion, model.modalities.root_name());
-    }
+  auto baselines = default_baselines();
+  baselines.push_back(std::make_unique<MlpWindow>(model.network.mrbm.device()));
+  for (std::size_t i = 0; i < baselines.size(); ++i) {
+    const std::string name = baselines[i]->name();
+    progress.show("baseline " + name, Progress::kBaselines, i, baselines.size());
+    baselines[i]->fit(tracks, poses);
+    for (ClipResult& result : results)
+      result.others[name] =
+          answer(model, result.truth, baselines[i]->predict(result.truth.track_features));
   }
 }
 
 }  // namespace
+
+std::string person_of(const std::filesystem::path& file) {
+  static const std::regex cmu("(\\d+)_\\d+.*"), synthesized(".*_(s\\d+)_\\d+");
+  const std::string name = file.stem().string();
+  std::smatch found;
+  const bool tells =
+      std::regex_match(name, found, cmu) || std::regex_match(name, found, synthesized);
+  return tells ? found[1].str() : "";
+}
 
 ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                      const std::string& root_name) {
@@ -86,35 +159,20 @@ ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
   const MatrixD path = joint_positions(regenerated).middleCols(3 * root, 3);
   const double mm = 1000.0 / file_units_per_metre(truth.motion.skeleton);
   score.root_mm = mm * (path - truth.root_position).rowwise().norm().mean();
+  const MatrixD world = world_positions_mm(regenerated);
+  score.foot_slide = foot_slide(world_positions_mm(truth.motion), world,
+                                foot_joints(truth.motion.skeleton), truth.motion.fps());
+  score.bone_length_spread_mm = bone_length_spread_mm(world, regenerated.skeleton);
   return score;
-}
-
-ClipScore mean_score(const std::vector<ClipScore>& scores) {
-  ClipScore mean;
-  const auto average = [&](auto&& member) {
-    double sum = 0;
-    for (const ClipScore& score : scores) sum += member(score);
-    return sum / static_cast<double>(scores.size());
-  };
-  mean.pcc_flat = average([](const ClipScore& s) { return s.pcc_flat; });
-  mean.pcc_channel = average([](const ClipScore& s) { return s.pcc_channel; });
-  mean.root_mm = average([](const ClipScore& s) { return s.root_mm; });
-  mean.error.mpjpe_mm = average([](const ClipScore& s) { return s.error.mpjpe_mm; });
-  mean.error.pa_mpjpe_mm = average([](const ClipScore& s) { return s.error.pa_mpjpe_mm; });
-  mean.error.mpjve_mm_s = average([](const ClipScore& s) { return s.error.mpjve_mm_s; });
-  mean.error.acceleration_error_mm_s2 =
-      average([](const ClipScore& s) { return s.error.acceleration_error_mm_s2; });
-  mean.error.pck_150mm = average([](const ClipScore& s) { return s.error.pck_150mm; });
-  mean.error.rmse_mm = average([](const ClipScore& s) { return s.error.rmse_mm; });
-  return mean;
 }
 
 std::vector<ClipResult> run_test(const Model& model,
                                  const std::vector<std::filesystem::path>& files,
                                  const TestRunOptions& options) {
+  const Progress progress(options);
   std::vector<ClipResult> results;
-  std::vector<MatrixF> tracks;
   for (const auto& file : files) {
+    progress.show("reading clips", 0.0, results.size(), files.size());
     const bool trained_on = was_trained_on(model, file);
     if (trained_on && !options.include_training)
       throw InputError(
@@ -124,20 +182,11 @@ std::vector<ClipResult> run_test(const Model& model,
     ClipResult result;
     result.truth = encode_clip(file, model.modalities, options.camera, options.keep_first_frame);
     result.trained_on = trained_on;
-    tracks.push_back(result.truth.track_features);
+    result.known_person = known_person(model, file);
     results.push_back(std::move(result));
   }
-  const auto poses = regenerate(model.network, tracks, options.regeneration);
-  const std::size_t samples = options.regeneration.samples;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    ClipResult& result = results[i / samples];
-    result.regenerated.push_back(
-        motion_from_features(model.modalities, poses[i], result.truth.track,
-                             {result.truth.camera, result.truth.motion.skeleton}));
-    result.scores.push_back(
-        score_clip(result.truth, result.regenerated.back(), model.modalities.root_name()));
-  }
-  if (options.baselines) score_baselines(model, options, results);
+  regenerate_clips(model, options, progress, results);
+  if (options.baselines) run_baselines(model, options, progress, results);
   return results;
 }
 

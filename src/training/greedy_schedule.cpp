@@ -32,17 +32,24 @@ class EpochClock {
     last_ = now;
     return static_cast<double>(windows) / elapsed_s;
   }
+  void restart() { last_ = std::chrono::steady_clock::now(); }
 
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+bool is_health_epoch(std::size_t epoch, std::size_t epochs) {
+  constexpr std::size_t kEvery = 5;
+  return epoch == 1 || epoch == epochs || epoch % kEvery == 0;
+}
+
 /// Runs one stage's epochs: shuffle, all mini-batches, one read of the losses, guard, report.
+/// @param health called now and then for the report
 /// @param mini_batch called with (epoch, first index entry, global step)
-template <typename MiniBatch>
+template <typename Health, typename MiniBatch>
 void run_epochs(const std::string& stage, std::size_t epochs, MinibatchSchedule& schedule,
                 LossAccumulator& losses, DivergenceGuard guard, const RandomKey& shuffle_key,
-                const EpochObserver& observer, const MiniBatch& mini_batch) {
+                const EpochObserver& observer, const Health& health, const MiniBatch& mini_batch) {
   EpochClock clock;
   std::uint32_t step = 0;
   for (std::size_t epoch = 1; epoch <= epochs; ++epoch) {
@@ -64,7 +71,9 @@ void run_epochs(const std::string& stage, std::size_t epochs, MinibatchSchedule&
       report.loss = loss;
       report.windows_per_s = clock.windows_per_s(schedule.batch_count() * schedule.batch());
       report.stage_progress = static_cast<double>(epoch) / static_cast<double>(epochs);
+      if (is_health_epoch(epoch, epochs)) report.health = health();
       observer(report);
+      clock.restart();
     }
   }
 }
@@ -179,6 +188,23 @@ std::vector<std::int32_t> paired_rows(const Sequences& codes, std::size_t look_a
   return rows;
 }
 
+/// A hundred pairs of codes at most, for mrbm_health. @return [rows x dimension] of each modality
+std::pair<MatrixF, MatrixF> some_pairs(const Sequences& track, const Sequences& pose,
+                                       std::size_t look_ahead) {
+  constexpr std::size_t kMost = 100;
+  const auto rows = paired_rows(pose, look_ahead);
+  const MatrixF all_track = track.values.to_host(), all_pose = pose.values.to_host();
+  const std::size_t count = std::min(kMost, rows.size());
+  MatrixF some_track(count, all_track.cols()), some_pose(count, all_pose.cols());
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto row = static_cast<Eigen::Index>(rows[i * rows.size() / count]);
+    some_track.row(static_cast<Eigen::Index>(i)) =
+        all_track.row(row + static_cast<Eigen::Index>(look_ahead));
+    some_pose.row(static_cast<Eigen::Index>(i)) = all_pose.row(row);
+  }
+  return {some_track, some_pose};
+}
+
 }  // namespace
 
 Crbm train_crbm(Device& device, const Sequences& visible, const CrbmShape& shape,
@@ -192,6 +218,8 @@ Crbm train_crbm(Device& device, const Sequences& visible, const CrbmShape& shape
                              config.least_batches);
   ContrastiveDivergence cd(crbm, schedule.batch());
   LossAccumulator losses(device, 1, schedule.batch());
+  const std::vector<MatrixF> windows =
+      observer ? health_windows(visible, shape.order + kFreeRunFrames) : std::vector<MatrixF>{};
   const std::string kind = shape.kind == VisibleKind::gaussian ? "gaussian" : "binary";
   DivergenceGuard guard(
       stage,
@@ -201,7 +229,8 @@ Crbm train_crbm(Device& device, const Sequences& visible, const CrbmShape& shape
                   settings.initial_deviation));
   run_epochs(
       stage, settings.epochs, schedule, losses, guard, key_of(config, stream, 0, kShufflePhase),
-      observer, [&](std::size_t epoch, std::size_t first, std::uint32_t step) {
+      observer, [&] { return crbm_health(crbm.to_host(), windows); },
+      [&](std::size_t epoch, std::size_t first, std::uint32_t step) {
         const Rows rows = Rows::indexed(visible.values, schedule.index(), first, schedule.batch());
         cd.step(rows, rule_for(settings, epoch), key_of(config, stream, step, 0), losses);
       });
@@ -224,11 +253,13 @@ Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
   DivergenceGuard guard(
       "mrbm", fmt::format("lower --mrbm-rate (now {:g}) or --mrbm-initial-deviation (now {:g})",
                           settings.rate, settings.initial_deviation));
+  const auto [track_rows, pose_rows] = some_pairs(track, pose, config.look_ahead);
   AdamRule rule;
   rule.weight_decay = static_cast<float>(settings.weight_decay);
   run_epochs(
       "mrbm", settings.epochs, schedule, losses, guard, key_of(config, stream, 0, kShufflePhase),
-      observer, [&](std::size_t, std::size_t first, std::uint32_t step) {
+      observer, [&] { return mrbm_health(mrbm.to_host(), track_rows, pose_rows); },
+      [&](std::size_t, std::size_t first, std::uint32_t step) {
         const double progress = static_cast<double>(step) /
                                 static_cast<double>(settings.epochs * schedule.batch_count());
         rule.rate = static_cast<float>(falling_rate(settings.rate, progress));

@@ -4,16 +4,18 @@
 
 #include "clips.hpp"
 #include "mcdbn/baselines/constant_pose.hpp"
+#include "mcdbn/baselines/hold_last_frame.hpp"
 #include "mcdbn/errors.hpp"
 
 namespace mcdbn {
 
 TEST_CASE("default_baselines: names, in the order of the reports") {
   const auto baselines = default_baselines();
-  REQUIRE(baselines.size() == 3);
+  REQUIRE(baselines.size() == 4);
   CHECK(baselines[0]->name() == "mean_pose");
-  CHECK(baselines[1]->name() == "nearest_neighbour");
-  CHECK(baselines[2]->name() == "ridge_window");
+  CHECK(baselines[1]->name() == "hold_last_frame");
+  CHECK(baselines[2]->name() == "nearest_neighbour");
+  CHECK(baselines[3]->name() == "ridge_window");
 }
 
 TEST_CASE("every baseline: shapes, missing joints and misuse") {
@@ -54,6 +56,14 @@ TEST_CASE("mean_pose weighs frames, not clips") {
   baseline.fit({MatrixF::Zero(1, 2), MatrixF::Zero(3, 2)},
                {MatrixF::Constant(1, 1, 8), MatrixF::Constant(3, 1, 4)});
   CHECK(baseline.predict(MatrixF::Ones(2, 2)) == MatrixF::Constant(2, 1, 5));
+}
+
+TEST_CASE("hold_last_frame holds the nearest neighbour of the first frame") {
+  const std::vector<MatrixF> tracks = {test::random_clip(14, 3, 1)};
+  const std::vector<MatrixF> poses = {test::random_clip(14, 5, 3)};
+  HoldLastFrame baseline;
+  baseline.fit(tracks, poses);
+  CHECK(baseline.predict(tracks[0].bottomRows(4)) == poses[0].row(10).replicate(4, 1));
 }
 
 }  // namespace mcdbn

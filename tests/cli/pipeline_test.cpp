@@ -178,7 +178,8 @@ TEST_CASE("evaluate prints one object, and refuses clips that were trained on") 
     CHECK(scores.at("mpjpe_mm").get<double>() > 0.0);
   };
   check_scores(summary.at("model"));
-  for (const char* baseline : {"mean_pose", "nearest_neighbour", "ridge_window"}) {
+  for (const char* baseline :
+       {"mean_pose", "hold_last_frame", "nearest_neighbour", "ridge_window", "mlp_window"}) {
     CAPTURE(baseline);
     check_scores(summary.at("baselines").at(baseline));
   }
@@ -188,6 +189,45 @@ TEST_CASE("evaluate prints one object, and refuses clips that were trained on") 
   CHECK(refused.standard_output.empty());
   CHECK(refused.standard_error.find("--include-training") != std::string::npos);
   CHECK(run_cli(evaluate + pipeline.training_clips() + " --include-training").exit_code == 0);
+}
+
+TEST_CASE("evaluate --report writes the tables, by action, training clips marked") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const fs::path report = pipeline.folder("report");
+  const std::string evaluate =
+      fmt::format("evaluate --model '{}' --quiet --report '{}' --json --test ",
+                  pipeline.model().string(), report.string());
+  const CliResult result = run_cli(evaluate + pipeline.test_clips() +
+                                   " --samples 3 --temperature 0.5 --actions by-folder");
+  CAPTURE(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  const json summary = json::parse(result.standard_output);
+  CHECK(summary == json::parse(mcdbn::read_text_file(report / "summary.json")));
+  CHECK(summary.at("training_clips") == 0);
+  CHECK(summary.at("samples") == 3);
+  CHECK(summary.at("model_mean_field").at("mpjpe_mm").is_number());
+  const json& action = summary.at("actions").at(0);
+  CHECK(action.at("name") == "motion");
+  CHECK(action.at("pcc_flat").at("count") == 6);
+  CHECK(action.at("pairwise_real").at("count") == 1);
+  CHECK(action.at("pairwise_regenerated").at("count") == 15);
+  CHECK(fs::exists(report / "report.html"));
+  CHECK(count_lines(mcdbn::read_text_file(report / "table_3.csv")) == 3);
+  CHECK(count_lines(mcdbn::read_text_file(report / "table_7.csv")) == 2);
+
+  // The paper's protocol: every clip, ten times; what was said stays.
+  const CliResult paper = run_cli(evaluate + pipeline.test_clips() + pipeline.training_clips() +
+                                  " --protocol paper --samples 2");
+  CAPTURE(paper.standard_error);
+  REQUIRE(paper.exit_code == 0);
+  const json all = json::parse(paper.standard_output);
+  CHECK(all.at("clips") == 4);
+  CHECK(all.at("samples") == 2);
+  CHECK(all.at("temperature") == 1.0);
+  CHECK(all.at("training_clips") == 2);
+  CHECK(mcdbn::read_text_file(report / "table_3.csv").find("motion,2,pcc_flat,8,") !=
+        std::string::npos);
 }
 
 TEST_CASE("Python's safetensors opens a model file") {

@@ -94,6 +94,34 @@ TEST_CASE("the figure is drawn where the camera sees it, left and right in their
   CHECK(on_right.m10 / on_right.m00 < 130);
 }
 
+TEST_CASE("through a camera, joints are where it projects them") {
+  const ScratchFolder folder;
+  const Motion motion = short_clip(SynthesisAction::walk);
+  CameraPlacement placement;
+  placement.azimuth_deg = 60;
+  const Camera camera = place_camera(motion, placement);
+  const Track2d track = project_motion(motion, camera);
+  RenderOptions options;
+  options.camera = camera;
+  options.sheet_columns = 1;
+  render({{motion, ""}}, folder / "camera.png", options);
+  const cv::Mat sheet = cv::imread((folder / "camera.png").string());
+  const cv::Mat image = sheet.rowRange(0, sheet.rows / 2);
+  REQUIRE(std::abs(image.cols - image.rows * 1920.0 / 1080.0) < 2);
+  const double scale = image.rows / 1080.0;
+  int limbs = 0;
+  for (int joint = 0; joint < track.joint_count(); ++joint) {
+    const std::string& name = track.joint_names[static_cast<std::size_t>(joint)];
+    if (!name.starts_with("Left") && !name.starts_with("Right")) continue;
+    CAPTURE(name);
+    ++limbs;
+    const int x = cvRound(scale * track.x_px(0, joint)), y = cvRound(scale * track.y_px(0, joint));
+    const cv::Rect around = cv::Rect(x - 3, y - 3, 7, 7) & cv::Rect({0, 0}, image.size());
+    CHECK(coloured_pixels(image(around)) > 5);
+  }
+  CHECK(limbs >= 12);
+}
+
 TEST_CASE("a video has a frame for every frame of the longest clip") {
   const ScratchFolder folder;
   const RenderClip walk{short_clip(SynthesisAction::walk, 0.5), "walk"};

@@ -95,8 +95,11 @@ std::vector<Bounded> reference_regeneration(const Parameters& p, const MatrixF& 
   std::vector<Bounded> frames;
   for (std::size_t i = 0; i < lead; ++i) frames.push_back(exact(track.row(0)));
   for (Eigen::Index t = 0; t < track.rows(); ++t) frames.push_back(exact(track.row(t)));
-  for (std::size_t i = 0; i < p.look_ahead; ++i)
-    frames.push_back(exact(track.row(track.rows() - 1)));
+  const Eigen::Index last = track.rows() - 1;
+  for (std::size_t i = 1; i <= p.look_ahead; ++i) {  // carried on, turned about the last frame
+    const MatrixF back = track.row(std::max<Eigen::Index>(last - static_cast<Eigen::Index>(i), 0));
+    frames.push_back(exact(MatrixF(2.0F * track.row(last) - back)));
+  }
   const auto code = up_pass(p.track[1], up_pass(p.track[0], frames, kOrder), 2 * kOrder);
 
   std::vector<Bounded> visible(frames.size(), exact(p.pose[0].visible_mean));

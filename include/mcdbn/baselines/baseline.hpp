@@ -26,7 +26,8 @@ class Baseline {
   virtual MatrixF predict(const MatrixF& track) const = 0;
 };
 
-/// One of each that needs no device, not fitted yet: mean_pose, nearest_neighbour, ridge_window.
+/// One of each that needs no device, not fitted yet: mean_pose,
+/// hold_last_frame, nearest_neighbour, ridge_window.
 std::vector<std::unique_ptr<Baseline>> default_baselines();
 
 }  // namespace mcdbn

@@ -12,7 +12,9 @@ struct RegenerationOptions {
   /// 0: mean field throughout (the best single answer). Above: Algorithm 5's sampled Gibbs steps,
   /// each draw pulled towards its mean as mean + temperature · (draw − mean).
   double temperature = 0.0;
-  std::size_t gibbs_steps = 3;  ///< k for inference (Table 2)
+  /// k for inference. Table 2 has 3, but only the first step starts from the code: on held-out CMU
+  /// walks the error of samples at temperature 0.5 is 53 mm with k = 1 and 130 mm with k = 2.
+  std::size_t gibbs_steps = 1;
   std::uint64_t seed = 1;
   /// Frames of the repeated first 2D frame before the clip, in which the 3D history settles from
   /// the training mean: no ground truth at the start.

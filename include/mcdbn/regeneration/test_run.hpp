@@ -1,25 +1,17 @@
 #pragma once
 
+#include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "mcdbn/evaluation/joint_error.hpp"
+#include "mcdbn/evaluation/clip_score.hpp"
+#include "mcdbn/evaluation/report_clip.hpp"
 #include "mcdbn/model/encoded_clip.hpp"
 #include "mcdbn/model/model_file.hpp"
 #include "mcdbn/regeneration/clip_regeneration.hpp"
 
 namespace mcdbn {
-
-/// How close one regenerated clip is to the truth: over forward kinematics on the test clip's own
-/// skeleton, root-relative, joints that do not coincide with their parent, on a 1.7 m body.
-struct ClipScore {
-  double pcc_flat = 0;     ///< the paper's figure
-  double pcc_channel = 0;  ///< mean over channels: the strict one
-  JointError error;
-  double root_mm = 0;  ///< mean distance of the regenerated root from the true one, in the world
-};
 
 /// What a test run is made of, and what it costs to know the answer's skeleton and camera: both are
 /// the test clip's; its motion is not shown to anyone.
@@ -29,15 +21,29 @@ struct TestRunOptions {
   bool keep_first_frame = false;
   bool include_training = false;  ///< else a clip that was trained on is refused
   bool baselines = true;
+  /// Called now and then with what is being done and how much of the run is done; may throw to
+  /// stop.
+  std::function<void(const std::string& what, double fraction)> progress;
+};
+
+/// One answer to a clip.
+struct Regeneration {
+  Motion motion;
+  ClipScore score;
 };
 
 struct ClipResult {
   EncodedClip truth;
   bool trained_on = false;
-  std::vector<Motion> regenerated;  ///< one a sample
-  std::vector<ClipScore> scores;    ///< of each sample
-  std::map<std::string, ClipScore> baseline_scores;
+  std::string known_person;  ///< as person_of says, if a training clip shows the same one
+  std::vector<Regeneration> samples;
+  /// The baselines by name, and kMeanField, the model's single answer, if samples were drawn.
+  std::map<std::string, Regeneration> others;
 };
+
+/// Who a clip shows, where its name tells: `08` of CMU's 08_01.bvh, `s02` of walk_s02_01.bvh as
+/// `synthesize` names them. Empty where it does not.
+std::string person_of(const std::filesystem::path& file);
 
 /// @throws InputError if a clip was trained on, or a training clip that the baselines need is gone
 std::vector<ClipResult> run_test(const Model& model,
@@ -46,7 +52,11 @@ std::vector<ClipResult> run_test(const Model& model,
 
 ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                      const std::string& root_name);
-/// Mean over clips (and samples).
-ClipScore mean_score(const std::vector<ClipScore>& scores);
+
+/// How clips are put under actions: `by_folder` by the name of the folder that they lie in; else
+/// all under "all clips".
+/// @return what a report needs, clips named by their file
+std::vector<ReportClip> report_clips(const Model& model, const std::vector<ClipResult>& results,
+                                     bool by_folder);
 
 }  // namespace mcdbn

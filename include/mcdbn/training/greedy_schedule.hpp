@@ -1,10 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "mcdbn/model/mcdbn.hpp"
 #include "mcdbn/training/config.hpp"
+#include "mcdbn/training/layer_health.hpp"
 #include "mcdbn/training/training_set.hpp"
 
 namespace mcdbn {
@@ -15,8 +17,9 @@ struct EpochReport {
   std::size_t epoch = 0, epochs = 0;
   double loss = 0;  ///< mean squared reconstruction error of a unit, or cross-entropy of a unit
   double windows_per_s = 0;
-  double stage_progress = 0;    ///< 0 … 1
-  double overall_progress = 0;  ///< 0 … 1, by the stages' own cost
+  double stage_progress = 0;          ///< 0 … 1
+  double overall_progress = 0;        ///< 0 … 1, by the stages' own cost
+  std::optional<LayerHealth> health;  ///< at a stage's first and last epoch, and every fifth
 };
 using EpochObserver = std::function<void(const EpochReport&)>;
 

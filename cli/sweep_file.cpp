@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "mcdbn/errors.hpp"
+#include "sweep.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string place(const fs::path& file, const toml::source_region& source) {
+  return fmt::format("{}:{}", file.string(), source.begin.line);
+}
+
+[[noreturn]] void reject(const fs::path& file, const toml::node& node, const std::string& what) {
+  throw ConfigError(fmt::format("{}: {}", place(file, node.source()), what));
+}
+
+nlohmann::json scalar_of(const fs::path& file, const toml::node& node) {
+  if (const auto* boolean = node.as_boolean()) return boolean->get();
+  if (const auto* integer = node.as_integer()) return integer->get();
+  if (const auto* number = node.as_floating_point()) return number->get();
+  reject(file, node, "a setting is a number or true or false");
+}
+
+/// The choices for each setting of a table, `a.b` for nested ones; one choice where there is no
+/// list.
+std::vector<std::vector<SweepSetting>> choices_of(const fs::path& file, const toml::table& table,
+                                                  const std::string& prefix = "") {
+  std::vector<std::vector<SweepSetting>> all;
+  for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
+    if (const toml::table* inner = node.as_table()) {
+      for (auto& choices : choices_of(file, *inner, name + ".")) all.push_back(std::move(choices));
+      continue;
+    }
+    const std::string where = place(file, node.source());
+    std::vector<SweepSetting> choices;
+    if (const toml::array* list = node.as_array()) {
+      for (const toml::node& value : *list)
+        choices.push_back({name, scalar_of(file, value), where});
+      if (choices.empty()) reject(file, node, fmt::format("'{}' has no value to try", name));
+    } else {
+      choices.push_back({name, scalar_of(file, node), where});
+    }
+    all.push_back(std::move(choices));
+  }
+  return all;
+}
+
+std::vector<SweepConfiguration> combinations(
+    const std::vector<std::vector<SweepSetting>>& choices) {
+  std::vector<SweepConfiguration> all = {{}};
+  for (const auto& values : choices) {
+    std::vector<SweepConfiguration> longer;
+    for (const SweepConfiguration& start : all)
+      for (const SweepSetting& value : values) {
+        longer.push_back(start);
+        longer.back().push_back(value);
+      }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+std::vector<fs::path> test_paths(const fs::path& file, const toml::node& node) {
+  std::vector<fs::path> paths;
+  const toml::array* list = node.as_array();
+  if (!list || list->empty()) reject(file, node, "'test' is a list of BVH files or folders");
+  for (const toml::node& entry : *list) {
+    const auto path = entry.value<std::string>();
+    if (!path) reject(file, entry, "'test' is a list of BVH files or folders");
+    paths.push_back(file.parent_path() / *path);
+  }
+  return paths;
+}
+
+SweepFile sweep_of(const fs::path& file, const toml::table& table) {
+  SweepFile sweep;
+  for (const auto& [key, node] : table) {
+    std::vector<SweepConfiguration> more;
+    if (key.str() == "test") {
+      sweep.test = test_paths(file, node);
+    } else if (key.str() == "grid" && node.is_table()) {
+      more = combinations(choices_of(file, *node.as_table()));
+    } else if (key.str() == "configuration" && node.is_array_of_tables()) {
+      for (const toml::node& entry : *node.as_array())
+        for (SweepConfiguration& one : combinations(choices_of(file, *entry.as_table())))
+          more.push_back(std::move(one));
+    } else {
+      reject(
+          file, node,
+          fmt::format("'{}' is none of: test, [grid], [[configuration]]", std::string(key.str())));
+    }
+    sweep.configurations.insert(sweep.configurations.end(), more.begin(), more.end());
+  }
+  if (sweep.test.empty())
+    throw ConfigError(fmt::format("{}: no 'test': name the clips to score on", file.string()));
+  if (sweep.configurations.empty())
+    throw ConfigError(
+        fmt::format("{}: nothing to try: give a [grid] or [[configuration]]", file.string()));
+  return sweep;
+}
+
+}  // namespace
+
+SweepFile read_sweep_file(const fs::path& path) {
+  if (!fs::is_regular_file(path))
+    throw ConfigError(fmt::format("{}: no such file; --sweep wants a TOML file", path.string()));
+  try {
+    return sweep_of(path, toml::parse_file(path.string()));
+  } catch (const toml::parse_error& error) {
+    throw ConfigError(fmt::format("{}: {}", place(path, error.source()), error.description()));
+  }
+}
+
+}  // namespace mcdbn::cli

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mcdbn/evaluation/action_report.hpp"
+
+namespace mcdbn {
+
+/// A sentence for people, and whether it is good news.
+struct Verdict {
+  enum class Kind { good, bad, note };
+  Kind kind = Kind::note;
+  std::string text;
+};
+
+/// A whole evaluation: what summary.json, the tables and report.html are made from.
+struct EvaluationReport {
+  std::string model;     ///< file name
+  std::string protocol;  ///< subject, paper
+  double temperature = 0;
+  std::vector<ReportClip> clips;
+  std::vector<ActionReport> actions;  ///< analyse_actions of the clips
+};
+
+/// Mean scores over every clip, whatever its action: `model` (all samples) first, then the others
+/// by name. A report without clips has none.
+std::vector<MethodReport> overall_methods(const EvaluationReport& report);
+
+/// What the figures say, in words: whether a baseline beats the model, whether the flattened
+/// correlation says anything, how alike the regenerations are, whether training clips flatter.
+std::vector<Verdict> verdicts(const EvaluationReport& report);
+
+/// {"clips", "frames", "model": {pcc_flat, …}, "baselines": {name: {…}}, …}; figures that are not
+/// finite are null. Without the clips' motion.
+nlohmann::ordered_json summary_json(const EvaluationReport& report);
+
+}  // namespace mcdbn

@@ -1,0 +1,108 @@
+#include "page_motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "motion_code.hpp"
+
+namespace mcdbn {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// How much of each clip is shown.
+struct Detail {
+  std::size_t samples;
+  bool others;
+  int frame_step;
+};
+
+/// From everything to the least that is worth showing.
+constexpr std::array kDetails = {Detail{std::numeric_limits<std::size_t>::max(), true, 1},
+                                 Detail{5, true, 1},
+                                 Detail{2, true, 1},
+                                 Detail{3, true, 2},
+                                 Detail{1, true, 2},
+                                 Detail{1, true, 3},
+                                 Detail{1, false, 3},
+                                 Detail{1, false, 6}};
+
+/// Whole millimetres (or pixels) of every `step`-th frame.
+std::string encoded(const MatrixD& values, int step) {
+  const Eigen::Index rows = (values.rows() + step - 1) / step;
+  MatrixD kept(rows, values.cols());
+  for (Eigen::Index row = 0; row < rows; ++row) kept.row(row) = values.row(row * step);
+  return encode_series(kept);
+}
+
+class ClipWriter {
+ public:
+  ClipWriter(const ReportClip& clip, const Detail& detail) : clip_(clip), detail_(detail) {
+    json_ = {{"name", clip.name},
+             {"action", clip.action},
+             {"trained_on", clip.trained_on},
+             {"fps", clip.fps / detail.frame_step},
+             {"frames", (clip.frames() + detail.frame_step - 1) / detail.frame_step},
+             {"joints", clip.joints},
+             {"points", clip.point_names},
+             {"parents", clip.parents},
+             {"width", clip.width_px},
+             {"height", clip.height_px},
+             {"truth", code(clip.truth_mm)},
+             {"track", code(clip.track_px)},
+             {"motions", ordered_json::array()}};
+    const auto mean_field = clip.others.find(kMeanField);
+    if (mean_field != clip.others.end()) add("mean field", "model", mean_field->second);
+    for (std::size_t i = 0; i < std::min(detail.samples, clip.samples.size()); ++i)
+      add(clip.samples.size() == 1 ? "model" : "sample " + std::to_string(i + 1), "model",
+          clip.samples[i]);
+    if (!detail.others) return;
+    for (const auto& [name, motion] : clip.others)
+      if (name != kMeanField) add(name, "baseline", motion);
+  }
+
+  ordered_json take() { return std::move(json_); }
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  std::string code(const MatrixD& values) {
+    std::string text = encoded(values, detail_.frame_step);
+    bytes_ += text.size();
+    return text;
+  }
+  void add(const std::string& label, const char* kind, const ReportMotion& motion) {
+    json_["motions"].push_back({{"label", label},
+                                {"kind", kind},
+                                {"mpjpe_mm", motion.score.error.mpjpe_mm},
+                                {"points_mm", code(motion.points_mm)}});
+  }
+
+  const ReportClip& clip_;
+  const Detail& detail_;
+  ordered_json json_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace
+
+PageMotion page_motion(const std::vector<ReportClip>& clips, std::size_t budget_bytes) {
+  PageMotion motion;
+  for (const Detail& detail : kDetails) {
+    motion = {};
+    motion.frame_step = detail.frame_step;
+    motion.samples = clips.empty() ? 0 : std::min(detail.samples, clips.front().samples.size());
+    std::size_t bytes = 0;
+    for (const ReportClip& clip : clips) {
+      ClipWriter writer(clip, detail);
+      if (bytes + writer.bytes() > budget_bytes) break;
+      bytes += writer.bytes();
+      motion.clips.push_back(writer.take());
+    }
+    motion.left_out_clips = clips.size() - motion.clips.size();
+    if (motion.left_out_clips == 0) break;
+  }
+  return motion;
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "mcdbn/evaluation/report_clip.hpp"
+
+namespace mcdbn {
+
+/// What the page's viewer plays of the clips, in at most `budget_bytes` of encoded motion.
+struct PageMotion {
+  nlohmann::ordered_json clips = nlohmann::ordered_json::array();
+  std::size_t left_out_clips = 0;
+  std::size_t samples = 0;  ///< shown of each clip
+  int frame_step = 1;       ///< every so manieth frame is kept
+};
+
+PageMotion page_motion(const std::vector<ReportClip>& clips, std::size_t budget_bytes);
+
+}  // namespace mcdbn

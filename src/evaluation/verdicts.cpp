@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "mcdbn/evaluation/evaluation_report.hpp"
+
+namespace mcdbn {
+namespace {
+
+using Kind = Verdict::Kind;
+
+std::string spoken(const std::string& method) {
+  static const std::map<std::string, std::string> names = {
+      {"mean_pose", "the constant mean pose"},
+      {"hold_last_frame", "one pose held throughout"},
+      {"nearest_neighbour", "the nearest neighbour"},
+      {"ridge_window", "ridge regression"},
+      {"mlp_window", "the MLP"}};
+  const auto found = names.find(method);
+  return found == names.end() ? method : found->second;
+}
+
+const MethodReport* find(const std::vector<MethodReport>& methods, const std::string& name) {
+  for (const MethodReport& method : methods)
+    if (method.name == name) return &method;
+  return nullptr;
+}
+
+/// The model's single best answer: its mean field where samples were drawn.
+const ClipScore& answer_of(const ReportClip& clip) {
+  const auto mean_field = clip.others.find(kMeanField);
+  return mean_field == clip.others.end() ? clip.samples.front().score : mean_field->second.score;
+}
+
+const MethodReport& answer_of(const std::vector<MethodReport>& methods) {
+  const MethodReport* mean_field = find(methods, kMeanField);
+  return mean_field ? *mean_field : methods.front();
+}
+
+int clips_nearer_than(const std::vector<ReportClip>& clips, const std::string& baseline) {
+  int nearer = 0;
+  for (const ReportClip& clip : clips)
+    nearer += answer_of(clip).error.mpjpe_mm < clip.others.at(baseline).score.error.mpjpe_mm;
+  return nearer;
+}
+
+Verdict against(const EvaluationReport& report, const ClipScore& answer,
+                const MethodReport& baseline) {
+  const ClipScore& other = baseline.mean;
+  const bool nearer = answer.error.mpjpe_mm < other.error.mpjpe_mm;
+  const bool follows = answer.pcc_channel > other.pcc_channel;
+  const std::string figures = fmt::format(
+      "{:.1f} mm against {:.1f} mm, per-channel PCC {:.3f} against {:.3f}", answer.error.mpjpe_mm,
+      other.error.mpjpe_mm, answer.pcc_channel, other.pcc_channel);
+  const std::string count =
+      fmt::format("nearer on {} of {} clips", clips_nearer_than(report.clips, baseline.name),
+                  report.clips.size());
+  const std::string name = spoken(baseline.name);
+  if (nearer && follows)
+    return {Kind::good, fmt::format("The model beats {}: {}; {}.", name, figures, count)};
+  if (nearer)
+    return {Kind::bad, fmt::format("The model is nearer to the truth than {}, but follows the "
+                                   "motion less well: {}; {}.",
+                                   name, figures, count)};
+  if (follows)
+    return {Kind::bad, fmt::format("The model is farther from the truth than {}, though it follows "
+                                   "the motion better: {}; {}.",
+                                   name, figures, count)};
+  return {Kind::bad, fmt::format("The model loses to {}: {}; {}.", name, figures, count)};
+}
+
+void add_flat_warning(std::vector<Verdict>& list, const ClipScore& answer,
+                      const std::vector<MethodReport>& methods) {
+  const MethodReport* mean_pose = find(methods, "mean_pose");
+  if (!mean_pose) return;
+  const double constant = mean_pose->mean.pcc_flat;
+  if (constant >= answer.pcc_flat)
+    list.push_back(
+        {Kind::bad, fmt::format("By the flattened PCC that the paper reports, a pose that never "
+                                "moves ({:.4f}) is as good as the model ({:.4f}).",
+                                constant, answer.pcc_flat)});
+  else if (constant > 0.8)
+    list.push_back(
+        {Kind::note, fmt::format("A pose that never moves already reaches a flattened PCC of "
+                                 "{:.4f} (the model: {:.4f}): judge by the per-channel PCC, where "
+                                 "it gets 0.",
+                                 constant, answer.pcc_flat)});
+}
+
+/// Where several actions are reported: those on which a baseline is nearer.
+void add_action_losses(std::vector<Verdict>& list, const ActionReport& action) {
+  const MethodReport* mean_field = find(action.others, kMeanField);
+  const ClipScore& answer = mean_field ? mean_field->mean : action.model.mean;
+  for (const MethodReport& other : action.others)
+    if (other.name != kMeanField && other.mean.error.mpjpe_mm <= answer.error.mpjpe_mm)
+      list.push_back({Kind::bad, fmt::format("On {}, {} is nearer to the truth: {:.1f} mm against "
+                                             "the model's {:.1f} mm.",
+                                             action.name, spoken(other.name),
+                                             other.mean.error.mpjpe_mm, answer.error.mpjpe_mm)});
+}
+
+void add_samples(std::vector<Verdict>& list, const ActionReport& action) {
+  if (!action.diversity_mm) return;
+  if (*action.diversity_mm < 0.01) {
+    list.push_back({Kind::note, fmt::format("The {} regenerations of each {} clip are the same: "
+                                            "above temperature 0 they differ.",
+                                            action.samples, action.name)});
+    return;
+  }
+  std::string text = fmt::format(
+      "{}: {} samples of a clip differ by {:.1f} mm; a sample is off by {:.1f} mm on average, the "
+      "best of {} by {:.1f} mm",
+      action.name, action.samples, *action.diversity_mm, action.model.mean.error.mpjpe_mm,
+      action.samples, action.best->mean.error.mpjpe_mm);
+  Kind kind = Kind::note;
+  if (const MethodReport* single = find(action.others, kMeanField)) {
+    const bool better = action.best->mean.error.mpjpe_mm < single->mean.error.mpjpe_mm;
+    kind = better ? Kind::good : Kind::bad;
+    text += fmt::format(", the single mean-field answer by {:.1f} mm", single->mean.error.mpjpe_mm);
+  }
+  list.push_back({kind, text + "."});
+}
+
+void add_likeness(std::vector<Verdict>& list, const ActionReport& action) {
+  if (!action.weibull_kl) {
+    list.push_back(
+        {Kind::note, fmt::format("{}: how alike real and regenerated clips are cannot be "
+                                 "compared by Weibulls (it takes different, positive "
+                                 "correlations of both).",
+                                 action.name)});
+    return;
+  }
+  const double real = action.pairs_real.statistics.median;
+  const double regenerated = action.pairs_drawn.statistics.median;
+  const char* alike = std::abs(regenerated - real) < 0.005 ? "about as alike as"
+                      : regenerated > real                 ? "more alike than"
+                                                           : "less alike than";
+  list.push_back({*action.weibull_kl < 0.4 ? Kind::good : Kind::note,
+                  fmt::format("{}: regenerated clips are {} real ones (median pairwise PCC {:.3f} "
+                              "against {:.3f}; KL of the fitted Weibulls {:.3g} nats).",
+                              action.name, alike, regenerated, real, *action.weibull_kl)});
+}
+
+void add_foot_slide(std::vector<Verdict>& list, const ClipScore& answer) {
+  const FootSlide& slide = answer.foot_slide;
+  if (!(slide.truth_mm_s > 0) || slide.planted == 0) return;
+  const double ratio = slide.regenerated_mm_s / slide.truth_mm_s;
+  list.push_back({ratio <= 1.5 ? Kind::good : Kind::bad,
+                  fmt::format("Planted feet slide at {:.0f} mm/s, in the capture itself at {:.0f} "
+                              "mm/s: {:.1f} times as fast.",
+                              slide.regenerated_mm_s, slide.truth_mm_s, ratio)});
+}
+
+void add_training_warning(std::vector<Verdict>& list, const EvaluationReport& report) {
+  int trained = 0;
+  for (const ReportClip& clip : report.clips) trained += clip.trained_on;
+  if (trained == 0) return;
+  list.push_back({Kind::bad, fmt::format("{} of {} clips were trained on: every figure that "
+                                         "includes them flatters the model. They are marked.",
+                                         trained, report.clips.size())});
+}
+
+/// The subject protocol is about people that the model has never seen.
+void add_known_people(std::vector<Verdict>& list, const EvaluationReport& report) {
+  std::set<std::string> people;
+  int clips = 0;
+  for (const ReportClip& clip : report.clips) {
+    if (clip.trained_on || clip.known_person.empty()) continue;
+    people.insert(clip.known_person);
+    ++clips;
+  }
+  if (clips == 0) return;
+  list.push_back({Kind::note, fmt::format("{} of {} clips show a person whom the model was trained "
+                                          "on in other clips ({}): for people that it has never "
+                                          "seen expect less.",
+                                          clips, report.clips.size(), fmt::join(people, ", "))});
+}
+
+}  // namespace
+
+std::vector<Verdict> verdicts(const EvaluationReport& report) {
+  std::vector<Verdict> list;
+  const std::vector<MethodReport> methods = overall_methods(report);
+  if (methods.empty()) return list;
+  const ClipScore& answer = answer_of(methods).mean;
+  add_training_warning(list, report);
+  add_known_people(list, report);
+  for (std::size_t i = 1; i < methods.size(); ++i)
+    if (methods[i].name != kMeanField) list.push_back(against(report, answer, methods[i]));
+  add_flat_warning(list, answer, methods);
+  if (report.actions.size() > 1)
+    for (const ActionReport& action : report.actions) add_action_losses(list, action);
+  add_foot_slide(list, answer);
+  for (const ActionReport& action : report.actions) {
+    add_samples(list, action);
+    add_likeness(list, action);
+  }
+  return list;
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,317 @@
+"""Opens report.html in headless Chromium and uses it as people do.
+
+    browser_test.py MCDBN_CL [SCREENSHOT_FOLDER]
+
+Makes motion, a tiny model and its report first. Exit code 77, which CTest takes for "skipped", where
+there is no Chromium, no Selenium or no OpenCL device.
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.ui import Select
+except ImportError:
+    print("SKIPPED: Selenium is not installed (scripts/install_dependencies --test)")
+    sys.exit(77)
+
+TINY = (
+    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2"
+).split()
+
+# Whether anything is drawn, and a number that changes with what it is.
+PICTURE = """
+  const canvas = document.getElementById(arguments[0]), copy = document.createElement("canvas");
+  copy.width = canvas.width;
+  copy.height = canvas.height;
+  const context = copy.getContext("2d", {willReadFrequently: true});
+  context.drawImage(canvas, 0, 0);
+  const pixels = context.getImageData(0, 0, copy.width, copy.height).data;
+  let drawn = 0, sum = 0;
+  for (let i = 0; i < pixels.length; i += 4) {
+    if (pixels[i + 3] === 0) continue;
+    ++drawn;
+    sum = (sum * 31 + pixels[i] + 256 * pixels[i + 1] + 65536 * pixels[i + 2] + i) % 2147483647;
+  }
+  return [drawn, sum];
+"""
+
+
+def make_report(cli, folder):
+    """Two actions, two people; the report tests on the second and, marked, on one of the first."""
+
+    def run(*arguments):
+        subprocess.run([cli, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL)
+
+    for action in ("walk", "clap"):
+        run("synthesize", "--action", action, "--clips", 4, "--subjects", 2, "--seconds", 2,
+            "-o", folder / action)
+    clips = sorted(folder.glob("*/*.bvh"))
+    train = [clip for clip in clips if "_s01_" in clip.name]
+    test = [clip for clip in clips if "_s02_" in clip.name] + train[:1]
+    run("train", *train, "-o", folder / "run", *TINY)
+    run("evaluate", "--model", folder / "run/model.safetensors", "--test", *test, "--samples", 2,
+        "--actions", "by-folder", "--include-training", "--report", folder / "report")
+    return folder / "report/report.html"
+
+
+def start_browser(width=1280, height=900):
+    options = Options()
+    options.binary_location = shutil.which("chromium")
+    for flag in ("--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
+                 f"--window-size={width},{height}"):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+
+
+class ReportPage(unittest.TestCase):
+    page = None
+    shots = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = start_browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.quit()
+
+    def setUp(self):
+        self.browser.get(self.page.as_uri())
+
+    def tearDown(self):
+        self.assertEqual(self.browser.get_log("browser"), [], "the console is not empty")
+
+    def find(self, selector):
+        return self.browser.find_element(By.CSS_SELECTOR, selector)
+
+    def all(self, selector):
+        return self.browser.find_elements(By.CSS_SELECTOR, selector)
+
+    def picture(self, canvas="scene"):
+        return self.browser.execute_script(PICTURE, canvas)
+
+    def viewer(self, name):
+        return self.find(".viewer").get_attribute(f"data-{name}")
+
+    def show(self, element):
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center', behavior: 'instant'})", element)
+
+    def shoot(self, name):
+        if self.shots:
+            self.browser.save_screenshot(str(self.shots / f"{name}.png"))
+
+    def press(self, *keys):
+        ActionChains(self.browser).send_keys(*keys).perform()
+
+    def test_canvases_are_not_blank(self):
+        for canvas in ("scene", "input", "strip"):
+            self.assertGreater(self.picture(canvas)[0], 300, canvas)
+        self.shoot("light")
+
+    def test_play_advances_and_pauses(self):
+        play = self.find("#play")
+        self.show(play)
+        before = self.picture()[1]
+        play.click()
+        time.sleep(0.5)
+        playing = float(self.viewer("frame"))
+        self.assertGreater(playing, 2)
+        self.assertNotEqual(self.picture()[1], before)
+        play.click()
+        paused = self.viewer("frame")
+        time.sleep(0.2)
+        self.assertEqual(self.viewer("frame"), paused)
+
+    def test_speed_changes_how_fast(self):
+        def frames_played(speed):
+            Select(self.find("#speed")).select_by_value(speed)
+            return self.browser.execute_async_script("""
+              const done = arguments[0], root = document.querySelector(".viewer");
+              const scrub = document.getElementById("scrub");
+              scrub.value = 0; scrub.dispatchEvent(new Event("input"));
+              document.getElementById("play").click();
+              const start = performance.now();
+              setTimeout(() => {
+                document.getElementById("play").click();
+                done(+root.dataset.frame / (performance.now() - start));
+              }, 400);""")
+
+        self.assertGreater(frames_played("2"), 3 * frames_played("0.25"))
+
+    def test_choosing_a_clip_or_a_sample_changes_it(self):
+        first = self.picture()[1], self.viewer("clip")
+        clips = Select(self.find("#clip"))
+        self.assertEqual(len(clips.options), 5)
+        clips.select_by_index(3)
+        self.assertNotEqual(self.viewer("clip"), first[1])
+        second = self.picture()[1]
+        self.assertNotEqual(second, first[0])
+        motions = Select(self.find("#motion"))
+        labels = [option.get_attribute("data-label") for option in motions.options]
+        self.assertEqual(labels[:3], ["mean field", "sample 1", "sample 2"])
+        self.assertIn("ridge_window", labels)
+        motions.select_by_index(2)
+        self.assertNotEqual(self.picture()[1], second)
+
+    def test_scrub_drag_and_zoom(self):
+        seen = {self.picture()[1]}
+        scrub = self.find("#scrub")
+        self.show(scrub)
+        ActionChains(self.browser).click(scrub).perform()
+        self.assertGreater(float(self.viewer("frame")), 10)
+        seen.add(self.picture()[1])
+        scene = self.find("#scene")
+        self.show(scene)
+        ActionChains(self.browser).drag_and_drop_by_offset(scene, 120, 30).perform()
+        seen.add(self.picture()[1])
+        self.find("#closer").click()
+        seen.add(self.picture()[1])
+        self.assertEqual(len(seen), 4)
+
+    def test_overlay_error_colours_and_alignment(self):
+        seen = {self.picture()[1]}
+        for selector in ("[value=overlay] + span", "#error", "#align"):
+            self.show(self.find(selector))
+            self.find(selector).click()
+            seen.add(self.picture()[1])
+        self.assertEqual(len(seen), 4)
+        self.assertTrue(self.find("#legend").is_displayed())
+
+    def test_keyboard(self):
+        self.press(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT, Keys.ARROW_LEFT)
+        self.assertEqual(float(self.viewer("frame")), 1)
+        clip = self.viewer("clip")
+        self.press("n")
+        self.assertNotEqual(self.viewer("clip"), clip)
+        self.press("p")
+        self.assertEqual(self.viewer("clip"), clip)
+        before = self.picture()[1]
+        ActionChains(self.browser).key_down(Keys.SHIFT).send_keys(Keys.ARROW_LEFT).key_up(
+            Keys.SHIFT).perform()
+        self.assertNotEqual(self.picture()[1], before)
+        self.press("o", "e", "]", "+")
+        self.assertTrue(self.find("[value=overlay]").is_selected())
+        self.assertTrue(self.find("#error").is_selected())
+        self.assertEqual(self.find("#speed").get_attribute("value"), "2")
+        self.press(" ")
+        time.sleep(0.3)
+        self.assertGreater(float(self.viewer("frame")), 1)
+
+    def test_decoded_motion_scores_as_the_program_does(self):
+        # Not the same mean: the page holds whole millimetres.
+        shown, told = self.browser.execute_script("""
+          const clip = new Clip(report.clips[1]), motion = clip.motion(1);
+          return [motion.errors.reduce((a, b) => a + b) / clip.frames, motion.mpjpe_mm];""")
+        self.assertLess(abs(shown - told), 1.0)
+
+    def test_figures_and_tables(self):
+        self.assertEqual(len(self.all("#figure-list svg")), 8)
+        self.assertGreater(len(self.all("#figure-list svg path.curve")), 8)
+        self.assertGreater(len(self.all("#figure-list svg rect")), 8)
+        for path in self.all("#figure-list svg path.curve"):
+            self.assertNotIn("NaN", path.get_attribute("d"))
+        self.assertEqual(len(self.all("#table-list details")), 8)
+        self.assertGreater(len(self.all("#verdicts li")), 4)
+        marked = [row.text for row in self.all("#table-list .mark")]
+        self.assertGreater(len(marked), 0)
+
+    def test_tables_sort(self):
+        table = next(t for t in self.all("#table-list details") if "table_3.csv" in t.text)
+        column = next(i for i, th in enumerate(table.find_elements(By.CSS_SELECTOR, "th"))
+                      if th.text.startswith("mean"))
+        head = table.find_elements(By.CSS_SELECTOR, "th")[column]
+        self.show(head)
+
+        def values():
+            return [float(row.find_elements(By.CSS_SELECTOR, "td")[column].text)
+                    for row in table.find_elements(By.CSS_SELECTOR, "tbody tr")]
+
+        head.click()
+        self.assertEqual(values(), sorted(values()))
+        head.click()
+        self.assertEqual(values(), sorted(values(), reverse=True))
+        self.assertGreater(len(set(values())), 1)
+
+    def test_dark_and_light(self):
+        def background():
+            return self.browser.execute_script(
+                "return getComputedStyle(document.body).backgroundColor")
+
+        light, picture = background(), self.picture()[1]
+        self.find("#theme").click()
+        time.sleep(0.2)
+        self.assertNotEqual(background(), light)
+        self.assertNotEqual(self.picture()[1], picture)
+        self.shoot("dark")
+        self.find("#theme").click()
+        self.assertEqual(background(), light)
+
+    def test_touch_turns(self):
+        scene = self.find("#scene")
+        self.show(scene)
+        before = self.picture()[1]
+        x, y = scene.rect["x"], self.browser.execute_script(
+            "return arguments[0].getBoundingClientRect().top", scene)
+        self.browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True})
+        try:
+            for kind, points in (("touchStart", [(200, 100)]), ("touchMove", [(230, 102)]),
+                                 ("touchMove", [(300, 104)]), ("touchEnd", [])):
+                self.browser.execute_cdp_cmd("Input.dispatchTouchEvent", {
+                    "type": kind, "touchPoints": [{"x": x + a, "y": y + b} for a, b in points]})
+            self.assertNotEqual(self.picture()[1], before)
+        finally:
+            self.browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": False})
+
+    def test_phone(self):
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+            "width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": True})
+        try:
+            self.browser.get(self.page.as_uri())
+            width = self.browser.execute_script("return document.documentElement.scrollWidth")
+            self.assertLessEqual(width, 390)
+            self.assertGreater(self.picture()[0], 300)
+            for selector in ("#play", "#clip", "#motion", "#scrub"):
+                self.assertGreater(self.find(selector).size["height"], 20, selector)
+            self.find(".viewer").location_once_scrolled_into_view
+            self.shoot("phone")
+        finally:
+            self.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+    def test_needs_no_network(self):
+        asked = self.browser.execute_script(
+            "return performance.getEntriesByType('resource').map(entry => entry.name)")
+        self.assertEqual([name for name in asked if not name.startswith("data:")], [])
+
+
+def main():
+    cli = sys.argv[1]
+    if len(sys.argv) > 2:
+        ReportPage.shots = pathlib.Path(sys.argv[2])
+    for program in ("chromium", "chromedriver"):
+        if not shutil.which(program):
+            print(f"SKIPPED: no {program} (scripts/install_dependencies --test)")
+            sys.exit(77)
+    if subprocess.run([cli, "devices"], capture_output=True, check=False).returncode != 0:
+        print("SKIPPED: no OpenCL device here")
+        sys.exit(77)
+    with tempfile.TemporaryDirectory() as folder:
+        ReportPage.page = make_report(cli, pathlib.Path(folder))
+        unittest.main(argv=sys.argv[:1])
+
+
+if __name__ == "__main__":
+    main()

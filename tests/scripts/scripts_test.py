@@ -1,0 +1,165 @@
+"""Sweeps, the paper's protocol and the plots, at a size that takes seconds.
+
+    scripts_test.py MCDBN_CL
+
+Exit code 77, which CTest takes for "skipped", where there is no OpenCL device.
+"""
+
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+TINY = (
+    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2"
+)
+SWEEP = """
+test = ["walk/walk_s02_01.bvh"]
+[grid]
+order = [2, 3]
+hidden = [8, 0]
+[[configuration]]
+gaussian.rate = 50.0
+"""
+
+
+def is_png(path):
+    return path.read_bytes().startswith(b"\x89PNG") and path.stat().st_size > 5000
+
+
+class Scripts(unittest.TestCase):
+    cli = None
+
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+        for action in ("walk", "clap"):
+            self.run_cli("synthesize", "--action", action, "--clips", 4, "--subjects", 2,
+                         "--seconds", 2, "-o", self.folder / action)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def run_program(self, *arguments):
+        return subprocess.run([str(a) for a in arguments], capture_output=True, text=True,
+                              check=False)
+
+    def run_cli(self, *arguments):
+        return self.run_program(self.cli, *arguments)
+
+    def sweep(self, text=SWEEP):
+        (self.folder / "sweep.toml").write_text(text)
+        return self.run_cli("train", self.folder / "walk/walk_s01_01.bvh", "-o",
+                            self.folder / "sweep", "--sweep", self.folder / "sweep.toml",
+                            "--quiet", *TINY.split())
+
+    def records(self):
+        lines = (self.folder / "sweep/sweep.jsonl").read_text().splitlines()
+        return {record["name"]: record for record in map(json.loads, lines)}
+
+    def has_matplotlib(self):
+        found = self.run_program("/usr/bin/python3", "-c", "import matplotlib").returncode == 0
+        if not found:
+            print("SKIPPED plots: scripts/install_dependencies --plots")
+        return found
+
+    def test_sweep_records_failures_and_goes_on(self):
+        result = self.sweep()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        records = self.records()
+        self.assertEqual({name: record["status"] for name, record in records.items()}, {
+            "hidden=8,order=2": "ok", "hidden=8,order=3": "ok", "hidden=0,order=2": "failed",
+            "hidden=0,order=3": "failed", "gaussian.rate=50.0": "failed"})
+        self.assertIn("lower --gaussian-rate", records["gaussian.rate=50.0"]["error"])
+        scored = records["hidden=8,order=2"]
+        self.assertEqual(scored["settings"]["order"], 2)
+        self.assertGreater(scored["training_s"], 0)
+        self.assertGreater(scored["inference_ms_per_frame"], 0)
+        self.assertLessEqual(abs(scored["pcc_channel"]), 1)
+        self.assertTrue((self.folder / "sweep/hidden=8,order=3/model.safetensors").exists())
+
+        if self.has_matplotlib():
+            plot = self.run_program(SCRIPTS / "plot_sweep.py", self.folder / "sweep")
+            self.assertEqual(plot.returncode, 0, plot.stderr)
+            self.assertIn("2 configurations, 3 failed", plot.stderr)
+            self.assertTrue(is_png(self.folder / "sweep/sweep.png"))
+
+    def test_sweep_goes_on_where_it_stopped(self):
+        self.assertEqual(self.sweep().returncode, 0)
+        before = self.records()
+        log = self.folder / "sweep/sweep.jsonl"
+        # One configuration is lost, and the file was cut off while another was written.
+        kept = [line for line in log.read_text().splitlines() if '"hidden=8,order=3"' not in line]
+        log.write_text("\n".join(kept) + '\n{"name":"hidden=8,ord')
+        self.assertEqual(self.sweep().returncode, 0)
+        after = self.records()
+        self.assertEqual(after.keys(), before.keys())
+        self.assertEqual(after["hidden=8,order=2"], before["hidden=8,order=2"])
+        self.assertEqual(after["hidden=8,order=3"]["mpjpe_mm"],
+                         before["hidden=8,order=3"]["mpjpe_mm"])
+
+    def test_bad_sweep_files_name_their_line(self):
+        for text, words in (("test = ['x']\n", "nothing to try"),
+                            ("[grid]\norder = [2]\n", "no 'test'"),
+                            ("test = ['x']\nother = 3\n", ":2: 'other' is none of"),
+                            ("test = ['x']\n[grid]\norder = ['a']\n", ":3: a setting is a number"),
+                            ("test = [\n", ":")):
+            result = self.sweep(text)
+            self.assertEqual(result.returncode, 2, text)
+            self.assertIn(words, result.stderr)
+        self.assertFalse((self.folder / "sweep").exists())
+
+    def test_plot_metrics(self):
+        run = self.folder / "run"
+        self.assertEqual(self.run_cli("train", self.folder / "walk", "-o", run, "--quiet",
+                                      *TINY.split()).returncode, 0)
+        stages = {}
+        for line in (run / "metrics.jsonl").read_text().splitlines():
+            entry = json.loads(line)
+            stages.setdefault(entry["stage"], []).append(entry)
+        for stage, entries in stages.items():
+            self.assertGreater(entries[-1]["weight_norm"], 0)
+            self.assertTrue(0 < entries[-1]["hidden_activity"] < 1)
+            self.assertTrue(0 <= entries[-1]["saturation"] <= 1)
+            self.assertEqual("free_run_error" in entries[-1], stage != "mrbm")
+        if self.has_matplotlib():
+            plot = self.run_program(SCRIPTS / "plot_metrics.py", run)
+            self.assertEqual(plot.returncode, 0, plot.stderr)
+            self.assertIn("8 panels, 5 stages", plot.stderr)
+            self.assertTrue(is_png(run / "metrics.png"))
+            self.assertEqual(
+                self.run_program(SCRIPTS / "plot_metrics.py", self.folder).returncode, 3)
+
+    def test_reproduce_paper(self):
+        out = self.folder / "out"
+        result = self.run_program(SCRIPTS / "reproduce_paper", self.folder, "-o", out, "--cli",
+                                  self.cli, "--samples", 2, "--train", TINY)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with open(out / "comparison.csv", newline="", encoding="utf-8") as file:
+            rows = {row["action"]: row for row in csv.DictReader(file)}
+        self.assertEqual(rows.keys(), {"Walking", "Clapping hands"})
+        walking = rows["Walking"]
+        self.assertEqual((walking["clips"], walking["training_clips"], walking["samples"]),
+                         ("4", "2", "8"))
+        self.assertEqual(walking["mean_printed"], "0.8646")
+        summary = json.loads((out / "walking/report/summary.json").read_text())
+        pose = summary["baselines"]["mean_pose"]["pcc_flat"]
+        self.assertAlmostEqual(float(walking["constant_mean_pose"]), pose)
+        side = "below" if 0.8646 < pose else "above"
+        self.assertIn(f"Walking: the printed mean, 0.8646, is {side}", result.stdout)
+        selection = json.loads((out / "walking/selection.json").read_text())
+        self.assertNotIn(selection["validation"], selection["training"])
+        self.assertEqual(
+            self.run_program(SCRIPTS / "reproduce_paper", out / "walking/run").returncode, 3)
+
+
+if __name__ == "__main__":
+    Scripts.cli = sys.argv[1]
+    if subprocess.run([Scripts.cli, "devices"], capture_output=True, check=False).returncode != 0:
+        print("SKIPPED: no OpenCL device here")
+        sys.exit(77)
+    unittest.main(argv=sys.argv[:1])
