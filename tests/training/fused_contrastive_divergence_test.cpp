@@ -27,12 +27,10 @@ struct Case {
   std::size_t batch, gibbs_steps;
 };
 
-/// 1, 3, primes, 4k + 1, every order and both kinds of units, and the real one.
+/// Sizes, orders and both kinds of units that contrastive_divergence_test.cpp does not have; every
+/// one is compiled for itself.
 const std::vector<Case> kCases = {
-    {{1, 1, 0, kGaussian}, 1, 1},   {{3, 1, 1, kBinary}, 1, 5},       {{1, 3, 5, kGaussian}, 3, 5},
-    {{7, 13, 5, kBinary}, 1, 1},    {{17, 33, 1, kGaussian}, 11, 5},  {{13, 17, 0, kBinary}, 29, 5},
-    {{33, 31, 5, kBinary}, 103, 1}, {{96, 300, 5, kGaussian}, 21, 2},
-};
+    {{1, 3, 5, kGaussian}, 3, 5}, {{13, 17, 0, kBinary}, 29, 5}, {{33, 31, 5, kBinary}, 103, 1}};
 
 CdRule rule_of(std::size_t gibbs_steps) {
   CdRule rule;
@@ -291,10 +289,8 @@ TEST_CASE("every tile of the fused kernels gives the same bits") {
     const auto chosen = choose_chain_tile(device, kOddCase.shape, kOddCase.batch);
     REQUIRE(chosen);
     const TrainedBits want = train_two(device, kOddCase, *chosen);
-    for (const RowTile& tile :
-         {RowTile{16, 10, 1, 1, 16}, RowTile{16, 7, 2, 1, 8}, RowTile{8, 14, 1, 1, 4},
-          RowTile{16, 1, 1, 1, 16}, RowTile{4, 4, 1, 32, 4}, RowTile{1, 3, 1, 64, 16},
-          RowTile{8, 5, 2, 4, 8}}) {
+    for (const RowTile& tile : {RowTile{16, 7, 2, 1, 8}, RowTile{8, 14, 1, 1, 4},
+                                RowTile{4, 4, 1, 32, 4}, RowTile{1, 3, 1, 64, 16}}) {
       CAPTURE(tile.vector_width);
       CAPTURE(tile.rows);
       CAPTURE(tile.group);

@@ -25,8 +25,7 @@ struct Case {
   std::size_t track, pose, hidden, batch, steps;
 };
 
-const std::vector<Case> kCases = {
-    {1, 1, 1, 1, 1}, {3, 1, 3, 3, 2}, {33, 17, 21, 11, 10}, {300, 300, 150, 20, 2}};
+const std::vector<Case> kCases = {{3, 1, 3, 3, 2}, {33, 17, 21, 11, 10}};
 const Case kOddCase{17, 33, 19, 29, 3};
 
 MatrixD magnitude(const MatrixD& x) {
@@ -252,8 +251,7 @@ TEST_CASE("every tile of fused multi-prediction gives the same bits, and so does
     const Problem problem(kOddCase);
     const Step want = run_step(device, problem, tile_for(device, kOddCase), {}, 3);
     for (const RowTile& tile :
-         {RowTile{16, 10, 1, 1, 16}, RowTile{16, 7, 2, 1, 8}, RowTile{8, 14, 1, 1, 4},
-          RowTile{4, 4, 1, 32, 4}, RowTile{1, 3, 1, 64, 16}}) {
+         {RowTile{16, 7, 2, 1, 8}, RowTile{4, 4, 1, 32, 4}, RowTile{1, 3, 1, 64, 16}}) {
       CAPTURE(tile.vector_width);
       CAPTURE(tile.rows);
       check_against_reference(device, kOddCase, tile);
