@@ -21,11 +21,10 @@ struct CdCase {
   std::size_t gibbs_steps;
 };
 
-const std::vector<CdCase> kSmallCases = {
-    {{1, 1, 0, VisibleKind::gaussian}, 1, 1},  {{3, 1, 1, VisibleKind::gaussian}, 1, 5},
-    {{3, 5, 2, VisibleKind::binary}, 3, 2},    {{7, 13, 3, VisibleKind::gaussian}, 13, 5},
-    {{17, 9, 0, VisibleKind::binary}, 9, 1},   {{17, 33, 1, VisibleKind::binary}, 21, 3},
-    {{31, 23, 5, VisibleKind::gaussian}, 7, 5}};
+const std::vector<CdCase> kSmallCases = {{{1, 1, 0, VisibleKind::gaussian}, 1, 1},
+                                         {{3, 5, 2, VisibleKind::binary}, 3, 2},
+                                         {{31, 23, 5, VisibleKind::gaussian}, 7, 5},
+                                         {{17, 33, 1, VisibleKind::binary}, 21, 3}};
 const std::vector<CdCase> kModelCases = {{{96, 300, 5, VisibleKind::gaussian}, 2, 5},
                                          {{96, 300, 5, VisibleKind::gaussian}, 100, 1},
                                          {{300, 300, 5, VisibleKind::binary}, 100, 1}};
@@ -201,11 +200,11 @@ TEST_CASE("small: the loss of a CD step is the mean squared reconstruction error
 }
 
 TEST_CASE("small: CD steps with one seed give the same bits, with another seed others") {
-  const Scene scene(kSmallCases[3]);
+  const Scene scene(kSmallCases[2]);
   on_every_device([&](Device& device) {
     float loss = 0;
-    const CrbmParameters once = scene.train(device, rule_of(kSmallCases[3]), 7, loss);
-    const CrbmParameters again = scene.train(device, rule_of(kSmallCases[3]), 7, loss);
+    const CrbmParameters once = scene.train(device, rule_of(kSmallCases[2]), 7, loss);
+    const CrbmParameters again = scene.train(device, rule_of(kSmallCases[2]), 7, loss);
     CHECK((once.W.array() == again.W.array()).all());
     CHECK((once.A.array() == again.A.array()).all());
     CHECK((once.B.array() == again.B.array()).all());
@@ -214,7 +213,7 @@ TEST_CASE("small: CD steps with one seed give the same bits, with another seed o
 }
 
 TEST_CASE("small: momentum carries a CD step into the next one") {
-  const CdCase& cd = kSmallCases[4];
+  const CdCase& cd = kSmallCases[1];
   const Scene scene(cd);
   CdRule rule = rule_of(cd);
   const int k = static_cast<int>(cd.gibbs_steps);

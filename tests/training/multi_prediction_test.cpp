@@ -18,8 +18,7 @@ struct MrbmCase {
   std::size_t track, pose, hidden, batch;
   int steps;
 };
-const std::vector<MrbmCase> kSmallCases = {
-    {1, 1, 1, 1, 1}, {3, 5, 2, 1, 2}, {4, 3, 7, 3, 5}, {17, 13, 9, 13, 3}, {33, 21, 17, 5, 10}};
+const std::vector<MrbmCase> kSmallCases = {{1, 1, 1, 1, 1}, {4, 3, 7, 3, 5}, {17, 13, 9, 13, 3}};
 const std::vector<MrbmCase> kModelCases = {{300, 300, 150, 100, 5}};
 
 class Scene {
@@ -160,7 +159,7 @@ TEST_CASE("small: multi-prediction reports the mean cross-entropy of a unit in e
 }
 
 TEST_CASE("Adam on the multi-prediction gradients lowers the loss, the same way each time") {
-  const Scene scene(kSmallCases[3]);
+  const Scene scene(kSmallCases[2]);
   on_every_device([&](Device& device) {
     AdamRule rule;
     rule.rate = 0.01F;
@@ -177,7 +176,7 @@ TEST_CASE("Adam on the multi-prediction gradients lowers the loss, the same way 
 
 TEST_CASE("small: multi-prediction wants mini-batches of the size that it was made for") {
   on_every_device([&](Device& device) {
-    const Scene scene(kSmallCases[2]);
+    const Scene scene(kSmallCases[1]);
     Mrbm mrbm(device, scene.parameters);
     CHECK_THROWS_AS(MultiPrediction(mrbm, 0, 3), ConfigError);
     MultiPrediction trainer(mrbm, 2, 4);
