@@ -139,9 +139,6 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
     SYNC();
   }
 
-#if GROUP > 1
-  barrier(CLK_GLOBAL_MEM_FENCE);  // a row's changes come from all work-items
-#endif
   for (int r = get_local_id(0); r < ROWS && row0 + r < rows; r += GROUP) {
     floatN squares = (floatN)(0.0f);
     for (int column = 0; column < V_LD; column += VEC) {
