@@ -9,22 +9,11 @@
 
 #include "philox.clh"
 #include "activation.clh"
+#include "crbm_shape.clh"
 
 #ifndef TILE_ROWS
 #define TILE_ROWS 16
 #endif
-#ifndef VISIBLE
-#define VISIBLE 96
-#endif
-#ifndef HIDDEN
-#define HIDDEN 300
-#endif
-#ifndef ORDER
-#define ORDER 5
-#endif
-#define V_LD ((VISIBLE + 15) / 16 * 16)
-#define H_LD ((HIDDEN + 15) / 16 * 16)
-#define INLINE static inline __attribute__((always_inline))
 
 // velocity ← momentum · velocity + rate · (gradient − decay · parameter); parameter += velocity
 INLINE floatN update(global float* parameter, global float* velocity, int at, floatN gradient,

@@ -13,21 +13,7 @@
 #include "sampling.clh"
 #include "row_tile.clh"
 #include "row_draws.clh"
-
-#ifndef VISIBLE
-#define VISIBLE 96
-#endif
-#ifndef HIDDEN
-#define HIDDEN 300
-#endif
-#ifndef ORDER
-#define ORDER 5
-#endif
-#ifndef GAUSSIAN
-#define GAUSSIAN 1
-#endif
-#define V_LD ((VISIBLE + 15) / 16 * 16)
-#define H_LD ((HIDDEN + 15) / 16 * 16)
+#include "crbm_shape.clh"
 
 // A frame's place in the ring of the last ORDER ones, [ORDER x ROWS x V_LD].
 #define SLOT(frame) ((frame) % ORDER * (ROWS * V_LD))
@@ -68,6 +54,14 @@ INLINE void add_history(floatN sum[ROWS][COLUMNS], const int count, local const 
                  column);
 }
 
+// The frame is complete in `state`; from here on it is history.
+INLINE void remember_frame(local float* ring, global const float* state, const int start[ROWS],
+                           int frame) {
+  SYNC();
+  take_rows(ring + SLOT(frame), V_LD, state, start, frame);
+  SYNC();
+}
+
 // `state` holds a + (layer above) · Wᵀ (the drive) and becomes the visible means.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_means(
     global float* state, int sequences, int frames, int first, int last,
@@ -77,8 +71,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_means(
   int start[ROWS];
   for (int r = 0; r < ROWS; ++r) start[r] = min(row0 + r, sequences - 1) * frames;
   for (int frame = first - ORDER; frame < first; ++frame)
-    take_rows(ring + SLOT(frame), V_LD, state, start, frame);
-  SYNC();
+    remember_frame(ring, state, start, frame);
   floatN sum[ROWS][COLUMNS];
   for (int frame = first; frame < last; ++frame) {
     FOR_TILES(V_LD, {
@@ -89,9 +82,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_means(
 #endif
       store_frame(sum, count, state, start, sequences - row0, frame, column);
     });
-    SYNC();
-    take_rows(ring + SLOT(frame), V_LD, state, start, frame);
-    SYNC();
+    remember_frame(ring, state, start, frame);
   }
 }
 
@@ -111,8 +102,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_samples(
   int start[ROWS];
   for (int r = 0; r < ROWS; ++r) start[r] = min(row0 + r, sequences - 1) * frames;
   for (int frame = first - ORDER; frame < first; ++frame)
-    take_rows(ring + SLOT(frame), V_LD, state, start, frame);
-  SYNC();
+    remember_frame(ring, state, start, frame);
   floatN sum[ROWS][COLUMNS];
   for (int frame = first; frame < last; ++frame) {
     random.z = (uint)frame;
@@ -156,8 +146,6 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_samples(
       apply_sigmoid(sum, count, column, VISIBLE);
       store_frame(sum, count, state, start, sequences - row0, frame, column);
     });
-    SYNC();
-    take_rows(ring + SLOT(frame), V_LD, state, start, frame);
-    SYNC();
+    remember_frame(ring, state, start, frame);
   }
 }

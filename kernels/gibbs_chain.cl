@@ -19,21 +19,7 @@
 #include "sampling.clh"
 #include "row_tile.clh"
 #include "row_draws.clh"
-
-#ifndef VISIBLE
-#define VISIBLE 96
-#endif
-#ifndef HIDDEN
-#define HIDDEN 300
-#endif
-#ifndef ORDER
-#define ORDER 5
-#endif
-#ifndef GAUSSIAN
-#define GAUSSIAN 1
-#endif
-#define V_LD ((VISIBLE + 15) / 16 * 16)
-#define H_LD ((HIDDEN + 15) / 16 * 16)
+#include "crbm_shape.clh"
 
 // v ← the frames `back` before those of the block's rows
 INLINE void take_frames(local float* v, global const float* frames, const int at[ROWS], int back) {

@@ -13,22 +13,9 @@
 #include "philox.clh"
 #include "activation.clh"
 #include "row_tile.clh"
+#include "mrbm_shape.clh"
 
-#ifndef VISIBLE_0
-#define VISIBLE_0 300
-#endif
-#ifndef VISIBLE_1
-#define VISIBLE_1 300
-#endif
-#ifndef HIDDEN
-#define HIDDEN 150
-#endif
-#ifndef STEPS
-#define STEPS 10
-#endif
-#define PADDED(n) (((n) + 15) / 16 * 16)
 #define X_LD (PADDED(VISIBLE_0) > PADDED(VISIBLE_1) ? PADDED(VISIBLE_0) : PADDED(VISIBLE_1))
-#define H_LD PADDED(HIDDEN)
 
 // sum ∘= y · (1 − y), the derivative of the sigmoid whose value is y
 INLINE void through_sigmoid(floatN sum[ROWS][COLUMNS], const int count, global const float* y,

@@ -8,25 +8,11 @@
 
 #include "philox.clh"
 #include "activation.clh"
+#include "mrbm_shape.clh"
 
 #ifndef TILE_ROWS
 #define TILE_ROWS 16
 #endif
-#ifndef VISIBLE_0
-#define VISIBLE_0 300
-#endif
-#ifndef VISIBLE_1
-#define VISIBLE_1 300
-#endif
-#ifndef HIDDEN
-#define HIDDEN 150
-#endif
-#ifndef STEPS
-#define STEPS 10
-#endif
-#define PADDED(n) (((n) + 15) / 16 * 16)
-#define H_LD PADDED(HIDDEN)
-#define INLINE static inline __attribute__((always_inline))
 
 // update.cl's adam_update at one place, and the gradient for whoever asks
 INLINE floatN update(global float* parameter, global float* mean, global float* square,

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "clip_pairs.hpp"
 #include "mcdbn/device/gemm.hpp"
 #include "mcdbn/device/units.hpp"
 #include "mcdbn/device/update.hpp"
+#include "mcdbn/training/minibatch.hpp"
 
 namespace mcdbn {
 namespace {
@@ -35,8 +35,8 @@ class TrainedLayer {
         W_transposed_(device, W_.columns(), W_.rows()),
         gradient_W_(device, W_.rows(), W_.columns()),
         gradient_b_(device, 1, W_.columns()),
-        moments_W_{like(W_), like(W_)},
-        moments_b_{like(b_), like(b_)} {
+        moments_W_{Matrix::like(W_), Matrix::like(W_)},
+        moments_b_{Matrix::like(b_), Matrix::like(b_)} {
     transpose(W_, W_transposed_);
   }
 
@@ -71,10 +71,6 @@ class TrainedLayer {
   MlpWindow::Layer to_host() const { return {W_.to_host(), b_.to_host()}; }
 
  private:
-  static Matrix like(const Matrix& matrix) {
-    return {matrix.device(), matrix.rows(), matrix.columns()};
-  }
-
   Matrix W_, b_, W_transposed_, gradient_W_, gradient_b_;
   std::array<Matrix, 2> moments_W_, moments_b_;
 };
@@ -105,13 +101,6 @@ std::vector<std::int32_t> window_rows(const std::vector<MatrixF>& clips) {
     first += frames;
   }
   return rows;
-}
-
-void shuffle(std::vector<std::int32_t>& rows, const RandomKey& key) {
-  for (std::size_t i = rows.size() - 1; i > 0; --i) {
-    const std::uint64_t bits = random_bits(key, static_cast<std::uint32_t>(i), 0);
-    std::swap(rows[i], rows[(bits * (i + 1)) >> 32]);
-  }
 }
 
 /// The network and a mini-batch's values on the device.
@@ -199,24 +188,20 @@ void MlpWindow::fit(const std::vector<MatrixF>& tracks, const std::vector<Matrix
     inputs.push_back(extended(tracks[clip]));
     targets.push_back(extended(poses[clip]));
   }
-  std::vector<std::int32_t> rows = window_rows(inputs);
-  const std::size_t batch = std::min(settings_.batch, rows.size());
-  const std::vector<std::int32_t> once = rows;
-  while (rows.size() / batch < settings_.least_batches)
-    rows.insert(rows.end(), once.begin(), once.end());
+  MinibatchSchedule schedule(*device_, window_rows(inputs), settings_.batch,
+                             settings_.least_batches);
 
   const Matrix track_frames = Matrix::from_host(*device_, stacked(inputs));
   const Matrix pose_frames = Matrix::from_host(*device_, stacked(targets));
-  Trainer trainer(*device_, settings_, batch, track_frames, pose_frames);
-  IndexBuffer index(*device_, rows);
-  const std::size_t batches = rows.size() / batch;
+  Trainer trainer(*device_, settings_, schedule.batch(), track_frames, pose_frames);
+  const std::size_t batches = schedule.batch_count();
   for (std::size_t epoch = 0; epoch < settings_.epochs; ++epoch) {
-    shuffle(rows, {settings_.seed, static_cast<std::uint32_t>(epoch), kStream, kShufflePhase});
-    index.upload(*device_, rows);
+    schedule.shuffle({settings_.seed, static_cast<std::uint32_t>(epoch), kStream, kShufflePhase});
     for (std::size_t i = 0; i < batches; ++i) {
       const double progress = static_cast<double>(epoch * batches + i) /
                               static_cast<double>(settings_.epochs * batches);
-      trainer.step(index, i * batch, settings_.rate * std::min(1.0, 2.0 - 1.98 * progress));
+      trainer.step(schedule.index(), schedule.first_of(i),
+                   settings_.rate * std::min(1.0, 2.0 - 1.98 * progress));
     }
   }
   layers_ = trainer.to_host();

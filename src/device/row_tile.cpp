@@ -49,6 +49,13 @@ std::optional<RowTile> choose_row_tile(const Device& device, std::size_t floats_
   return tile;
 }
 
+Defines with_tile(Defines defines, const RowTile& tile) {
+  defines["ROWS"] = tile.rows;
+  defines["COLUMNS"] = tile.columns;
+  defines["GROUP"] = tile.group;
+  return defines;
+}
+
 std::size_t whole_blocks(std::size_t batch, const std::optional<RowTile>& tile) {
   const auto rows = static_cast<std::size_t>(tile ? tile->rows : 1);
   return ceil_divide(batch, rows) * rows;

@@ -12,14 +12,12 @@ cl::Kernel& decoder_kernel(const Crbm& layer, const char* name, const RowTile& t
   const CrbmShape& shape = layer.shape();
   return layer.device().programs().kernel(
       "decoder.cl", name,
-      {{"VEC", tile.vector_width},
-       {"VISIBLE", to_int(shape.visible)},
-       {"HIDDEN", to_int(shape.hidden)},
-       {"ORDER", to_int(shape.order)},
-       {"GAUSSIAN", shape.kind == VisibleKind::gaussian ? 1 : 0},
-       {"ROWS", tile.rows},
-       {"COLUMNS", tile.columns},
-       {"GROUP", tile.group}});
+      with_tile({{"VEC", tile.vector_width},
+                 {"VISIBLE", to_int(shape.visible)},
+                 {"HIDDEN", to_int(shape.hidden)},
+                 {"ORDER", to_int(shape.order)},
+                 {"GAUSSIAN", shape.kind == VisibleKind::gaussian ? 1 : 0}},
+                tile));
 }
 
 LaunchSize size_for(std::size_t sequences, const RowTile& tile) {

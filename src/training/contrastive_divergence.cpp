@@ -6,14 +6,6 @@
 #include "mcdbn/device/units.hpp"
 
 namespace mcdbn {
-namespace {
-
-Matrix like(const Matrix& matrix) {
-  return {matrix.device(), matrix.rows(), matrix.columns()};
-}
-
-}  // namespace
-
 std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& shape,
                                          std::size_t batch) {
   return choose_row_tile(
@@ -30,24 +22,24 @@ ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_bat
     : crbm_(crbm),
       tile_(tile),
       visible_data_(crbm.device(), whole_blocks(largest_batch, tile), crbm.shape().visible),
-      visible_(like(visible_data_)),
-      visible_bias_(like(visible_data_)),
+      visible_(Matrix::like(visible_data_)),
+      visible_bias_(Matrix::like(visible_data_)),
       hidden_data_(crbm.device(), visible_data_.rows(), crbm.shape().hidden),
-      hidden_(like(hidden_data_)),
-      hidden_bias_(like(hidden_data_)),
+      hidden_(Matrix::like(hidden_data_)),
+      hidden_bias_(Matrix::like(hidden_data_)),
       row_losses_(crbm.device(), 1, visible_data_.rows()),
-      velocity_W_(like(crbm.W)),
-      velocity_A_(like(crbm.A)),
-      velocity_B_(like(crbm.B)),
-      velocity_a_(like(crbm.a)),
-      velocity_b_(like(crbm.b)) {
+      velocity_W_(Matrix::like(crbm.W)),
+      velocity_A_(Matrix::like(crbm.A)),
+      velocity_B_(Matrix::like(crbm.B)),
+      velocity_a_(Matrix::like(crbm.a)),
+      velocity_b_(Matrix::like(crbm.b)) {
   if (tile_) return;
-  hidden_sample_ = like(hidden_data_);
-  gradient_W_ = like(crbm.W);
-  gradient_A_ = like(crbm.A);
-  gradient_B_ = like(crbm.B);
-  gradient_a_ = like(crbm.a);
-  gradient_b_ = like(crbm.b);
+  hidden_sample_ = Matrix::like(hidden_data_);
+  gradient_W_ = Matrix::like(crbm.W);
+  gradient_A_ = Matrix::like(crbm.A);
+  gradient_B_ = Matrix::like(crbm.B);
+  gradient_a_ = Matrix::like(crbm.a);
+  gradient_b_ = Matrix::like(crbm.b);
 }
 
 void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const RandomKey& key,

@@ -35,11 +35,8 @@ std::size_t update_work_items(const CrbmShape& shape, const RowTile& tile) {
 void ContrastiveDivergence::fused_chain(const Rows& rows, std::size_t gibbs_steps,
                                         const RandomKey& key) {
   const CrbmShape& shape = crbm_.shape();
-  Defines defines = shape_defines(shape, *tile_);
+  Defines defines = with_tile(shape_defines(shape, *tile_), *tile_);
   defines["GAUSSIAN"] = shape.kind == VisibleKind::gaussian ? 1 : 0;
-  defines["ROWS"] = tile_->rows;
-  defines["COLUMNS"] = tile_->columns;
-  defines["GROUP"] = tile_->group;
   Device& device = crbm_.device();
   cl::Kernel& kernel = device.programs().kernel("gibbs_chain.cl", "gibbs_chain", defines);
   const auto group = static_cast<std::size_t>(tile_->group);

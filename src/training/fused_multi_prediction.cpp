@@ -16,12 +16,9 @@ Defines MultiPrediction::fused_defines() const {
 }
 
 void MultiPrediction::fused_gradients(const Rows& track, const Rows& pose) {
-  Defines defines = fused_defines();
-  defines["ROWS"] = tile_->rows;
-  defines["COLUMNS"] = tile_->columns;
-  defines["GROUP"] = tile_->group;
   Device& device = mrbm_.device();
-  cl::Kernel& kernel = device.programs().kernel("multi_prediction.cl", "multi_prediction", defines);
+  cl::Kernel& kernel = device.programs().kernel("multi_prediction.cl", "multi_prediction",
+                                                with_tile(fused_defines(), *tile_));
   const auto group = static_cast<std::size_t>(tile_->group);
   const std::size_t blocks = block_ / static_cast<std::size_t>(tile_->rows);
   launch(device, kernel, {{blocks * group, 2}, {group, 1}}, track.matrix->buffer(),

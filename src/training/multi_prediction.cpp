@@ -9,10 +9,6 @@
 namespace mcdbn {
 namespace {
 
-Matrix like(const Matrix& matrix) {
-  return {matrix.device(), matrix.rows(), matrix.columns()};
-}
-
 std::optional<RowTile> choose_tile(const Mrbm& mrbm, std::size_t batch) {
   CrbmShape shape;
   shape.visible = std::max(mrbm.visible(Modality::track), mrbm.visible(Modality::pose));
@@ -33,22 +29,22 @@ MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::
       tile_(tile),
       block_(whole_blocks(batch, tile)),
       drive_(mrbm.device(), (tile ? 2 : 1) * block_, mrbm.hidden()),
-      drive_error_(like(drive_)),
+      drive_error_(Matrix::like(drive_)),
       hidden_(mrbm.device(), steps_ * drive_.rows(), mrbm.hidden()),
-      hidden_errors_(like(hidden_)),
+      hidden_errors_(Matrix::like(hidden_)),
       row_losses_(mrbm.device(), 1, 2 * block_),
-      gradient_b_(like(mrbm.b)),
-      moments_b_{like(mrbm.b), like(mrbm.b)} {
+      gradient_b_(Matrix::like(mrbm.b)),
+      moments_b_{Matrix::like(mrbm.b), Matrix::like(mrbm.b)} {
   if (steps_ == 0) throw ConfigError("mrbm.mean-field-steps must be at least 1");
   for (std::size_t m = 0; m < 2; ++m) {
     const std::size_t visible = mrbm.W[m].rows();
     target_[m] = Matrix(mrbm.device(), block_, visible);
     values_[m] = Matrix(mrbm.device(), (steps_ + (tile ? 0 : 1)) * block_, visible);
     value_errors_[m] = Matrix(mrbm.device(), steps_ * block_, visible);
-    gradient_W_[m] = like(mrbm.W[m]);
-    gradient_a_[m] = like(mrbm.a[m]);
-    moments_W_[m] = {like(mrbm.W[m]), like(mrbm.W[m])};
-    moments_a_[m] = {like(mrbm.a[m]), like(mrbm.a[m])};
+    gradient_W_[m] = Matrix::like(mrbm.W[m]);
+    gradient_a_[m] = Matrix::like(mrbm.a[m]);
+    moments_W_[m] = {Matrix::like(mrbm.W[m]), Matrix::like(mrbm.W[m])};
+    moments_a_[m] = {Matrix::like(mrbm.a[m]), Matrix::like(mrbm.a[m])};
   }
 }
 

@@ -22,6 +22,10 @@ class Matrix {
   /// All zeros. @throws DeviceError
   Matrix(Device& device, std::size_t rows, std::size_t columns);
   static Matrix from_host(Device& device, const Eigen::Ref<const MatrixF>& values);
+  /// All zeros, of `other`'s shape, on its device.
+  static Matrix like(const Matrix& other) {
+    return {other.device(), other.rows(), other.columns()};
+  }
 
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return columns_; }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "mcdbn/device/device.hpp"
+#include "mcdbn/device/program.hpp"
 
 namespace mcdbn {
 
@@ -23,6 +24,9 @@ struct RowTile {
 /// @param floats_per_row state of a row in local memory  @param what the kernel, for the message
 std::optional<RowTile> choose_row_tile(const Device& device, std::size_t floats_per_row,
                                        std::size_t batch, const std::string& what);
+
+/// A kernel's own definitions with those of row_tile.clh: ROWS, COLUMNS and GROUP.
+Defines with_tile(Defines defines, const RowTile& tile);
 
 /// The batch, filled up to whole blocks of rows; unchanged without a tile.
 std::size_t whole_blocks(std::size_t batch, const std::optional<RowTile>& tile);

@@ -33,7 +33,7 @@ class ContrastiveDivergence {
 
   /// One mini-batch: enqueues and returns. The draws are those of `key` with phase = Gibbs step.
   /// Adds the mean squared reconstruction error of a unit to `losses` slot 0.
-  /// @param rows the current frames (indexed or a block), at most `largest_batch` of them
+  /// @param rows the current frames, indexed, at most `largest_batch` of them  @throws ShapeError
   void step(const Rows& rows, const CdRule& rule, const RandomKey& key, LossAccumulator& losses);
 
   /// Unset where mini-batches are composed.
