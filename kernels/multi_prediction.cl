@@ -1,6 +1,6 @@
-// Multi-prediction of the MRBM (eq 42) in two launches: multi_prediction runs the unrolled mean field
-// (eq 32, 33) and its back-propagation for a block of rows, multi_prediction_update.cl makes every
-// gradient and applies it.
+// Multi-prediction of the MRBM (eq 42) in three launches: multi_prediction runs the unrolled mean
+// field (eq 32, 33) and its back-propagation for a block of rows, multi_prediction_update.cl makes
+// every gradient and applies it.
 //
 // global: (blocks · GROUP, 2), local: (GROUP, 1). Group (i, d) carries rows i · ROWS … through the
 // direction in which modality d is absent. Compile-time: VISIBLE_0, VISIBLE_1, HIDDEN (units of the

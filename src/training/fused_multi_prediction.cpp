@@ -1,4 +1,4 @@
-// The two launches of a fused mini-batch.
+// The launches of a fused mini-batch.
 
 #include <cmath>
 
@@ -31,10 +31,33 @@ void MultiPrediction::fused_gradients(const Rows& track, const Rows& pose) {
          drive_.buffer(), drive_error_.buffer(), row_losses_.buffer());
 }
 
+/// Adds up the tiles of both W over pieces of the stacks. @return the pieces
+std::size_t MultiPrediction::fused_products(const Defines& defines) {
+  const auto vec = static_cast<std::size_t>(tile_->vector_width);
+  const std::size_t tile_floats = static_cast<std::size_t>(tile_->update_rows) * vec;
+  const std::size_t tiles = (padded(mrbm_.W[0].rows()) + padded(mrbm_.W[1].rows())) *
+                            padded(mrbm_.hidden()) / tile_floats;
+  const auto pieces_of = [](std::size_t rows) { return ceil_divide(rows, kPieceRows); };
+  const std::size_t pieces =
+      pieces_of(steps_ * block_) + pieces_of((steps_ - 1) * block_) + pieces_of(block_);
+  Device& device = mrbm_.device();
+  if (partial_.empty()) partial_ = Matrix(device, pieces, tiles * tile_floats);
+  cl::Kernel& kernel =
+      device.programs().kernel("multi_prediction_update.cl", "multi_prediction_products", defines);
+  const auto group = static_cast<std::size_t>(tile_->group);
+  launch(device, kernel, {{ceil_divide(tiles, group) * group, pieces}, {group, 1}}, to_int(block_),
+         target_[0].buffer(), values_[0].buffer(), value_errors_[0].buffer(), target_[1].buffer(),
+         values_[1].buffer(), value_errors_[1].buffer(), hidden_.buffer(), hidden_errors_.buffer(),
+         drive_error_.buffer(), partial_.buffer());
+  return pieces;
+}
+
 void MultiPrediction::fused_update(const AdamRule& rule, LossAccumulator& losses) {
   ++update_count_;
   Defines defines = fused_defines();
   defines["TILE_ROWS"] = tile_->update_rows;
+  defines["PIECE_ROWS"] = to_int(kPieceRows);
+  const std::size_t pieces = fused_products(defines);
   Device& device = mrbm_.device();
   cl::Kernel& kernel =
       device.programs().kernel("multi_prediction_update.cl", "multi_prediction_update", defines);
@@ -53,8 +76,7 @@ void MultiPrediction::fused_update(const AdamRule& rule, LossAccumulator& losses
       {correction_of(rule.beta1), correction_of(rule.beta2), rule.weight_decay, 0.0F}};
   const auto& [first, second] = moments_W_;
   launch(device, kernel, {{ceil_divide(items, group) * group, 1}, {group, 1}}, to_int(block_),
-         target_[0].buffer(), values_[0].buffer(), value_errors_[0].buffer(), target_[1].buffer(),
-         values_[1].buffer(), value_errors_[1].buffer(), hidden_.buffer(), hidden_errors_.buffer(),
+         to_int(pieces), partial_.buffer(), value_errors_[0].buffer(), value_errors_[1].buffer(),
          drive_error_.buffer(), mrbm_.W[0].buffer(), mrbm_.W_transposed[0].buffer(),
          first.mean.buffer(), first.square.buffer(), gradient_W_[0].buffer(), mrbm_.W[1].buffer(),
          mrbm_.W_transposed[1].buffer(), second.mean.buffer(), second.square.buffer(),

@@ -12,7 +12,7 @@ namespace mcdbn {
 /// modality is predicted from the other by the unrolled mean field of eq 32 and 33, and the
 /// cross-entropy of that prediction is back-propagated through all steps, in both directions.
 ///
-/// A mini-batch is two launches (multi_prediction.cl, multi_prediction_update.cl) where a block of
+/// A mini-batch is three launches (multi_prediction.cl, multi_prediction_update.cl) where a block of
 /// rows fits the device's local memory, else one product after another.
 class MultiPrediction {
  public:
@@ -36,8 +36,12 @@ class MultiPrediction {
   void update(const AdamRule& rule);
 
   void fused_gradients(const Rows& track, const Rows& pose);
+  std::size_t fused_products(const Defines& defines);
   void fused_update(const AdamRule& rule, LossAccumulator& losses);
   Defines fused_defines() const;
+
+  /// Rows of the stacks that are added up at once: two pieces should fit a core's cache.
+  static constexpr std::size_t kPieceRows = 1024;
 
   Mrbm& mrbm_;
   std::size_t steps_, batch_;
@@ -50,6 +54,7 @@ class MultiPrediction {
   Matrix drive_, drive_error_;     // [block x hidden]
   Matrix hidden_, hidden_errors_;  // [steps·block x hidden]
   Matrix row_losses_;              // [1 x 2·block], fused
+  Matrix partial_;                 // [pieces x floats of both W], fused
   std::array<Matrix, 2> gradient_W_, gradient_a_;
   Matrix gradient_b_;
   struct Moments {
