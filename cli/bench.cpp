@@ -30,6 +30,8 @@ nlohmann::ordered_json measure(Device& device, const BenchStep& step, double sec
   nlohmann::ordered_json result = step.what;
   result["median_us"] = median_s * 1e6;
   result["launches"] = launches;
+  if (step.what.contains("frames"))
+    result["us_per_frame"] = median_s * 1e6 / step.what["frames"].get<double>();
   if (step.flops > 0) {
     result["gflops"] = step.flops / median_s * 1e-9;
     result["percent_of_peak"] = 100.0 * step.flops / median_s * 1e-9 / peak_gflops;
@@ -53,7 +55,17 @@ void print_line(const BenchStep& step, const nlohmann::ordered_json& result) {
   if (result.contains("gflops"))
     std::cout << fmt::format(" {:>7.1f} GFLOP/s {:>5.1f} % of peak", result["gflops"].get<double>(),
                              result["percent_of_peak"].get<double>());
+  if (result.contains("us_per_frame"))
+    std::cout << fmt::format(" {:>7.2f} us a frame", result["us_per_frame"].get<double>());
   std::cout << std::endl;
+}
+
+/// Epochs are long: only who asks for them waits for them.
+std::vector<BenchStepMaker> wanted_steps(const std::vector<std::string>& layers) {
+  std::vector<BenchStepMaker> makers = bench_steps();
+  if (std::find(layers.begin(), layers.end(), "epoch") != layers.end())
+    for (BenchStepMaker& make : epoch_steps()) makers.push_back(std::move(make));
+  return makers;
 }
 
 void run_bench(const CommandContext& context, const BenchOptions& options) {
@@ -64,7 +76,7 @@ void run_bench(const CommandContext& context, const BenchOptions& options) {
   if (!context.json)
     std::cout << fmt::format("{}, {} compute units: {:.1f} GFLOP/s with fma alone\n",
                              device.info().name, device.info().compute_units, peak_gflops);
-  for (const BenchStepMaker& make : bench_steps()) {
+  for (const BenchStepMaker& make : wanted_steps(options.layers)) {
     const BenchStep step = make(device);
     const auto& wanted = options.layers;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(),
@@ -91,9 +103,10 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
   const auto options = std::make_shared<BenchOptions>();
   command
       ->add_option("--only", options->layers,
-                   "Layers to measure (default: all): gaussian_crbm, binary_crbm, mrbm, gemm, "
-                   "regeneration")
-      ->check(CLI::IsMember({"gaussian_crbm", "binary_crbm", "mrbm", "gemm", "regeneration"}))
+                   "Layers to measure (default: all but epoch): gaussian_crbm, binary_crbm, mrbm, "
+                   "gemm, regeneration, epoch (a thousand to a million frames)")
+      ->check(
+          CLI::IsMember({"gaussian_crbm", "binary_crbm", "mrbm", "gemm", "regeneration", "epoch"}))
       ->type_name("LAYER");
   command->add_flag("--tune", options->tune,
                     "First find what suits the device best and keep it in the user's cache folder");

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <numeric>
 
 #include "mcdbn/regeneration/mcdbn_regeneration.hpp"
 #include "mcdbn/training/contrastive_divergence.hpp"
+#include "mcdbn/training/minibatch.hpp"
 #include "mcdbn/training/multi_prediction.hpp"
 
 namespace mcdbn::cli {
@@ -71,6 +73,44 @@ BenchStep crbm_step(Device& device, const CrbmShape& shape, std::size_t batch,
             ++state->key.step;
             state->cd.step(Rows::indexed(state->frames, state->index, 0, batch), state->rule,
                            state->key, state->losses);
+          }};
+}
+
+/// A whole epoch as `train` runs it, over `frames` windows: shuffle, upload the order, all
+/// mini-batches.
+BenchStep epoch_step(Device& device, std::size_t frames) {
+  struct State {
+    Matrix frames;
+    MinibatchSchedule schedule;
+    Crbm crbm;
+    ContrastiveDivergence cd;
+    LossAccumulator losses;
+    RandomKey key;
+    State(Device& device, const CrbmShape& shape, std::size_t count, std::size_t batch)
+        : frames(Matrix::from_host(device,
+                                   random_frames(shape.order + count, shape.visible, shape.kind))),
+          schedule(device, rows_after(shape.order, count), batch),
+          crbm(device, CrbmParameters::random(shape, kWeightDeviation, {})),
+          cd(crbm, batch),
+          losses(device, 1, batch) {}
+    static std::vector<std::int32_t> rows_after(std::size_t order, std::size_t count) {
+      std::vector<std::int32_t> rows(count);
+      std::iota(rows.begin(), rows.end(), static_cast<std::int32_t>(order));
+      return rows;
+    }
+  };
+  const CrbmShape shape{96, 300, 5, VisibleKind::gaussian};
+  constexpr std::size_t kBatch = 100;
+  const auto state = std::make_shared<State>(device, shape, frames, kBatch);
+  return {{{"layer", "epoch"}, {"frames", frames}, {"batch", kBatch}}, 0.0, [state] {
+            MinibatchSchedule& schedule = state->schedule;
+            schedule.shuffle(state->key);
+            for (std::size_t i = 0; i < schedule.batch_count(); ++i) {
+              ++state->key.step;
+              state->cd.step(Rows::indexed(state->frames, schedule.index(), schedule.first_of(i),
+                                           schedule.batch()),
+                             {}, state->key, state->losses);
+            }
           }};
 }
 
@@ -199,6 +239,13 @@ std::vector<BenchStepMaker> bench_steps() {
           [=, m = m, n = n, k = k](Device& device) { return gemm_step(device, m, n, k, backend); });
   for (const double temperature : {0.0, 1.0})
     makers.emplace_back([=](Device& device) { return regeneration_step(device, temperature); });
+  return makers;
+}
+
+std::vector<BenchStepMaker> epoch_steps() {
+  std::vector<BenchStepMaker> makers;
+  for (const std::size_t frames : {1'000U, 10'000U, 100'000U, 1'000'000U})
+    makers.emplace_back([=](Device& device) { return epoch_step(device, frames); });
   return makers;
 }
 

@@ -26,4 +26,7 @@ using BenchStepMaker = std::function<BenchStep(Device&)>;
 /// sizes by both back ends, and the regeneration of ten samples of a 1,000-frame clip.
 std::vector<BenchStepMaker> bench_steps();
 
+/// An epoch of a CRBM over a thousand to a million frames: whether the cost is that of the data.
+std::vector<BenchStepMaker> epoch_steps();
+
 }  // namespace mcdbn::cli

@@ -12,8 +12,8 @@ namespace mcdbn {
 /// modality is predicted from the other by the unrolled mean field of eq 32 and 33, and the
 /// cross-entropy of that prediction is back-propagated through all steps, in both directions.
 ///
-/// A mini-batch is three launches (multi_prediction.cl, multi_prediction_update.cl) where a block of
-/// rows fits the device's local memory, else one product after another.
+/// A mini-batch is three launches (multi_prediction.cl, multi_prediction_update.cl) where a block
+/// of rows fits the device's local memory, else one product after another.
 class MultiPrediction {
  public:
   MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::size_t batch);
