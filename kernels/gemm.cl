@@ -8,7 +8,8 @@
 // a_shift of the frames, and may run on over several frames (history windows, eq 15).
 //   BIAS        0 none, 1 one row for all, 2 a row each            (eq 16, 17: dynamic biases)
 //   ACTIVATION  0 none, 1 sigmoid (eq 6, 7, 32, 33), 2 times y·(1 − y) of the matrix `factor`,
-//               3 positive part, 4 zero where `factor` is not positive
+//               3 positive part, 4 zero where `factor` is not positive, 5 sigmoid less one half,
+//               6 its gradient, `factor` after drop-out of which kept_share is kept
 //   SAMPLE      0 none, 1 Bernoulli, 2 Gaussian of unit variance (sampling.clh); written to `sample` as
 //               mean + temperature · (draw − mean)
 // One work-item makes TILE_ROWS x VEC of C, its accumulators in registers.
@@ -43,7 +44,7 @@ kernel void gemm(global const float* a, int a_offset, int lda, global const int*
                  float beta, global const float* bias, int bias_offset, int bias_ld,
                  global const float* factor, int factor_offset, int factor_ld,
                  global float* sample, int sample_offset, int sample_ld, float temperature,
-                 uint4 random) {
+                 float kept_share, uint4 random) {
   const int column = get_global_id(0) * VEC;
   const int row0 = get_global_id(1) * TILE_ROWS;
   if (column >= n || row0 >= m) return;
@@ -88,6 +89,11 @@ kernel void gemm(global const float* a, int a_offset, int lda, global const int*
     value = relu(value);
 #elif ACTIVATION == 4
     value = relu_gradient(value, loadN(factor_offset + row * factor_ld + column, factor));
+#elif ACTIVATION == 5
+    value = centered_sigmoid(value);
+#elif ACTIVATION == 6
+    value = centered_sigmoid_gradient(value, loadN(factor_offset + row * factor_ld + column, factor),
+                                      kept_share);
 #endif
     value *= mask;
     storeN(value, c_at, c);

@@ -16,7 +16,7 @@
 kernel void epilogue(global float* c, int c_offset, int ldc, int n, global const float* bias,
                      int bias_offset, int bias_ld, global const float* factor, int factor_offset,
                      int factor_ld, global float* sample, int sample_offset, int sample_ld,
-                     float temperature, uint4 random) {
+                     float temperature, float kept_share, uint4 random) {
   const int column = get_global_id(0) * VEC;
   const int row = get_global_id(1);
   if (column >= n) return;
@@ -36,6 +36,11 @@ kernel void epilogue(global float* c, int c_offset, int ldc, int n, global const
   value = relu(value);
 #elif ACTIVATION == 4
   value = relu_gradient(value, loadN(factor_offset + row * factor_ld + column, factor));
+#elif ACTIVATION == 5
+  value = centered_sigmoid(value);
+#elif ACTIVATION == 6
+  value = centered_sigmoid_gradient(value, loadN(factor_offset + row * factor_ld + column, factor),
+                                    kept_share);
 #endif
   value *= mask;
   storeN(value, c_offset + row * ldc + column, c);
@@ -89,6 +94,17 @@ kernel void transpose(global const float* in, int ld, global float* out, int out
   const int column = get_global_id(0);
   const int row = get_global_id(1);
   out[column * out_ld + row] = in[row * ld + column];
+}
+
+// Weights of a history with the lags turned round: block j of `out` is block lags − 1 − j of `in`,
+// transposed, so that the frames after one stand in the order of its history. Blocks of ld_rows rows,
+// padding included; global: (columns, lags · ld_rows)
+kernel void transpose_lags(global const float* in, int ld_rows, int ld, global float* out,
+                           int out_ld_rows, int out_ld, int lags) {
+  const int column = get_global_id(0), row = get_global_id(1) % ld_rows,
+            lag = get_global_id(1) / ld_rows;
+  out[((lags - 1 - lag) * out_ld_rows + column) * out_ld + row] =
+      in[(lag * ld_rows + row) * ld + column];
 }
 
 // out[0, c] = beta · out[0, c] + scale · sum over rows of in[r, c], rows in ascending order;

@@ -30,3 +30,10 @@ kernel void adam_update(global float* parameter, global float* mean, global floa
   const floatN step = (m / correction1) / (sqrt(s / correction2) + epsilon);
   storeN(value - rate * (step + decay * value), at, parameter);
 }
+
+// average += share · (parameter − average)
+kernel void average_update(global float* average, global const float* parameter, float share) {
+  const int at = get_global_id(0) * VEC;
+  const floatN old = loadN(at, average);
+  storeN(fma((floatN)(share), loadN(at, parameter) - old, old), at, average);
+}

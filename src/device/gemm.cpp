@@ -28,7 +28,8 @@ void require_operands(const Rows& a, const Rows& b, const Rows& c, const GemmOpt
   require((options.sampling == Sampling::none) == (options.sample == nullptr),
           "gemm: sampling needs a matrix for the draws, and the other way round");
   const bool is_gradient = options.activation == Activation::sigmoid_gradient ||
-                           options.activation == Activation::relu_gradient;
+                           options.activation == Activation::relu_gradient ||
+                           options.activation == Activation::centered_sigmoid_gradient;
   require(is_gradient == (options.factor != nullptr),
           "gemm: an activation's gradient needs its values, and the other way round");
 }
@@ -59,7 +60,7 @@ void gemm_own(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& op
          bias.buffer(), bias_kind == 2 ? to_int(options.bias_first * bias.stride()) : 0,
          to_int(bias.stride()), factor.matrix->buffer(), factor.offset(), factor.stride(),
          sample.matrix->buffer(), sample.offset(), sample.stride(), options.temperature,
-         random_argument(options.random));
+         options.kept_share, random_argument(options.random));
 }
 
 /// Row-major product by CLBlast, which reads no index: indexed rows are gathered first.

@@ -32,7 +32,8 @@ void apply_epilogue(const Rows& c, const GemmOptions& options) {
          to_int(c.columns), bias.buffer(),
          bias_kind == 2 ? to_int(options.bias_first * bias.stride()) : 0, to_int(bias.stride()),
          factor.matrix->buffer(), factor.offset(), factor.stride(), sample.matrix->buffer(),
-         sample.offset(), sample.stride(), options.temperature, random_argument(options.random));
+         sample.offset(), sample.stride(), options.temperature, options.kept_share,
+         random_argument(options.random));
 }
 
 void gather(const Rows& rows, const Rows& out) {
@@ -65,6 +66,16 @@ void transpose(const Matrix& in, Matrix& out) {
   Device& device = out.device();
   launch(device, units_kernel(device, "transpose"), {{in.columns(), in.rows()}}, in.buffer(),
          to_int(in.stride()), out.buffer(), to_int(out.stride()));
+}
+
+void transpose_lags(const Matrix& in, std::size_t lags, Matrix& out) {
+  require(lags > 0 && in.rows() % lags == 0 && out.rows() == lags * padded(in.columns()) &&
+              padded(out.columns()) == in.rows() / lags,
+          "transpose_lags: shapes differ");
+  Device& device = out.device();
+  launch(device, units_kernel(device, "transpose_lags"), {{in.columns(), in.rows()}}, in.buffer(),
+         to_int(in.rows() / lags), to_int(in.stride()), out.buffer(), to_int(out.rows() / lags),
+         to_int(out.stride()), to_int(lags));
 }
 
 void column_sum(const Rows& in, float scale, float beta, Matrix& out) {

@@ -42,4 +42,12 @@ void adam_update(Matrix& parameter, Matrix& mean, Matrix& square, const Matrix& 
          rule.epsilon, rule.weight_decay, correction(rule.beta1), correction(rule.beta2));
 }
 
+void average_update(Matrix& average, const Matrix& parameter, float share) {
+  require(same_shape(average, parameter), "average: shapes differ");
+  if (average.empty()) return;
+  Device& device = average.device();
+  launch(device, update_kernel(device, "average_update"), elements(average), average.buffer(),
+         parameter.buffer(), share);
+}
+
 }  // namespace mcdbn

@@ -11,6 +11,8 @@ enum class Activation {
   sigmoid_gradient,  ///< times y·(1 − y) of GemmOptions::factor: back-propagation through a sigmoid
   relu,              ///< the positive part
   relu_gradient,     ///< zero where GemmOptions::factor is not positive
+  centered_sigmoid,           ///< sigmoid − ½
+  centered_sigmoid_gradient,  ///< times ¼ − y², y after drop-out: see GemmOptions::kept_share
 };
 enum class Sampling { none, bernoulli, gaussian };
 /// Who multiplies: our register-tiled kernel, or CLBlast followed by the epilogue as a kernel;
@@ -27,6 +29,7 @@ struct GemmOptions {
   const Rows* factor = nullptr;  ///< y for the gradients, shaped like C
   Sampling sampling = Sampling::none;
   const Rows* sample = nullptr;  ///< where the draws go, shaped like C
+  float kept_share = 1.0F;       ///< of drop-out on `factor`, for centered_sigmoid_gradient
   float temperature = 1.0F;      ///< sample = mean + temperature · (draw − mean)
   RandomKey random;
   GemmBackend backend = GemmBackend::tuned;

@@ -16,6 +16,10 @@ void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& ou
 void dropout(const Rows& c, float kept_share, const RandomKey& key);
 /// @param out [in.columns x in.rows]
 void transpose(const Matrix& in, Matrix& out);
+/// Weights from histories to frames become weights from the frames that follow: for each lag the
+/// transposed block, the nearest frame first where `in` has the oldest first.
+/// @param in [lags·padded(m) x n], padding zero  @param out [lags·padded(n) x m]
+void transpose_lags(const Matrix& in, std::size_t lags, Matrix& out);
 /// out = beta · out + scale · (sum over rows). @param out [1 x in.columns]
 void column_sum(const Rows& in, float scale, float beta, Matrix& out);
 /// out = sum of the blocks of out.count rows that make up `in`. @param in [blocks·rows x columns]

@@ -26,4 +26,7 @@ struct AdamRule {
 void adam_update(Matrix& parameter, Matrix& mean, Matrix& square, const Matrix& gradient,
                  const AdamRule& rule, int step);
 
+/// average += share · (parameter − average): a moving average of what training passes through.
+void average_update(Matrix& average, const Matrix& parameter, float share);
+
 }  // namespace mcdbn

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "mcdbn/training/joint_network.hpp"
+
+namespace mcdbn {
+
+/// Windows of a mini-batch: `count` of `frames` frames, one after another. Frames before `first`
+/// are history, those before `lead` settle, the rest are judged.
+struct JointWindows {
+  std::size_t count = 0, frames = 0, first = 0, lead = 0;
+  std::size_t rows() const { return count * frames; }
+};
+
+/// One direction of the joint MinVI stage (Goodfellow et al. 2013 through a whole MCDBN): up-pass
+/// of the present modality's CDBN, mean field of the MRBM (eq 32, 33), down-pass of the absent
+/// one's on its own output from the training mean (Algorithm 3), and the back-propagation of an
+/// error at that output through all of it, through time.
+class JointPass {
+ public:
+  /// @throws ShapeError if `first` leaves less history than the layers need
+  JointPass(JointNetwork& network, Modality present, const JointWindows& windows);
+
+  /// @param present standardized rows of the windows, [windows.rows() x visible], indexed
+  /// @param kept_share of the up-pass's hidden units, drop-out takes the others, drawn by `key`
+  void forward(const Rows& present, float kept_share, const RandomKey& key);
+  /// The absent modality, [at least windows.rows() x visible]; frames before `first` do not count.
+  const Matrix& prediction() const { return states_.front(); }
+  /// Where the loss writes its derivative by the prediction; zero before `lead`.
+  Matrix& prediction_error() { return state_errors_.front(); }
+  /// Adds to the gradients of all parameters that took part. Uses up prediction_error().
+  void backward();
+
+ private:
+  using Layers = std::deque<JointNetwork::Layer>;
+  Rows at(const Matrix& matrix, std::size_t frame) const {
+    return Rows::strided(matrix, frame, windows_.count, windows_.frames);
+  }
+  Rows value(std::size_t step) const { return {values_, step * rows_, rows_}; }
+  Rows hidden(std::size_t step) const { return {hidden_, (step - 1) * rows_, rows_}; }
+  /// Rows of all frames that have a history of `skipped` frames, in the first window at least.
+  Rows from(const Matrix& matrix, std::size_t skipped) const {
+    return {matrix, skipped, rows_ - skipped};
+  }
+
+  void up_pass(float kept_share, const RandomKey& key);
+  void mean_field();
+  void down_pass();
+  void down_pass_backward();
+  void mean_field_backward();
+  void up_pass_backward();
+
+  JointNetwork& network_;
+  Modality present_;
+  JointWindows windows_;
+  std::size_t rows_, steps_;
+  Layers& up_layers_;
+  Layers& down_layers_;
+  float kept_share_ = 1.0F;
+  Matrix input_;
+  std::vector<Matrix> up_, up_errors_;         ///< hidden units of the present layers
+  Matrix drive_, drive_error_;                 ///< [rows x MRBM hidden]
+  Matrix values_, value_errors_;               ///< steps + 1 and steps blocks of rows
+  Matrix hidden_, hidden_errors_;              ///< steps blocks of rows
+  std::vector<Matrix> states_, state_errors_;  ///< visible units of the absent layers
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,110 @@
+#include "mcdbn/training/window_loss.hpp"
+
+#include "mcdbn/device/kernel_arguments.hpp"
+#include "mcdbn/device/units.hpp"
+#include "mcdbn/motion/pose_bones.hpp"
+
+namespace mcdbn {
+namespace {
+
+template <typename T>
+cl::Buffer constant_table(Device& device, std::vector<T> values) {
+  if (values.empty()) values.resize(1);
+  return {device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, values.size() * sizeof(T),
+          values.data()};
+}
+
+void require_windows(const JointWindows& windows, const Matrix& prediction, const Matrix& target,
+                     const Matrix& error) {
+  require(prediction.rows() >= windows.rows() && target.rows() >= windows.rows() &&
+              error.rows() >= windows.rows() && prediction.columns() == target.columns() &&
+              error.columns() == target.columns(),
+          "window loss: shapes differ");
+}
+
+}  // namespace
+
+PoseLoss::PoseLoss(Device& device, const Modalities& modalities, const JointWindows& windows,
+                   const PoseLossWeights& weights)
+    : windows_(windows),
+      weights_(weights),
+      dimension_(static_cast<std::size_t>(modalities.pose_scale.output_dimension())) {
+  const auto bones = pose_bones(modalities.pose_features);
+  bones_ = bones.size();
+  std::vector<cl_int4> table;
+  std::vector<cl_float4> levers;
+  for (const PoseBone& bone : bones) {
+    table.push_back({{bone.parent, bone.block, 0, 0}});
+    const Eigen::Vector3f lever = bone.lever_m.cast<float>();
+    levers.push_back({{lever.x(), lever.y(), lever.z(), 0.0F}});
+  }
+  const Standardizer& standardizer = modalities.pose_scale;
+  std::vector<cl_int> columns(static_cast<std::size_t>(standardizer.input_dimension()), -1);
+  std::vector<cl_float2> scale;
+  for (std::size_t k = 0; k < standardizer.kept_columns().size(); ++k)
+    columns[static_cast<std::size_t>(standardizer.kept_columns()[k])] = to_int(k);
+  for (int i = 0; i < standardizer.input_dimension(); ++i)
+    scale.push_back({{static_cast<float>(standardizer.mean()[i]),
+                      static_cast<float>(standardizer.deviation()[i])}});
+  bone_table_ = constant_table(device, table);
+  levers_ = constant_table(device, levers);
+  columns_ = constant_table(device, columns);
+  scale_ = constant_table(device, scale);
+  differences_ = Matrix(device, windows.rows(), std::max<std::size_t>(3 * bones_, 1));
+  losses_ = Matrix(device, windows.rows(), 3);
+  sums_ = Matrix(device, 1, 3);
+}
+
+void PoseLoss::differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) {
+  require_windows(windows_, prediction, target, error);
+  require(prediction.columns() == dimension_, "pose loss: not the 3D modality");
+  Device& device = error.device();
+  const Defines defines{{"DIMENSION", to_int(dimension_)},
+                        {"LD", to_int(padded(dimension_))},
+                        {"BONES", to_int(std::max<std::size_t>(bones_, 1))}};
+  const LaunchSize size{{windows_.rows(), 1}};
+  const int frames = to_int(windows_.frames), lead = to_int(windows_.lead);
+  launch(device, device.programs().kernel("pose_loss.cl", "place_differences", defines), size,
+         prediction.buffer(), target.buffer(), differences_.buffer(), to_int(differences_.stride()),
+         frames, lead, bone_table_, levers_, columns_, scale_);
+  const cl_float4 weights{{static_cast<float>(weights_.features),
+                           static_cast<float>(weights_.places / (kPlace_m * kPlace_m)),
+                           static_cast<float>(weights_.velocities / (kStep_m * kStep_m)), 0.0F}};
+  launch(device, device.programs().kernel("pose_loss.cl", "pose_errors", defines), size,
+         prediction.buffer(), target.buffer(), differences_.buffer(), to_int(differences_.stride()),
+         to_int(windows_.count), frames, lead, weights, bone_table_, levers_, columns_, scale_,
+         error.buffer(), losses_.buffer(), to_int(losses_.stride()));
+  column_sum(losses_, 1.0F, 1.0F, sums_);
+  ++steps_;
+}
+
+std::vector<double> PoseLoss::read_and_reset() {
+  const MatrixD sums = sums_.to_host().cast<double>() / static_cast<double>(std::max(steps_, 1UL));
+  sums_.set_zero();
+  steps_ = 0;
+  return {sums(0), sums(1) / (kPlace_m * kPlace_m), sums(2) / (kStep_m * kStep_m)};
+}
+
+FeatureLoss::FeatureLoss(Device& device, const JointWindows& windows, double weight)
+    : windows_(windows), weight_(weight), losses_(device, windows.rows(), 1), sum_(device, 1, 1) {}
+
+void FeatureLoss::differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) {
+  require_windows(windows_, prediction, target, error);
+  Device& device = error.device();
+  const Defines defines{{"DIMENSION", to_int(target.columns())}, {"LD", to_int(target.stride())}};
+  launch(device, device.programs().kernel("pose_loss.cl", "feature_errors", defines),
+         {{windows_.rows(), 1}}, prediction.buffer(), target.buffer(), to_int(windows_.count),
+         to_int(windows_.frames), to_int(windows_.lead), static_cast<float>(weight_),
+         error.buffer(), losses_.buffer(), to_int(losses_.stride()));
+  column_sum(losses_, 1.0F, 1.0F, sum_);
+  ++steps_;
+}
+
+double FeatureLoss::read_and_reset() {
+  const double sum = sum_.to_host()(0) / static_cast<double>(std::max(steps_, 1UL));
+  sum_.set_zero();
+  steps_ = 0;
+  return sum;
+}
+
+}  // namespace mcdbn

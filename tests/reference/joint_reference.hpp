@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "reference/crbm_reference.hpp"
+#include "reference/mrbm_reference.hpp"
+
+namespace mcdbn::reference {
+
+/// A whole MCDBN: modality 0 is 2D, modality 1 is 3D.
+struct JointModel {
+  std::array<std::vector<Crbm>, 2> stacks;
+  std::array<std::vector<RowVectorD>, 2> start;  ///< of each layer, the history before a free run
+  Mrbm mrbm;
+
+  /// All parameters (not `start`) behind one another, for finite differences: the layers of 2D, of
+  /// 3D, then the MRBM.
+  Eigen::VectorXd flattened() const;
+  JointModel with_parameters(const Eigen::VectorXd& flat) const;
+};
+
+/// Algorithm 3 on one window, frame by frame: up-pass of modality `present`, mean field, down-pass
+/// of the other on its own output from frame `first` on.
+/// @param values the present modality [frames x D]  @return [frames x D'], `start` before `first`
+MatrixD joint_prediction(const JointModel& model, int present, const MatrixD& values, int first,
+                         int mean_field_steps);
+
+}  // namespace mcdbn::reference
