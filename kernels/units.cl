@@ -75,15 +75,17 @@ kernel void scaled_difference(global const float* x, int x_offset, int x_ld, glo
 }
 
 #if SAMPLE == 1
-// Drop-out: keeps an entry, divided by the share that is kept, or makes it zero.
-kernel void dropout(global float* c, int c_offset, int ldc, int columns, float kept_share,
+// Drop-out: keeps an entry, divided by the share that is kept, or makes it zero. Runs of `alike` rows
+// share their draws.
+kernel void dropout(global float* c, int c_offset, int ldc, int columns, int alike, float kept_share,
                     uint4 random) {
   const int column = get_global_id(0) * VEC;
   const int row = get_global_id(1);
   if (column >= columns) return;
+  const int draw = row / alike;
   uintN draws[DRAW_WORDS];
-  draw_four_rows(draws, column, row / 4, random);
-  const floatN kept = sample_units((floatN)(kept_share), draws, row);
+  draw_four_rows(draws, column, draw / 4, random);
+  const floatN kept = sample_units((floatN)(kept_share), draws, draw);
   const int at = c_offset + row * ldc + column;
   storeN(kept * (loadN(at, c) / kept_share), at, c);
 }

@@ -53,11 +53,12 @@ void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& ou
          scale, out.matrix->buffer(), out.offset(), out.stride());
 }
 
-void dropout(const Rows& c, float kept_share, const RandomKey& key) {
+void dropout(const Rows& c, float kept_share, const RandomKey& key, std::size_t alike) {
   require(kept_share > 0.0F && kept_share <= 1.0F, "dropout: the kept share is not in (0, 1]");
+  require(alike > 0, "dropout: runs of no rows");
   Device& device = c.matrix->device();
   launch(device, units_kernel(device, "dropout", {{"SAMPLE", 1}}), pointwise_size(c),
-         c.matrix->buffer(), c.offset(), c.stride(), to_int(c.columns), kept_share,
+         c.matrix->buffer(), c.offset(), c.stride(), to_int(c.columns), to_int(alike), kept_share,
          random_argument(key));
 }
 

@@ -11,8 +11,9 @@ LaunchSize elements(const Matrix& matrix) {
   return {{matrix.element_count() / static_cast<std::size_t>(vector_width(matrix.device())), 1}};
 }
 
-cl::Kernel& update_kernel(Device& device, const char* name) {
-  return device.programs().kernel("update.cl", name, {{"VEC", vector_width(device)}});
+cl::Kernel& update_kernel(Device& device, const char* name, Defines defines = {}) {
+  defines["VEC"] = vector_width(device);
+  return device.programs().kernel("update.cl", name, defines);
 }
 
 }  // namespace
@@ -28,7 +29,7 @@ void momentum_update(Matrix& parameter, Matrix& velocity, const Matrix& gradient
 }
 
 void adam_update(Matrix& parameter, Matrix& mean, Matrix& square, const Matrix& gradient,
-                 const AdamRule& rule, int step) {
+                 const AdamRule& rule, int step, const Matrix* gradient_scale) {
   require(same_shape(parameter, mean) && same_shape(parameter, square) &&
               same_shape(parameter, gradient),
           "update: shapes differ");
@@ -37,9 +38,33 @@ void adam_update(Matrix& parameter, Matrix& mean, Matrix& square, const Matrix& 
   const auto correction = [step](float beta) {
     return static_cast<float>(1.0 - std::pow(static_cast<double>(beta), step));
   };
-  launch(device, update_kernel(device, "adam_update"), elements(parameter), parameter.buffer(),
-         mean.buffer(), square.buffer(), gradient.buffer(), rule.rate, rule.beta1, rule.beta2,
-         rule.epsilon, rule.weight_decay, correction(rule.beta1), correction(rule.beta2));
+  const auto run = [&](cl::Kernel& kernel, const auto&... scale) {
+    launch(device, kernel, elements(parameter), parameter.buffer(), mean.buffer(), square.buffer(),
+           gradient.buffer(), rule.rate, rule.beta1, rule.beta2, rule.epsilon, rule.weight_decay,
+           correction(rule.beta1), correction(rule.beta2), scale...);
+  };
+  if (gradient_scale)
+    run(update_kernel(device, "adam_update", {{"SCALED", 1}}), gradient_scale->buffer());
+  else
+    run(update_kernel(device, "adam_update"));
+}
+
+GradientLimit::GradientLimit(Device& device, std::size_t matrices)
+    : matrices_(matrices), squares_(device, 1, kParts * matrices), scale_(device, 1, 1) {}
+
+void GradientLimit::measure(const std::vector<const Matrix*>& gradients, float longest) {
+  require(gradients.size() == matrices_, "gradient limit: another number of matrices");
+  Device& device = scale_.device();
+  int first = 0;
+  for (const Matrix* gradient : gradients) {
+    const std::size_t vectors =
+        gradient->element_count() / static_cast<std::size_t>(vector_width(device));
+    launch(device, update_kernel(device, "sum_squares"), {{kParts, 1}}, gradient->buffer(),
+           to_int(vectors), squares_.buffer(), first);
+    first += to_int(kParts);
+  }
+  launch(device, update_kernel(device, "limit_scale"), {}, squares_.buffer(), first, longest,
+         scale_.buffer());
 }
 
 void average_update(Matrix& average, const Matrix& parameter, float share) {

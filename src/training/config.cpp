@@ -23,6 +23,7 @@ TrainingConfig TrainingConfig::paper() {
   config.mrbm_hidden = 150;
   config.look_ahead = 0;
   config.least_batches = 1;
+  config.joint.steps = 0;
   return config;
 }
 
@@ -49,6 +50,17 @@ void TrainingConfig::validate() const {
   positive("mrbm.rate", mrbm.rate);
   positive("mrbm.mean-field-steps", mrbm.mean_field_steps);
   positive("mrbm.epochs", mrbm.epochs);
+  positive("joint.windows", joint.windows);
+  positive("joint.rate", joint.rate);
+  positive("joint.mean-field-steps", joint.mean_field_steps);
+  positive("augment.views", augment.views);
+  if (joint.window_frames < 2) throw ConfigError("joint.window-frames must be at least 2");
+  const auto share = [](const char* name, double value) {
+    if (!(value >= 0 && value < 1))
+      throw ConfigError(fmt::format("{} must be at least 0 and below 1, not {}", name, value));
+  };
+  share("joint.dropout", joint.dropout);
+  share("joint.average", joint.average);
   positive("camera.fov", camera.field_of_view_deg);
 }
 

@@ -66,7 +66,8 @@ JointNetwork::JointNetwork(Device& device, const Mcdbn& start)
     : look_ahead_(start.look_ahead),
       mean_field_steps_(start.mean_field_steps),
       mrbm_(device, centered(start.mrbm.to_host())),
-      mrbm_b_(mrbm_.b, false) {
+      mrbm_b_(mrbm_.b, false),
+      limit_(device, 5 * (start.track.layers.size() + start.pose.layers.size()) + 5) {
   for (const Modality modality : {Modality::track, Modality::pose}) {
     const Cdbn& cdbn = modality == Modality::track ? start.track : start.pose;
     for (const Crbm& layer : cdbn.layers)
@@ -95,13 +96,16 @@ void JointNetwork::clear_gradients() {
   for (TrainedParameter* parameter : parameters()) parameter->gradient.set_zero();
 }
 
-void JointNetwork::update(const AdamRule& rule, float average_kept) {
+void JointNetwork::update(const AdamRule& rule, float longest_gradient, float average_kept) {
   ++updates_;
+  std::vector<const Matrix*> gradients;
+  for (const TrainedParameter* parameter : parameters()) gradients.push_back(&parameter->gradient);
+  limit_.measure(gradients, longest_gradient);
   AdamRule biases = rule;
   biases.weight_decay = 0.0F;
   for (TrainedParameter* parameter : parameters()) {
     adam_update(*parameter->value, parameter->mean, parameter->square, parameter->gradient,
-                parameter->is_weight ? rule : biases, updates_);
+                parameter->is_weight ? rule : biases, updates_, &limit_.scale());
     average_update(parameter->average, *parameter->value, 1.0F - average_kept);
   }
   refresh_copies();

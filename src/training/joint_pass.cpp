@@ -88,18 +88,24 @@ JointPass::JointPass(JointNetwork& network, Modality present, const JointWindows
 }
 
 void JointPass::forward(const Rows& present, float kept_share, const RandomKey& key) {
+  kept_share_ = kept_share;
+  drop_out_key_ = key;
   gather(present, input_);
-  up_pass(kept_share, key);
+  up_pass();
   mean_field();
   down_pass();
 }
 
-void JointPass::up_pass(float kept_share, const RandomKey& key) {
-  kept_share_ = kept_share;
+void JointPass::drop_out(const Rows& units, std::size_t alike) {
+  if (kept_share_ < 1.0F) dropout(units, kept_share_, drop_out_key_, alike);
+}
+
+void JointPass::up_pass() {
   const Matrix* below = &input_;
   for (std::size_t i = 0; i < up_layers_.size(); ++i) {
     const Crbm& layer = up_layers_[i].crbm;
     const std::size_t order = layer.shape().order;
+    ++drop_out_key_.phase;
     const Rows units = from(up_[i], order);
     GemmOptions options;
     options.bias = &layer.b;
@@ -110,11 +116,7 @@ void JointPass::up_pass(float kept_share, const RandomKey& key) {
       options.activation = Activation::centered_sigmoid;
       gemm(layer.history(from(*below, order)), layer.B, units, options);
     }
-    if (kept_share < 1.0F) {
-      RandomKey own = key;
-      own.phase = static_cast<std::uint16_t>(key.phase + i);
-      dropout(units, kept_share, own);
-    }
+    drop_out(Rows(up_[i], 0, rows_), windows_.frames);
     below = &up_[i];
   }
 }
@@ -125,11 +127,13 @@ void JointPass::mean_field() {
   GemmOptions bias;
   bias.bias = &mrbm.b;
   gemm(up_.back(), mrbm.W[p], drive_, bias);
+  ++drop_out_key_.phase;
   for (std::size_t t = 1; t <= steps_; ++t) {
     GemmOptions up, down;
     up.bias = &drive_;
     up.activation = down.activation = Activation::centered_sigmoid;
     gemm(value(t - 1), mrbm.W[q], hidden(t), up);
+    drop_out(hidden(t), windows_.frames);  // the same units in every step
     down.bias = &mrbm.a[q];
     gemm(hidden(t), mrbm.W_transposed[q], value(t), down);
   }
@@ -139,9 +143,10 @@ void JointPass::down_pass() {
   for (std::size_t i = down_layers_.size(); i-- > 0;) {
     const Crbm& layer = down_layers_[i].crbm;
     const bool is_top = i + 1 == down_layers_.size();
-    const Activation activation =
-        layer.shape().kind == VisibleKind::binary ? Activation::centered_sigmoid : Activation::none;
+    const bool is_binary = layer.shape().kind == VisibleKind::binary;
+    const Activation activation = is_binary ? Activation::centered_sigmoid : Activation::none;
     const std::size_t order = layer.shape().order;
+    ++drop_out_key_.phase;
     for (std::size_t frame = windows_.first; frame < windows_.frames; ++frame) {
       const Rows state = at(states_[i], frame);
       const Rows above =
@@ -151,10 +156,12 @@ void JointPass::down_pass() {
       options.bias = &layer.a;
       if (order == 0) options.activation = activation;
       gemm(above, layer.W_transposed, state, options);
-      if (order == 0) continue;
-      options = added();
-      options.activation = activation;
-      gemm(layer.history(state), layer.A, state, options);
+      if (order > 0) {
+        options = added();
+        options.activation = activation;
+        gemm(layer.history(state), layer.A, state, options);
+      }
+      if (is_binary) drop_out(state, 1);  // the same units in every frame
     }
   }
 }
@@ -175,7 +182,7 @@ void JointPass::down_pass_backward() {
     // Through time: what a frame did to those that had it as history.
     for (std::size_t frame = windows_.frames; frame-- > first;) {
       const Rows state = at(states_[i], frame), error = at(errors, frame);
-      GemmOptions options = is_binary ? through_units(&state) : GemmOptions{};
+      GemmOptions options = is_binary ? through_units(&state, kept_share_) : GemmOptions{};
       options.beta = 1.0F;
       if (order > 0)
         gemm(following(errors, frame, windows_.count, windows_.frames, order), layer.A_following,
@@ -212,7 +219,7 @@ void JointPass::mean_field_backward() {
   };
   for (std::size_t t = steps_; t >= 1; --t) {
     const Rows h = hidden(t), v = value(t - 1);
-    gemm(value_error(t), mrbm.W[q], hidden_error(t), through_units(&h));
+    gemm(value_error(t), mrbm.W[q], hidden_error(t), through_units(&h, kept_share_));
     if (t > 1) gemm(hidden_error(t), mrbm.W_transposed[q], value_error(t - 1), through_units(&v));
   }
   block_sum(hidden_errors_, drive_error_);

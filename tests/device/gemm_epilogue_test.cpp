@@ -22,12 +22,19 @@ struct Epilogue {
   Activation activation = Activation::none;
   Sampling sampling = Sampling::none;
   float temperature = 1.0F;
+  float kept_share = 1.0F;
 };
 
-/// Those of the model's stochastic units, all combined, and those of the perceptron.
+/// Those of the model's stochastic units, all combined, those of the perceptron and of the joint
+/// stage.
 std::vector<Epilogue> all_epilogues() {
   std::vector<Epilogue> all{{BiasKind::row, Activation::relu},
-                            {BiasKind::none, Activation::relu_gradient}};
+                            {BiasKind::none, Activation::relu_gradient},
+                            {BiasKind::row, Activation::centered_sigmoid},
+                            {BiasKind::none, Activation::centered_sigmoid_gradient}};
+  Epilogue dropped{BiasKind::none, Activation::centered_sigmoid_gradient};
+  dropped.kept_share = 0.75F;
+  all.push_back(dropped);
   for (const auto bias : {BiasKind::none, BiasKind::row, BiasKind::matrix})
     for (const auto activation :
          {Activation::none, Activation::sigmoid, Activation::sigmoid_gradient})
@@ -72,7 +79,7 @@ class Operands {
         a_(random_matrix(shape.m, shape.k, 1)),
         b_(random_matrix(shape.k, shape.n, 2, 2.0F)),
         bias_(random_matrix(epilogue.bias == BiasKind::row ? 1 : shape.m + kBiasFirst, shape.n, 3)),
-        factor_(random_matrix(shape.m + 1, shape.n, 4).cwiseAbs()),
+        factor_(factor_of(shape, epilogue)),
         a_device_(Matrix::from_host(device, a_)),
         b_device_(Matrix::from_host(device, b_)),
         bias_device_(Matrix::from_host(device, bias_)),
@@ -109,14 +116,25 @@ class Operands {
  private:
   static constexpr std::size_t kBiasFirst = 2;
 
+  /// Values that the units can have; some are dropped where drop-out was on.
+  static MatrixF factor_of(const ProductShape& shape, const Epilogue& epilogue) {
+    const MatrixF values = random_matrix(shape.m + 1, shape.n, 4);
+    if (epilogue.activation != Activation::centered_sigmoid_gradient) return values.cwiseAbs();
+    const MatrixF units = (0.5F / epilogue.kept_share) * values;
+    if (epilogue.kept_share == 1.0F) return units;
+    return (random_matrix(shape.m + 1, shape.n, 5).array() > 0.0F).select(units, 0.0F);
+  }
+
   GemmOptions epilogue_options() const {
     GemmOptions options;
     if (epilogue_.bias != BiasKind::none) options.bias = &bias_device_;
     if (epilogue_.bias == BiasKind::matrix) options.bias_first = kBiasFirst;
     options.activation = epilogue_.activation;
     if (epilogue_.activation == Activation::sigmoid_gradient ||
-        epilogue_.activation == Activation::relu_gradient)
+        epilogue_.activation == Activation::relu_gradient ||
+        epilogue_.activation == Activation::centered_sigmoid_gradient)
       options.factor = &factor_rows_;
+    options.kept_share = epilogue_.kept_share;
     options.sampling = epilogue_.sampling;
     if (epilogue_.sampling != Sampling::none) options.sample = &sample_rows_;
     options.temperature = epilogue_.temperature;
@@ -136,6 +154,10 @@ class Operands {
     if (epilogue_.activation == Activation::relu) x = reference::relu(x);
     if (epilogue_.activation == Activation::relu_gradient)
       x = reference::relu_gradient(x, factor_.bottomRows(m).cast<double>());
+    if (epilogue_.activation == Activation::centered_sigmoid) x = reference::centered_sigmoid(x);
+    if (epilogue_.activation == Activation::centered_sigmoid_gradient)
+      x = reference::centered_sigmoid_gradient(x, factor_.bottomRows(m).cast<double>(),
+                                               double{epilogue_.kept_share});
     return x;
   }
 

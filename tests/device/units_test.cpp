@@ -45,6 +45,29 @@ void check_transpose(Device& device, const Size& size) {
   CHECK(padding_is_zero(out));
 }
 
+/// Blocks of a history's weights, oldest frame first, against those for the frames that follow.
+void check_transpose_lags(Device& device, const Size& size, std::size_t lags) {
+  CAPTURE(size.rows);
+  CAPTURE(size.columns);
+  CAPTURE(lags);
+  const auto rows = static_cast<Eigen::Index>(size.rows),
+             columns = static_cast<Eigen::Index>(size.columns),
+             wide = static_cast<Eigen::Index>(padded(size.rows)),
+             wide_out = static_cast<Eigen::Index>(padded(size.columns));
+  const MatrixF blocks = random_matrix(lags * size.rows, size.columns, 6);
+  MatrixF in = MatrixF::Zero(static_cast<Eigen::Index>(lags) * wide, columns);
+  MatrixF want = MatrixF::Zero(static_cast<Eigen::Index>(lags) * wide_out, rows);
+  for (Eigen::Index q = 0; q < static_cast<Eigen::Index>(lags); ++q) {
+    in.middleRows(q * wide, rows) = blocks.middleRows(q * rows, rows);
+    want.middleRows((static_cast<Eigen::Index>(lags) - 1 - q) * wide_out, columns) =
+        blocks.middleRows(q * rows, rows).transpose();
+  }
+  Matrix out(device, lags * padded(size.columns), size.rows);
+  transpose_lags(Matrix::from_host(device, in), lags, out);
+  CHECK(out.to_host() == want);
+  CHECK(padding_is_zero(out));
+}
+
 void check_column_sum(Device& device, const Size& size, float beta) {
   CAPTURE(size.rows);
   CAPTURE(size.columns);
@@ -88,6 +111,7 @@ void check_block_sum(Device& device, const Size& size, std::size_t blocks) {
 void check_all(Device& device, const Size& size) {
   check_difference(device, size);
   check_transpose(device, size);
+  for (const std::size_t lags : {1U, 3U}) check_transpose_lags(device, size, lags);
   for (const float beta : {0.0F, 1.0F, -0.5F}) check_column_sum(device, size, beta);
   for (const std::size_t blocks : {1U, 3U, 10U}) check_block_sum(device, size, blocks);
 }

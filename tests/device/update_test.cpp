@@ -144,6 +144,20 @@ TEST_CASE("small: Adam leaves a parameter without gradient where it is") {
   });
 }
 
+TEST_CASE("small: a moving average goes the given share of the way") {
+  on_every_device([](Device& device) {
+    const MatrixF before = random_matrix(5, 19, 1), parameter = random_matrix(5, 19, 2);
+    Matrix average = Matrix::from_host(device, before);
+    average_update(average, Matrix::from_host(device, parameter), 0.3F);
+    const MatrixD from = before.cast<double>(), to = parameter.cast<double>();
+    const MatrixD want = from + double{0.3F} * (to - from);
+    // The difference, then one fma.
+    const MatrixD bound = gamma_n(1) * 0.3 * (to - from).cwiseAbs() + kRoundoff * want.cwiseAbs();
+    CHECK(misfit(average.to_host(), want, MatrixD((1.0 + gamma_n(2)) * bound)) == "");
+    CHECK(padding_is_zero(average));
+  });
+}
+
 TEST_CASE("small: updates refuse shapes that differ") {
   on_every_device([](Device& device) {
     Matrix x(device, 3, 5), y(device, 5, 3), z(device, 3, 5);

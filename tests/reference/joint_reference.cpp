@@ -1,6 +1,6 @@
 #include "reference/joint_reference.hpp"
 
-#include <numeric>
+#include "reference/units_reference.hpp"
 
 namespace mcdbn::reference {
 namespace {
@@ -17,21 +17,47 @@ RowVectorD history(const MatrixD& frames, Eigen::Index frame, Eigen::Index order
   return row;
 }
 
+RowVectorD dropped(const RowVectorD& units, const RowVectorD& factors) {
+  if (factors.size() == 0) return units;
+  return 0.5 + factors.array() * (units.array() - 0.5);
+}
+
+/// The factors of layer i, none if there are none at all.
+RowVectorD factors_of(const std::vector<RowVectorD>& all, std::size_t i) {
+  return i < all.size() ? all[i] : RowVectorD();
+}
+
 /// Hidden probabilities; rows before `first` stay zero.
-MatrixD up(const Crbm& layer, const MatrixD& visible, Eigen::Index first) {
+MatrixD up(const Crbm& layer, const MatrixD& visible, Eigen::Index first,
+           const RowVectorD& factors) {
   MatrixD hidden = MatrixD::Zero(visible.rows(), layer.weights.cols());
   for (Eigen::Index t = first; t < visible.rows(); ++t) {
     const MatrixD bias = dynamic_hidden_bias(layer, history(visible, t, order_of(layer)));
-    hidden.row(t) = hidden_probability(layer, visible.row(t), bias);
+    hidden.row(t) = dropped(hidden_probability(layer, visible.row(t), bias), factors);
   }
   return hidden;
 }
 
-MatrixD down(const Crbm& layer, const MatrixD& above, const RowVectorD& start, Eigen::Index first) {
+/// Eq 32 and 33 for one frame.
+RowVectorD missing_code(const Mrbm& model, std::size_t p, const RowVectorD& code, int steps,
+                        const RowVectorD& factors) {
+  const std::size_t q = 1 - p;
+  RowVectorD missing = RowVectorD::Zero(model.weights[q].rows());
+  for (int step = 0; step < steps; ++step) {
+    const RowVectorD hidden = dropped(
+        sigmoid(MatrixD(model.hidden_bias + code * model.weights[p] + missing * model.weights[q])),
+        factors);
+    missing = sigmoid(MatrixD(model.visible_bias[q] + hidden * model.weights[q].transpose()));
+  }
+  return missing;
+}
+
+MatrixD down(const Crbm& layer, const MatrixD& above, const RowVectorD& start, Eigen::Index first,
+             const RowVectorD& factors) {
   MatrixD visible = start.replicate(above.rows(), 1);
   for (Eigen::Index t = first; t < above.rows(); ++t) {
     const MatrixD bias = dynamic_visible_bias(layer, history(visible, t, order_of(layer)));
-    visible.row(t) = visible_mean(layer, above.row(t), bias);
+    visible.row(t) = dropped(visible_mean(layer, above.row(t), bias), factors);
   }
   return visible;
 }
@@ -69,17 +95,19 @@ JointModel JointModel::with_parameters(const Eigen::VectorXd& flat) const {
 }
 
 MatrixD joint_prediction(const JointModel& model, int present, const MatrixD& values, int first,
-                         int mean_field_steps) {
+                         int mean_field_steps, const DropOut& drop_out) {
   const auto p = static_cast<std::size_t>(present), q = 1 - p;
   MatrixD code = values;
   Eigen::Index valid = 0;
-  for (const Crbm& layer : model.stacks[p]) {
-    valid += order_of(layer);
-    code = up(layer, code, valid);
+  for (std::size_t i = 0; i < model.stacks[p].size(); ++i) {
+    valid += order_of(model.stacks[p][i]);
+    code = up(model.stacks[p][i], code, valid, factors_of(drop_out.up, i));
   }
-  MatrixD state = mean_field(model.mrbm, present, code, {mean_field_steps, false}).missing.back();
+  MatrixD state(code.rows(), model.mrbm.weights[q].rows());
+  for (Eigen::Index t = 0; t < code.rows(); ++t)
+    state.row(t) = missing_code(model.mrbm, p, code.row(t), mean_field_steps, drop_out.shared);
   for (std::size_t i = model.stacks[q].size(); i-- > 0;)
-    state = down(model.stacks[q][i], state, model.start[q][i], first);
+    state = down(model.stacks[q][i], state, model.start[q][i], first, factors_of(drop_out.down, i));
   return state;
 }
 

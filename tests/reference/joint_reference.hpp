@@ -20,10 +20,18 @@ struct JointModel {
   JointModel with_parameters(const Eigen::VectorXd& flat) const;
 };
 
+/// What drop-out does to the hidden units of one window: a unit u becomes ½ + f·(u − ½) with its f
+/// of 0 or 1 / kept share, so that a dropped one stands at ½. Empty rows leave all as they are.
+struct DropOut {
+  std::vector<RowVectorD> up;    ///< of each layer of the present modality, its hidden units
+  RowVectorD shared;             ///< of the MRBM, in every step
+  std::vector<RowVectorD> down;  ///< of each layer of the absent modality, its visible units
+};
+
 /// Algorithm 3 on one window, frame by frame: up-pass of modality `present`, mean field, down-pass
 /// of the other on its own output from frame `first` on.
 /// @param values the present modality [frames x D]  @return [frames x D'], `start` before `first`
 MatrixD joint_prediction(const JointModel& model, int present, const MatrixD& values, int first,
-                         int mean_field_steps);
+                         int mean_field_steps, const DropOut& drop_out = {});
 
 }  // namespace mcdbn::reference

@@ -56,6 +56,27 @@ Bounded relu_gradient(const Bounded& x, const MatrixD& y) {
   return {x.value.cwiseProduct(open), x.bound.cwiseProduct(open)};
 }
 
+Bounded centered_sigmoid(const Bounded& x) {
+  const Bounded probability = sigmoid(x);
+  const MatrixD value = (probability.value.array() - 0.5).matrix();
+  return {value, probability.bound + kRoundoff * value.cwiseAbs()};
+}
+
+Bounded centered_sigmoid_gradient(const Bounded& x, const MatrixD& y, double kept_share) {
+  const MatrixD units = kept_share * y;
+  const MatrixD open = kept_share < 1.0 ? MatrixD((y.array() != 0.0).cast<double>())
+                                        : MatrixD::Ones(y.rows(), y.cols());
+  const MatrixD slope = ((0.25 - units.array().square()) / kept_share * open.array()).matrix();
+  // Two products and a difference on the way to the slope, whose terms may cancel; the division;
+  // and the product with the error.
+  const MatrixD slope_bound =
+      (gamma_n(3 + kDivisionError) * (0.25 + units.array().square()) / kept_share * open.array())
+          .matrix();
+  const MatrixD value = x.value.cwiseProduct(slope);
+  return {value, x.bound.cwiseProduct(slope.cwiseAbs() + slope_bound) +
+                     x.value.cwiseAbs().cwiseProduct(slope_bound) + kRoundoff * value.cwiseAbs()};
+}
+
 Bounded gaussian_sample(const MatrixD& mean, const MatrixD& normal, double temperature) {
   Bounded drawn;
   drawn.value = mean + normal;

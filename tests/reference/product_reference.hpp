@@ -20,6 +20,12 @@ Bounded relu(const Bounded& x);
 /// x where y is positive, else exactly 0.
 Bounded relu_gradient(const Bounded& x, const MatrixD& y);
 
+/// σ(x) − ½ [Montavon and Müller 2012], and the error x before such a unit, of which drop-out kept
+/// `kept_share` and left y: x·(¼ − (kept_share·y)²) / kept_share, nothing where the unit was
+/// dropped.
+Bounded centered_sigmoid(const Bounded& x);
+Bounded centered_sigmoid_gradient(const Bounded& x, const MatrixD& y, double kept_share);
+
 /// mean + temperature·(draw − mean) for unit normals z, given the means that the device stored.
 /// Box-Muller's error is that of sqrt(−2·log u)·cospi(2u').
 Bounded gaussian_sample(const MatrixD& mean, const MatrixD& normal, double temperature);

@@ -151,6 +151,45 @@ struct Windows {
   }
 };
 
+struct Variant {
+  Modality present;
+  float kept_share;
+};
+constexpr Variant kVariants[] = {{Modality::track, 1.0F},
+                                 {Modality::pose, 1.0F},
+                                 {Modality::track, 0.75F},
+                                 {Modality::pose, 0.75F}};
+constexpr RandomKey kKey{77, 3, 9, 0};
+
+/// What the pass draws for window `i`, from the host's own Philox: layers in the order of the pass,
+/// one phase each.
+reference::DropOut drawn_for(const SmallNetwork& small, Modality present, std::size_t i,
+                             float kept_share) {
+  if (kept_share == 1.0F) return {};
+  RandomKey key = kKey;
+  const auto draw = [&](std::size_t units) {
+    ++key.phase;
+    RowVectorD factors(static_cast<Eigen::Index>(units));
+    for (Eigen::Index c = 0; c < factors.size(); ++c) {
+      const float u =
+          random_uniform(key, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(c));
+      factors[c] = u < kept_share ? 1.0 / double{kept_share} : 0.0;
+    }
+    return factors;
+  };
+  const auto& up = small.parameters[index_of(present)];
+  const auto& down = small.parameters[index_of(other(present))];
+  reference::DropOut factors;
+  for (const CrbmParameters& layer : up) factors.up.push_back(draw(layer.shape.hidden));
+  factors.shared = draw(static_cast<std::size_t>(small.mrbm.b.cols()));
+  factors.down.resize(down.size());
+  for (std::size_t k = down.size(); k-- > 0;) {
+    factors.down[k] = draw(down[k].shape.visible);
+    if (down[k].shape.kind == VisibleKind::gaussian) factors.down[k].resize(0);
+  }
+  return factors;
+}
+
 }  // namespace
 
 TEST_CASE("centered parameters come back as they were") {
@@ -169,16 +208,16 @@ TEST_CASE("the joint pass predicts what the reference does, frame by frame") {
   on_every_device([&](Device& device) {
     JointNetwork network(device, small.on(device));
     const IndexBuffer index(device, windows.rows);
-    for (const Modality present : {Modality::track, Modality::pose}) {
+    for (const auto& [present, kept] : kVariants) {
       const MatrixF& frames = present == Modality::track ? windows.track : windows.pose;
       const Matrix values = Matrix::from_host(device, frames);
       JointPass pass(network, present, kWindows);
-      pass.forward(Rows::indexed(values, index, 0, kWindows.rows()), 1.0F, {});
+      pass.forward(Rows::indexed(values, index, 0, kWindows.rows()), kept, kKey);
       const MatrixD got = pass.prediction().to_host().cast<double>();
       for (std::size_t i = 0; i < kWindows.count; ++i) {
-        const MatrixD want = reference::joint_prediction(model, static_cast<int>(index_of(present)),
-                                                         windows.window(frames, i),
-                                                         static_cast<int>(kWindows.first), kSteps);
+        const MatrixD want = reference::joint_prediction(
+            model, static_cast<int>(index_of(present)), windows.window(frames, i),
+            static_cast<int>(kWindows.first), kSteps, drawn_for(small, present, i, kept));
         const MatrixD part = got.middleRows(static_cast<Eigen::Index>(i * kWindows.frames),
                                             static_cast<Eigen::Index>(kWindows.frames));
         CHECK((part - want).cwiseAbs().maxCoeff() <=
@@ -195,18 +234,20 @@ TEST_CASE("gradients of the joint stage are the finite differences of its loss")
   const reference::JointModel model = small.in_double();
   // Weights that let every part of the loss matter about as much.
   const PoseLossWeights weights{1.0, 0.02, 0.004};
-  for (const Modality present : {Modality::track, Modality::pose}) {
+  for (const auto& [present, kept] : kVariants) {
+    CAPTURE(kept);
     const auto p = static_cast<int>(index_of(present));
     CAPTURE(p);
     const MatrixF& inputs = present == Modality::track ? windows.track : windows.pose;
     const MatrixF& targets = present == Modality::track ? windows.pose : windows.track;
-    const auto loss = [&](const Eigen::VectorXd& flat) {
+    const auto loss = [&, modality = present, share = kept](const Eigen::VectorXd& flat) {
       const reference::JointModel moved = model.with_parameters(flat);
       double sum = 0;
       for (std::size_t i = 0; i < kWindows.count; ++i)
         sum += loss_in_double(figure, weights, 1 - p,
                               reference::joint_prediction(moved, p, windows.window(inputs, i),
-                                                          static_cast<int>(kWindows.first), kSteps),
+                                                          static_cast<int>(kWindows.first), kSteps,
+                                                          drawn_for(small, modality, i, share)),
                               windows.window(targets, i));
       return sum / static_cast<double>(kWindows.count);
     };
@@ -228,7 +269,7 @@ TEST_CASE("gradients of the joint stage are the finite differences of its loss")
       FeatureLoss track_loss(device, kWindows, weights.features);
       for (int round = 0; round < 2; ++round) {  // the second shows that nothing is left behind
         network.clear_gradients();
-        pass.forward(Rows::indexed(input, index, 0, kWindows.rows()), 1.0F, {});
+        pass.forward(Rows::indexed(input, index, 0, kWindows.rows()), kept, kKey);
         if (present == Modality::track)
           pose_loss.differentiate(pass.prediction(), target, pass.prediction_error());
         else

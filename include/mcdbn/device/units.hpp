@@ -13,7 +13,8 @@ void gather(const Rows& rows, const Rows& out);
 /// out = scale · (x − y), all of one shape, none indexed.
 void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& out);
 /// Drop-out, in place: an entry is divided by `kept_share` with that probability, else zero.
-void dropout(const Rows& c, float kept_share, const RandomKey& key);
+/// @param alike runs of so many rows share their draws
+void dropout(const Rows& c, float kept_share, const RandomKey& key, std::size_t alike = 1);
 /// @param out [in.columns x in.rows]
 void transpose(const Matrix& in, Matrix& out);
 /// Weights from histories to frames become weights from the frames that follow: for each lag the

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mcdbn/motion/camera.hpp"
+#include "mcdbn/training/augmentation.hpp"
 
 namespace mcdbn {
 
@@ -30,6 +31,22 @@ struct MultiPredictionSettings {
   std::size_t epochs = 30;
 };
 
+/// The joint MinVI stage through the whole stack (joint_fine_tuning.hpp).
+struct JointSettings {
+  std::size_t steps = 1500;        ///< mini-batches; 0 leaves the stage out
+  std::size_t windows = 48;        ///< in a mini-batch
+  std::size_t window_frames = 20;  ///< judged frames of a window
+  std::size_t settle_frames = 4;   ///< frames before them that run freely too
+  double rate = 2e-3;              ///< Adam's; falls along a cosine to a fiftieth
+  double weight_decay = 1.0;       ///< decoupled, times the rate
+  double dropout = 0.1;            ///< of the up-pass's hidden units
+  double average = 0.995;   ///< kept of the moving average of parameters, which is the result
+  double places = 0.5;      ///< weight of joint places (PoseLossWeights), features have 1
+  double velocities = 0.2;  ///< and of their steps from frame to frame
+  double reverse = 0.1;     ///< weight of the other direction, 2D from 3D
+  std::size_t mean_field_steps = 2;
+};
+
 /// Everything that shapes a training run: the paper's Table 2 and section V, and what it leaves
 /// out.
 struct TrainingConfig {
@@ -52,6 +69,8 @@ struct TrainingConfig {
   CdSettings gaussian;
   CdSettings binary{.gibbs_steps = 1, .rate = 1e-2, .rate_A = 1e-3, .rate_B = 1e-3, .epochs = 50};
   MultiPredictionSettings mrbm;
+  JointSettings joint;
+  AugmentationSettings augment;
 
   /// The paper's own figures (Table 2, section V.C): rate 0.1, momentum 0.9, weights from N(0, 1),
   /// MRBM of 150, no look-ahead. Diverges (DESIGN section 2): the guard says so.
@@ -94,6 +113,28 @@ void visit_settings(Config& config, Visit&& visit) {
   visit("mrbm.initial-deviation", config.mrbm.initial_deviation, "spread of the first weights");
   visit("mrbm.mean-field-steps", config.mrbm.mean_field_steps, "unrolled steps of eq 32 and 33");
   visit("mrbm.epochs", config.mrbm.epochs, "epochs");
+  visit("joint.steps", config.joint.steps, "mini-batches of the joint stage; 0 leaves it out");
+  visit("joint.windows", config.joint.windows, "windows in a mini-batch");
+  visit("joint.window-frames", config.joint.window_frames, "judged frames of a window");
+  visit("joint.settle-frames", config.joint.settle_frames, "free-running frames before them");
+  visit("joint.rate", config.joint.rate, "Adam's rate");
+  visit("joint.weight-decay", config.joint.weight_decay, "decoupled decay of the weights");
+  visit("joint.dropout", config.joint.dropout, "share of hidden units left out");
+  visit("joint.average", config.joint.average, "kept of the parameters' moving average");
+  visit("joint.places", config.joint.places, "weight of joint places in the loss");
+  visit("joint.velocities", config.joint.velocities, "weight of joint velocities in the loss");
+  visit("joint.reverse", config.joint.reverse, "weight of 2D from 3D");
+  visit("joint.mean-field-steps", config.joint.mean_field_steps, "unrolled steps of eq 32 and 33");
+  visit("augment.views", config.augment.views, "augmented views of each clip");
+  visit("augment.mirror", config.augment.mirror, "exchange left and right in every other view");
+  visit("augment.azimuth", config.augment.azimuth_deg, "camera azimuth varies by so many degrees");
+  visit("augment.elevation", config.augment.elevation_deg, "camera elevation likewise");
+  visit("augment.distance", config.augment.distance, "relative deviation of the camera distance");
+  visit("augment.bone", config.augment.bone, "relative deviation of bone lengths");
+  visit("augment.turn", config.augment.turn_deg, "deviation of a joint's carriage in degrees");
+  visit("augment.speed", config.augment.speed, "relative change of speed");
+  visit("augment.noise", config.augment.noise_px,
+        "pixels of noise on 2D joints of a 200 px figure");
   visit("camera.azimuth", config.camera.azimuth_deg, "degrees around the clip, 0 in front");
   visit("camera.elevation", config.camera.elevation_deg, "degrees above the horizon");
   visit("camera.fov", config.camera.field_of_view_deg, "vertical field of view in degrees");

@@ -52,8 +52,9 @@ class JointNetwork {
 
   std::vector<TrainedParameter*> parameters();
   void clear_gradients();
-  /// Adam on all parameters, then the moving average keeps `average_kept` of itself.
-  void update(const AdamRule& rule, float average_kept);
+  /// Adam on all parameters with a gradient of at most `longest_gradient`, then the moving average
+  /// keeps `average_kept` of itself.
+  void update(const AdamRule& rule, float longest_gradient, float average_kept);
   /// The network as it is, or the moving average of it.
   Mcdbn to_mcdbn(bool averaged);
 
@@ -65,6 +66,7 @@ class JointNetwork {
   Mrbm mrbm_;
   std::deque<TrainedParameter> mrbm_W_, mrbm_a_;
   TrainedParameter mrbm_b_;
+  GradientLimit limit_;
   int updates_ = 0;
 };
 

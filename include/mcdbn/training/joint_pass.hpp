@@ -23,7 +23,9 @@ class JointPass {
   JointPass(JointNetwork& network, Modality present, const JointWindows& windows);
 
   /// @param present standardized rows of the windows, [windows.rows() x visible], indexed
-  /// @param kept_share of the up-pass's hidden units, drop-out takes the others, drawn by `key`
+  /// @param kept_share of all hidden units but the absent code; drop-out takes the others, drawn by
+  /// `key`, for a
+  ///        whole window at once: units that flicker would teach the decoder to shake
   void forward(const Rows& present, float kept_share, const RandomKey& key);
   /// The absent modality, [at least windows.rows() x visible]; frames before `first` do not count.
   const Matrix& prediction() const { return states_.front(); }
@@ -44,7 +46,8 @@ class JointPass {
     return {matrix, skipped, rows_ - skipped};
   }
 
-  void up_pass(float kept_share, const RandomKey& key);
+  void drop_out(const Rows& units, std::size_t alike);
+  void up_pass();
   void mean_field();
   void down_pass();
   void down_pass_backward();
@@ -58,6 +61,7 @@ class JointPass {
   Layers& up_layers_;
   Layers& down_layers_;
   float kept_share_ = 1.0F;
+  RandomKey drop_out_key_;
   Matrix input_;
   std::vector<Matrix> up_, up_errors_;         ///< hidden units of the present layers
   Matrix drive_, drive_error_;                 ///< [rows x MRBM hidden]

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <optional>
+
+#include "mcdbn/motion/skeleton.hpp"
+
+namespace mcdbn {
+
+/// The same motion with left and right exchanged, on the same skeleton: what a mirror beside the
+/// world's x axis shows. Sides are told by joint names (Left/Right, L…/R…, …_L/…_R). A joint's own
+/// axes may be reflected along any of the three, whichever brings its bones onto those of the other
+/// side, so that rest poses with every bone along one axis come out right too.
+/// @return nothing where names show no sides or the two sides are built too differently
+std::optional<Motion> mirrored(const Motion& motion);
+
+}  // namespace mcdbn

@@ -1,0 +1,131 @@
+#include "mcdbn/motion/mirror.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace mcdbn {
+namespace {
+
+/// Bones of both sides may differ by this share of their length, as measured bodies do.
+constexpr double kMostDifference = 0.25;
+
+using Axes = Eigen::Vector3d;  ///< the diagonal of a reflection along one axis
+const Axes kWorldMirror(-1, 1, 1);
+
+/// The name with one side's mark exchanged for the other's; empty if it has none.
+std::string other_side(const std::string& name) {
+  constexpr std::array<std::pair<const char*, const char*>, 4> kWords{
+      {{"Left", "Right"}, {"Right", "Left"}, {"left", "right"}, {"right", "left"}}};
+  for (const auto& [mark, opposite] : kWords)
+    if (const auto at = name.find(mark); at != std::string::npos)
+      return std::string(name).replace(at, std::string(mark).size(), opposite);
+  constexpr std::array<std::pair<char, char>, 4> kLetters{
+      {{'L', 'R'}, {'R', 'L'}, {'l', 'r'}, {'r', 'l'}}};
+  std::string result = name;
+  const std::size_t n = name.size();
+  for (const auto& [mark, opposite] : kLetters) {
+    const bool ends = n > 2 && name[n - 1] == mark && (name[n - 2] == '_' || name[n - 2] == '.');
+    const bool begins = n > 1 && name[0] == mark &&
+                        (std::isupper(static_cast<unsigned char>(name[1])) || name[1] == '_');
+    if (ends || begins) {
+      result[ends ? n - 1 : 0] = opposite;
+      return result;
+    }
+  }
+  return {};
+}
+
+/// For every joint the one on the other side, itself in the middle; empty if there are no sides.
+std::vector<int> opposite_joints(const Skeleton& skeleton) {
+  std::vector<int> opposite;
+  bool has_sides = false;
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const int found = skeleton.find(other_side(skeleton.joints[j].name));
+    has_sides |= found >= 0;
+    opposite.push_back(found >= 0 ? found : j);
+  }
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const int parent = skeleton.joints[j].parent;
+    const int parent_there = skeleton.joints[opposite[j]].parent;
+    if (opposite[opposite[j]] != j || (parent < 0) != (parent_there < 0) ||
+        (parent >= 0 && opposite[parent] != parent_there))
+      return {};
+  }
+  return has_sides ? opposite : std::vector<int>{};
+}
+
+struct Reflection {
+  Axes axes = kWorldMirror;
+  double miss = 0;  ///< how far the reflected bones end from those of the other side
+};
+
+/// The reflection of a joint's own axes that brings its bones onto the other side's; `otherwise`
+/// where no bone tells.
+Reflection joint_reflection(const Skeleton& skeleton, const std::vector<int>& opposite, int joint,
+                            const Axes& otherwise) {
+  Reflection best{otherwise, std::numeric_limits<double>::infinity()};
+  for (const Axes& axes : {otherwise, Axes(-1, 1, 1), Axes(1, -1, 1), Axes(1, 1, -1)}) {
+    double miss = 0;
+    for (int child = 0; child < skeleton.joint_count(); ++child)
+      if (skeleton.joints[child].parent == joint)
+        miss += (axes.cwiseProduct(skeleton.joints[child].offset) -
+                 skeleton.joints[opposite[child]].offset)
+                    .norm();
+    if (miss < best.miss - 1e-9) best = {axes, miss};
+  }
+  return best;
+}
+
+/// Empty if the sides are built too differently.
+std::vector<Axes> reflections(const Skeleton& skeleton, const std::vector<int>& opposite) {
+  std::vector<Axes> axes;
+  double miss = 0, length = 0;
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const int parent = skeleton.joints[j].parent;
+    const Reflection own =
+        joint_reflection(skeleton, opposite, j, parent < 0 ? kWorldMirror : axes[parent]);
+    axes.push_back(own.axes);
+    miss += own.miss;
+    if (parent >= 0) length += skeleton.joints[j].offset.norm();
+  }
+  if (miss > kMostDifference * length) return {};
+  return axes;
+}
+
+}  // namespace
+
+std::optional<Motion> mirrored(const Motion& motion) {
+  const Skeleton& skeleton = motion.skeleton;
+  const std::vector<int> opposite = opposite_joints(skeleton);
+  if (opposite.empty()) return std::nullopt;
+  const std::vector<Axes> axes = reflections(skeleton, opposite);
+  if (axes.empty()) return std::nullopt;
+  Motion result = motion;
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const Joint &joint = skeleton.joints[j], &there = skeleton.joints[opposite[j]];
+    const Axes& outer = joint.parent < 0 ? kWorldMirror : axes[joint.parent];
+    const int own = skeleton.first_channel(j), other = skeleton.first_channel(opposite[j]);
+    for (int t = 0; t < motion.frames(); ++t) {
+      const double* from = motion.channels.row(t).data() + other;
+      double* to = result.channels.row(t).data() + own;
+      const Eigen::Matrix3d rotation =
+          outer.asDiagonal() * local_rotation(there, from) * axes[j].asDiagonal();
+      set_local_rotation(joint, rotation, t > 0 ? result.channels.row(t - 1).data() + own : nullptr,
+                         to);
+      for (std::size_t k = 0; k < joint.channels.size(); ++k) {
+        if (is_rotation(joint.channels[k])) continue;
+        const auto same =
+            std::find(there.channels.begin(), there.channels.end(), joint.channels[k]);
+        if (same == there.channels.end()) continue;
+        to[k] = outer[axis_of(joint.channels[k])] * from[same - there.channels.begin()];
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,321 @@
+#include "mcdbn/training/joint_fine_tuning.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "mcdbn/device/units.hpp"
+#include "mcdbn/errors.hpp"
+#include "mcdbn/motion/clip.hpp"
+#include "mcdbn/training/divergence_guard.hpp"
+#include "mcdbn/training/window_loss.hpp"
+
+namespace mcdbn {
+namespace {
+
+enum RandomStream : std::uint16_t {
+  kViewStream = 192,
+  kWindowStream,
+  kDropoutStream,
+  kStartStream
+};
+
+/// Mini-batches between two reports.
+constexpr std::size_t kReportEvery = 25;
+/// The other direction takes part in every so many mini-batches, with as many times its weight.
+constexpr std::size_t kReverseEvery = 4;
+
+/// Of the loss, whose parts start near 1: errors that explode through time are cut here.
+constexpr float kLongestGradient = 1.0F;
+
+/// Adam's rate: rises over the first steps, then falls along a cosine.
+double rate_at(double rate, std::size_t step, std::size_t steps) {
+  constexpr double kRise = 30.0, kEnd = 0.02;
+  const double progress = static_cast<double>(step) / static_cast<double>(steps);
+  const double fall = kEnd + (1.0 - kEnd) * 0.5 * (1.0 + std::cos(std::numbers::pi * progress));
+  return rate * fall * std::min(1.0, static_cast<double>(step + 1) / kRise);
+}
+
+std::size_t longest_history(const Mcdbn& network) {
+  std::size_t longest = std::max(network.track.total_order(), network.pose.total_order());
+  return longest;
+}
+
+/// Draws windows and names the rows of their frames. Beyond a clip's ends its first and last frame
+/// stand, as they do where regeneration starts without history.
+class WindowSampler {
+ public:
+  WindowSampler(const TrainingSet& views, const JointWindows& windows, std::size_t look_ahead,
+                std::uint64_t seed)
+      : windows_(windows), look_ahead_(look_ahead), seed_(seed) {
+    std::size_t first = 0;
+    for (const MatrixF& pose : views.poses) {
+      const auto frames = static_cast<std::size_t>(pose.rows());
+      clips_.push_back({first, frames});
+      first += frames;
+      ends_.push_back(first);
+    }
+  }
+
+  /// Windows of mini-batch `step`: rows of the 3D frames, then those of the 2D frames look_ahead
+  /// later.
+  std::vector<std::int32_t> rows(std::size_t step) const {
+    std::vector<std::int32_t> rows(2 * windows_.rows());
+    for (std::size_t i = 0; i < windows_.count; ++i) {
+      const RandomKey key{seed_, static_cast<std::uint32_t>(step), kWindowStream, 0};
+      const auto row = static_cast<std::uint32_t>(i);
+      const Sequences::Clip& clip = draw_clip(random_uniform(key, row, 0));
+      const auto judged = windows_.frames - windows_.lead;
+      const double starts = clip.frames > judged ? static_cast<double>(clip.frames - judged) : 0.0;
+      // Now and then the clip's very first frame: there is no history, and every clip has it.
+      constexpr float kFromStart = 0.1F;
+      const double where = random_uniform(key, row, 1) < kFromStart
+                               ? 0.0
+                               : std::floor((starts + 1.0) * random_uniform(key, row, 2));
+      const auto lead = static_cast<std::int64_t>(windows_.lead);
+      for (std::size_t t = 0; t < windows_.frames; ++t) {
+        const std::int64_t frame =
+            static_cast<std::int64_t>(where) + static_cast<std::int64_t>(t) - lead;
+        const std::size_t at = i * windows_.frames + t;
+        rows[at] = row_of(clip, frame);
+        rows[windows_.rows() + at] = row_of(clip, frame + static_cast<std::int64_t>(look_ahead_));
+      }
+    }
+    return rows;
+  }
+
+ private:
+  const Sequences::Clip& draw_clip(float uniform) const {
+    const auto frame =
+        static_cast<std::size_t>(static_cast<double>(uniform) * static_cast<double>(ends_.back()));
+    const auto found = std::upper_bound(ends_.begin(), ends_.end(), frame);
+    return clips_[std::min<std::size_t>(static_cast<std::size_t>(found - ends_.begin()),
+                                        clips_.size() - 1)];
+  }
+  static std::int32_t row_of(const Sequences::Clip& clip, std::int64_t frame) {
+    const auto last = static_cast<std::int64_t>(clip.frames) - 1;
+    return static_cast<std::int32_t>(static_cast<std::int64_t>(clip.first) +
+                                     std::clamp<std::int64_t>(frame, 0, last));
+  }
+
+  JointWindows windows_;
+  std::size_t look_ahead_;
+  std::uint64_t seed_;
+  std::vector<Sequences::Clip> clips_;
+  std::vector<std::size_t> ends_;
+};
+
+/// Both directions, their losses, and what a mini-batch of them needs.
+class JointTrainer {
+ public:
+  JointTrainer(Device& device, const Mcdbn& start, const TrainingSet& views,
+               const JointWindows& windows, const TrainingConfig& config)
+      : settings_(config.joint),
+        seed_(config.seed),
+        windows_(windows),
+        network_(device, start),
+        tracks_(Sequences::from_host(device, views.tracks)),
+        poses_(Sequences::from_host(device, views.poses)),
+        sampler_(views, windows, config.look_ahead, config.seed),
+        forward_(network_, Modality::track, windows),
+        reverse_(network_, Modality::pose, windows),
+        pose_loss_(device, views.modalities, windows,
+                   {1.0, settings_.places, settings_.velocities}),
+        track_loss_(device, windows, settings_.reverse * static_cast<double>(kReverseEvery)),
+        pose_target_(device, windows.rows(), poses_.values.columns()),
+        track_target_(device, windows.rows(), tracks_.values.columns()),
+        index_(device, sampler_.rows(0)) {}
+
+  void step(std::size_t step) {
+    Device& device = network_.device();
+    index_.upload(device, sampler_.rows(step));
+    const Rows pose = Rows::indexed(poses_.values, index_, 0, windows_.rows());
+    const Rows track = Rows::indexed(tracks_.values, index_, windows_.rows(), windows_.rows());
+    const auto kept = static_cast<float>(1.0 - settings_.dropout);
+    const RandomKey key{seed_, static_cast<std::uint32_t>(step), kDropoutStream, 0};
+    network_.clear_gradients();
+    gather(pose, pose_target_);
+    forward_.forward(track, kept, key);
+    pose_loss_.differentiate(forward_.prediction(), pose_target_, forward_.prediction_error());
+    forward_.backward();
+    if (settings_.reverse > 0 && step % kReverseEvery == 0) {
+      gather(track, track_target_);
+      RandomKey other = key;
+      other.phase = 0x100;
+      reverse_.forward(pose, kept, other);
+      track_loss_.differentiate(reverse_.prediction(), track_target_, reverse_.prediction_error());
+      reverse_.backward();
+    }
+    AdamRule rule;
+    rule.rate = static_cast<float>(rate_at(settings_.rate, step, settings_.steps));
+    rule.beta2 = 0.99F;
+    rule.weight_decay = static_cast<float>(settings_.weight_decay);
+    // A young average is that of few steps.
+    const double young = static_cast<double>(step + 1) / static_cast<double>(step + 10);
+    network_.update(rule, kLongestGradient, static_cast<float>(std::min(settings_.average, young)));
+  }
+
+  /// The weighted loss since the last call; `features` is its first part.
+  double read_loss(double* features) {
+    const auto parts = pose_loss_.read_and_reset();
+    *features = parts[0];
+    return parts[0] + settings_.places * parts[1] + settings_.velocities * parts[2];
+  }
+
+  Mcdbn result() { return network_.to_mcdbn(true); }
+
+ private:
+  const JointSettings& settings_;
+  std::uint64_t seed_;
+  JointWindows windows_;
+  JointNetwork network_;
+  Sequences tracks_, poses_;
+  WindowSampler sampler_;
+  JointPass forward_, reverse_;
+  PoseLoss pose_loss_;
+  FeatureLoss track_loss_;
+  Matrix pose_target_, track_target_;
+  IndexBuffer index_;
+};
+
+Mcdbn copied(Device& device, const Mcdbn& network) {
+  Mcdbn copy{
+      {}, {}, Mrbm(device, network.mrbm.to_host()), network.look_ahead, network.mean_field_steps};
+  for (const Crbm& layer : network.track.layers)
+    copy.track.layers.emplace_back(device, layer.to_host());
+  for (const Crbm& layer : network.pose.layers)
+    copy.pose.layers.emplace_back(device, layer.to_host());
+  return copy;
+}
+
+}  // namespace
+
+TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files,
+                                 const Modalities& modalities, const TrainingConfig& config) {
+  TrainingSet views{modalities, {}, {}, {}};
+  RandomKey key{config.seed, 0, kViewStream, 0};
+  for (const auto& file : files) {
+    const Motion raw = load_clip(file, {.fps = 0, .keep_first_frame = config.keep_first_frame});
+    for (std::size_t i = 0; i < config.augment.views; ++i, ++key.step) {
+      const AugmentedView view =
+          augmented_view(raw, config.fps, config.camera, config.augment, key);
+      views.tracks.push_back(modalities.encode_track(view.track));
+      views.poses.push_back(modalities.encode_pose(view.motion, view.camera.camera_from_world));
+    }
+  }
+  return views;
+}
+
+Mcdbn train_joint(Device& device, const Mcdbn& start, const TrainingSet& views,
+                  const TrainingConfig& config, const EpochObserver& observer) {
+  const JointSettings& settings = config.joint;
+  Mcdbn own = copied(device, start);
+  own.mean_field_steps = settings.mean_field_steps;
+  JointWindows windows;
+  windows.count = settings.windows;
+  windows.first = longest_history(own);
+  windows.lead = windows.first + settings.settle_frames;
+  windows.frames = windows.lead + settings.window_frames;
+  JointTrainer trainer(device, own, views, windows, config);
+  DivergenceGuard guard("joint", fmt::format("lower --joint-rate (now {:g})", settings.rate));
+  auto last = std::chrono::steady_clock::now();
+  for (std::size_t step = 0; step < settings.steps; ++step) {
+    trainer.step(step);
+    const std::size_t done = step + 1;
+    if (done % kReportEvery != 0 && done != settings.steps) continue;
+    double features = 0;
+    const double loss = trainer.read_loss(&features);
+    guard.check(done, loss);
+    const auto now = std::chrono::steady_clock::now();
+    EpochReport report;
+    report.stage = "joint";
+    report.epoch = done;
+    report.epochs = settings.steps;
+    report.loss = loss;
+    report.windows_per_s = static_cast<double>(kReportEvery * settings.windows) /
+                           std::chrono::duration<double>(now - last).count();
+    report.stage_progress = static_cast<double>(done) / static_cast<double>(settings.steps);
+    report.overall_progress = report.stage_progress;
+    last = now;
+    if (observer) observer(report);
+  }
+  return trainer.result();
+}
+
+namespace {
+
+void take_size(MatrixF& weights, const MatrixF& like) {
+  const float norm = weights.norm();
+  if (norm > 0.0F) weights *= like.norm() / norm;
+}
+
+}  // namespace
+
+Mcdbn sized_for_joint_stage(Device& device, const Mcdbn& greedy, const TrainingConfig& config) {
+  const Mcdbn sizes = random_start(device, greedy.track.layers.front().shape().visible,
+                                   greedy.pose.layers.front().shape().visible, config);
+  MrbmParameters mrbm = centered(greedy.mrbm.to_host());
+  const MrbmParameters mrbm_sizes = sizes.mrbm.to_host();
+  for (std::size_t m = 0; m < 2; ++m) take_size(mrbm.W[m], mrbm_sizes.W[m]);
+  Mcdbn network{{}, {}, Mrbm(device, uncentered(mrbm)), greedy.look_ahead, greedy.mean_field_steps};
+  const auto resize = [&](const Cdbn& from, const Cdbn& like, Cdbn& to) {
+    for (std::size_t i = 0; i < from.layers.size(); ++i) {
+      CrbmParameters layer = centered(from.layers[i].to_host());
+      const CrbmParameters size = like.layers[i].to_host();
+      take_size(layer.W, size.W);
+      take_size(layer.A, size.A);
+      take_size(layer.B, size.B);
+      to.layers.emplace_back(device, uncentered(layer));
+    }
+  };
+  resize(greedy.track, sizes.track, network.track);
+  resize(greedy.pose, sizes.pose, network.pose);
+  return network;
+}
+
+Mcdbn random_start(Device& device, std::size_t track, std::size_t pose,
+                   const TrainingConfig& config) {
+  std::uint32_t next = 0;
+  // Deviations that keep the variance of a unit's input near the given square, whatever its inputs'
+  // number: units about zero deviate by a tenth or two, so their gains are above one.
+  const auto layer = [&](std::size_t visible, VisibleKind kind) {
+    const CrbmShape shape{visible, config.hidden, config.order, kind};
+    CrbmParameters drawn =
+        CrbmParameters::random(shape, 1.0, {config.seed, next++, kStartStream, 0});
+    const bool lowest = kind == VisibleKind::gaussian;
+    const double up = lowest ? 0.8 / std::sqrt(static_cast<double>(visible))
+                             : 3.0 / std::sqrt(static_cast<double>(visible));
+    const double history =
+        1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(config.order, 1) * visible));
+    drawn.W *= static_cast<float>(up);
+    drawn.B *= static_cast<float>((lowest ? 0.6 : 2.1) * history);
+    drawn.A *= static_cast<float>((lowest ? 0.09 : 0.9) * history);
+    return drawn;
+  };
+  MrbmParameters mrbm = MrbmParameters::random(config.hidden, config.hidden, config.mrbm_hidden,
+                                               1.0, {config.seed, next++, kStartStream, 0});
+  const double shared = 1.0 / std::sqrt(static_cast<double>(config.hidden));
+  mrbm.W[0] *= static_cast<float>(3.0 * shared);
+  mrbm.W[1] *= static_cast<float>(2.0 * shared);
+  Mcdbn network{
+      {}, {}, Mrbm(device, uncentered(mrbm)), config.look_ahead, config.joint.mean_field_steps};
+  for (const Modality modality : {Modality::track, Modality::pose}) {
+    Cdbn& cdbn = modality == Modality::track ? network.track : network.pose;
+    for (std::size_t i = 0; i < config.layers; ++i) {
+      CrbmParameters drawn =
+          i == 0 ? layer(modality == Modality::track ? track : pose, VisibleKind::gaussian)
+                 : layer(config.hidden, VisibleKind::binary);
+      // The down-pass of the lowest 3D layer sums over hidden units, not over features.
+      if (i == 0 && modality == Modality::pose)
+        drawn.W *= static_cast<float>(
+            1.5 / 0.8 * std::sqrt(static_cast<double>(pose) / static_cast<double>(config.hidden)));
+      cdbn.layers.emplace_back(device, uncentered(drawn));
+    }
+  }
+  return network;
+}
+
+}  // namespace mcdbn
