@@ -72,6 +72,11 @@ void TrainingOptions::add_to(CLI::App& command) {
       .add_option("--preset", preset_, "default, or paper: the paper's own figures, which diverge")
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
+  command
+      .add_option("--stages", stages_,
+                  "greedy: layer by layer, as the paper does; joint: the whole network by "
+                  "back-propagation; both: one after the other (default, but for --preset paper)")
+      ->check(CLI::IsMember({"greedy", "joint", "both"}));
   command.add_option("--config", file_, "TOML file of settings; flags override it")
       ->type_name("FILE");
   TrainingConfig defaults;
@@ -101,8 +106,18 @@ TrainingConfig TrainingOptions::resolve() const {
   TrainingConfig config = preset_ == "paper" ? TrainingConfig::paper() : TrainingConfig{};
   if (!file_.empty()) apply_file(config, file_);
   for (const auto& flag : flags_) flag(config);
+  apply_stages(config);
   config.validate();
   return config;
+}
+
+void TrainingOptions::apply_stages(TrainingConfig& config) const {
+  if (stages_.empty()) return;
+  if (stages_ == "greedy")
+    config.joint.steps = 0;
+  else if (config.joint.steps == 0)
+    config.joint.steps = JointSettings{}.steps;
+  config.joint.from_greedy = stages_ != "joint";
 }
 
 void assign_setting(TrainingConfig& config, const std::string& name, const nlohmann::json& value,

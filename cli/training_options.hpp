@@ -20,7 +20,9 @@ class TrainingOptions {
   TrainingConfig resolve() const;
 
  private:
-  std::string preset_ = "default";
+  void apply_stages(TrainingConfig& config) const;
+
+  std::string preset_ = "default", stages_;
   std::filesystem::path file_;
   std::vector<std::function<void(TrainingConfig&)>> flags_;
 };

@@ -9,6 +9,7 @@
 #include "mcdbn/errors.hpp"
 #include "mcdbn/text_file.hpp"
 #include "mcdbn/training/greedy_schedule.hpp"
+#include "mcdbn/training/joint_fine_tuning.hpp"
 #include "progress.hpp"
 #include "training_options.hpp"
 
@@ -52,6 +53,32 @@ void make_run_folder(const std::filesystem::path& run, const TrainingConfig& con
   write_text_file(run / "config.toml", settings_toml(config));
 }
 
+/// An observer of one stage that shows it as the part `from` … `to` of the run.
+EpochObserver part_of_run(const EpochObserver& observer, double from, double to) {
+  return [=](EpochReport report) {
+    report.overall_progress = from + (to - from) * report.overall_progress;
+    observer(report);
+  };
+}
+
+/// The greedy stages, the joint one, or both, as the configuration says.
+Mcdbn train_network(Device& device, const TrainingSet& data,
+                    const std::vector<std::filesystem::path>& clips, const TrainingConfig& config,
+                    const EpochObserver& observer) {
+  if (config.joint.steps == 0) return train_greedy(device, data, config, observer);
+  const double greedy_share = config.joint.from_greedy ? 0.2 : 0.0;  // of the time, about
+  const Mcdbn start =
+      config.joint.from_greedy
+          ? sized_for_joint_stage(
+                device,
+                train_greedy(device, data, config, part_of_run(observer, 0.0, greedy_share)),
+                config)
+          : random_start(device, static_cast<std::size_t>(data.tracks.front().cols()),
+                         static_cast<std::size_t>(data.poses.front().cols()), config);
+  return train_joint(device, start, make_augmented_views(clips, data.modalities, config), config,
+                     part_of_run(observer, greedy_share, 1.0));
+}
+
 }  // namespace
 
 TrainedRun train_to_folder(const CommandContext& context, Device& device,
@@ -68,13 +95,14 @@ TrainedRun train_to_folder(const CommandContext& context, Device& device,
                data.modalities.track_scale.output_dimension());
   MetricsLog metrics(run / "metrics.jsonl");
   ProgressLine progress(context.quiet);
-  Mcdbn network = train_greedy(device, data, config, [&](const EpochReport& report) {
+  const auto observer = [&](const EpochReport& report) {
     interrupt.check();
     metrics.add(report);
     progress.show(fmt::format("{} epoch {}/{}  loss {:.4f}  {:.0f} windows/s", report.stage,
                               report.epoch, report.epochs, report.loss, report.windows_per_s),
                   report.overall_progress);
-  });
+  };
+  Mcdbn network = train_network(device, data, clips, config, observer);
   TrainedRun trained{{std::move(network), data.modalities, data.clips, settings_json(config)},
                      progress.elapsed_s()};
   const std::filesystem::path file = run / "model.safetensors";

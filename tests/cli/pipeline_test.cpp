@@ -19,7 +19,19 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kTiny =
-    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2";
+    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2 "
+    "--joint-steps 3 --joint-windows 4 --augment-views 2";
+
+std::set<std::string> stages_of(const fs::path& run) {
+  std::set<std::string> stages;
+  std::istringstream lines(mcdbn::read_text_file(run / "metrics.jsonl"));
+  for (std::string line; std::getline(lines, line);) {
+    const json metrics = json::parse(line);
+    CHECK(metrics.at("loss").is_number());
+    stages.insert(metrics.at("stage"));
+  }
+  return stages;
+}
 
 CliResult synthesize(const fs::path& folder) {
   return run_cli(
@@ -99,14 +111,22 @@ TEST_CASE("train writes a run folder") {
   const fs::path run = TinyPipeline::instance().folder("run");
   CHECK(fs::exists(run / "model.safetensors"));
   CHECK(fs::exists(run / "config.toml"));
-  std::set<std::string> stages;
-  std::istringstream lines(mcdbn::read_text_file(run / "metrics.jsonl"));
-  for (std::string line; std::getline(lines, line);) {
-    const json metrics = json::parse(line);
-    CHECK(metrics.at("loss").is_number());
-    stages.insert(metrics.at("stage"));
-  }
-  CHECK(stages == std::set<std::string>{"pose.0", "pose.1", "track.0", "track.1", "mrbm"});
+  CHECK(stages_of(run) ==
+        std::set<std::string>{"pose.0", "pose.1", "track.0", "track.1", "mrbm", "joint"});
+}
+
+TEST_CASE("train --stages leaves stages out") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const auto stages = [&](const std::string& options) {
+    const fs::path run = pipeline.folder("stages");
+    REQUIRE(train(pipeline.training_clips(), run, std::string(kTiny) + " --quiet " + options)
+                .exit_code == 0);
+    return stages_of(run);
+  };
+  CHECK(stages("--stages greedy") ==
+        std::set<std::string>{"pose.0", "pose.1", "track.0", "track.1", "mrbm"});
+  CHECK(stages("--stages joint") == std::set<std::string>{"joint"});
 }
 
 TEST_CASE("the same seed trains the same model, from the recorded config too") {

@@ -27,7 +27,8 @@ except ImportError:
     sys.exit(77)
 
 TINY = (
-    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2"
+    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2 "
+    "--joint-steps 30 --joint-windows 4 --augment-views 2"
 ).split()
 
 # Whether anything is drawn, and a number that changes with what it is.

@@ -15,7 +15,8 @@ import unittest
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 TINY = (
-    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2"
+    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2 "
+    "--joint-steps 30 --joint-windows 4 --augment-views 2"
 )
 SWEEP = """
 test = ["walk/walk_s02_01.bvh"]
@@ -121,6 +122,8 @@ class Scripts(unittest.TestCase):
         for line in (run / "metrics.jsonl").read_text().splitlines():
             entry = json.loads(line)
             stages.setdefault(entry["stage"], []).append(entry)
+        joint = stages.pop("joint")
+        self.assertGreater(joint[-1]["loss"], 0)
         for stage, entries in stages.items():
             self.assertGreater(entries[-1]["weight_norm"], 0)
             self.assertTrue(0 < entries[-1]["hidden_activity"] < 1)
@@ -129,7 +132,7 @@ class Scripts(unittest.TestCase):
         if self.has_matplotlib():
             plot = self.run_program(SCRIPTS / "plot_metrics.py", run)
             self.assertEqual(plot.returncode, 0, plot.stderr)
-            self.assertIn("8 panels, 5 stages", plot.stderr)
+            self.assertIn("8 panels, 6 stages", plot.stderr)
             self.assertTrue(is_png(run / "metrics.png"))
             self.assertEqual(
                 self.run_program(SCRIPTS / "plot_metrics.py", self.folder).returncode, 3)

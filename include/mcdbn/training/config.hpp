@@ -34,6 +34,7 @@ struct MultiPredictionSettings {
 /// The joint MinVI stage through the whole stack (joint_fine_tuning.hpp).
 struct JointSettings {
   std::size_t steps = 1500;        ///< mini-batches; 0 leaves the stage out
+  bool from_greedy = true;         ///< start from the greedy network, else from random weights
   std::size_t windows = 48;        ///< in a mini-batch
   std::size_t window_frames = 20;  ///< judged frames of a window
   std::size_t settle_frames = 4;   ///< frames before them that run freely too
@@ -114,6 +115,8 @@ void visit_settings(Config& config, Visit&& visit) {
   visit("mrbm.mean-field-steps", config.mrbm.mean_field_steps, "unrolled steps of eq 32 and 33");
   visit("mrbm.epochs", config.mrbm.epochs, "epochs");
   visit("joint.steps", config.joint.steps, "mini-batches of the joint stage; 0 leaves it out");
+  visit("joint.from-greedy", config.joint.from_greedy,
+        "start from the greedy network; else the greedy stages are left out");
   visit("joint.windows", config.joint.windows, "windows in a mini-batch");
   visit("joint.window-frames", config.joint.window_frames, "judged frames of a window");
   visit("joint.settle-frames", config.joint.settle_frames, "free-running frames before them");
