@@ -24,6 +24,8 @@ class PoseFeatures {
   int dimension() const;
   const Skeleton& skeleton() const { return skeleton_; }  ///< of the first training clip
   int root() const { return root_; }  ///< the moving root: a joint of skeleton()
+  /// The joints of skeleton() that have a 6D block, in the blocks' order.
+  const std::vector<int>& joints() const { return joints_; }
   std::vector<std::string> feature_names() const;
 
   /// Height is along the world's +y; velocity is the backward difference (the first frame repeats
