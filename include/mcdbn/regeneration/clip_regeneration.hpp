@@ -6,6 +6,7 @@
 #include "mcdbn/model/model_file.hpp"
 #include "mcdbn/motion/camera.hpp"
 #include "mcdbn/motion/keypoints.hpp"
+#include "mcdbn/motion/track_fit.hpp"
 #include "mcdbn/regeneration/mcdbn_regeneration.hpp"
 
 namespace mcdbn {
@@ -14,6 +15,7 @@ namespace mcdbn {
 struct ClipPlacement {
   std::optional<Camera> camera;      ///< unset: the model's own view, the clip put at the origin
   std::optional<Skeleton> skeleton;  ///< unset: the model's
+  std::optional<TrackFit> fit = TrackFit{};  ///< unset: the network's answer as it is
 };
 
 /// What the root's features say when the pose is known: its path in the world (root_trajectory).
