@@ -19,10 +19,8 @@ namespace {
 /// RMS distance of a 1.7 m person's joints from the hips (0.42 to 0.64 over the skeletons that were
 /// tried): good enough to turn the noise below into file units.
 constexpr double kRmsOfBody_m = 0.5;
-/// How much the root's acceleration differs from what the motion model says, m/s² on that body:
-/// a walking pelvis without the model's own velocity, and what is wrong with that velocity.
+/// The root's acceleration on that body where no velocity is known: a walking pelvis.
 constexpr double kFreeAcceleration_m_s2 = 4.0;
-constexpr double kVelocityError_m_s2 = 1.0;
 /// Nobody is that fast; only keeps frames that nothing else determines from running away.
 constexpr double kFastest_m_s = 50.0;
 /// No estimator of 2D joints is better than this, so no frame is trusted without limit.
@@ -169,7 +167,7 @@ void check_shapes(const MatrixD& relative_positions, const std::vector<std::stri
 
 MatrixD root_trajectory(const MatrixD& relative_positions,
                         const std::vector<std::string>& joint_names, const Track2d& track,
-                        const Camera& camera, const MatrixD& velocity) {
+                        const Camera& camera, const MatrixD& velocity, double velocity_error_m_s2) {
   check_shapes(relative_positions, joint_names, track, velocity);
   const TrackRays seen = track_rays(joint_names, track, camera);
   const double frame_time_s = 1.0 / track.fps;
@@ -205,7 +203,7 @@ MatrixD root_trajectory(const MatrixD& relative_positions,
       std::sqrt(squares / static_cast<double>(fixes.size() * seen.places.size())) / kRmsOfBody_m;
   const MatrixD path =
       fuse(fixes, prediction, ray_noise(fixes, camera),
-           metre * (velocity.rows() > 0 ? kVelocityError_m_s2 : kFreeAcceleration_m_s2),
+           metre * (velocity.rows() > 0 ? velocity_error_m_s2 : kFreeAcceleration_m_s2),
            metre * kFastest_m_s, frame_time_s);
   // x_camera = R·x_world + t, row by row.
   return (path.rowwise() - camera.translation.transpose()) * camera.camera_from_world;
