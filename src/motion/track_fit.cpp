@@ -160,7 +160,7 @@ MatrixD smoothed(const MatrixD& values, double deviation_frames) {
 
 /// The deviation of the Gaussian that is off least, in frames: of width w it leaves
 /// noise² / (2 √π w) of the noise's variance and bends the path by w² bend / 2.
-double best_width(double noise_m, double bend_m_s2, double frame_time_s) {
+double best_width_frames(double noise_m, double bend_m_s2, double frame_time_s) {
   const double ratio = noise_m / (bend_m_s2 * frame_time_s * frame_time_s);
   return std::pow(ratio * ratio / (2 * std::sqrt(std::numbers::pi)), 0.2);
 }
@@ -187,6 +187,18 @@ MatrixD turned(MatrixD features, const MatrixD& turns) {
   return features;
 }
 
+/// The turns of every frame, each for itself. @return [frames x 3·orientations] radians
+MatrixD solve(const std::vector<Frame>& frames, FramePrior prior, double noise) {
+  MatrixD turns(static_cast<Eigen::Index>(frames.size()),
+                3 * static_cast<Eigen::Index>(prior.parents.size()));
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    prior.place = frames[t].place;
+    const FrameFit fit = fit_frame(usable(frames[t], noise), prior);
+    turns.row(static_cast<Eigen::Index>(t)) = fit.correction.head(turns.cols()).transpose();
+  }
+  return turns;
+}
+
 void check_shapes(const PoseFeatures& pose_features, const MatrixD& features, const Motion& answer,
                   const Track2d& track) {
   if (features.cols() == pose_features.dimension() && features.rows() == answer.frames() &&
@@ -207,35 +219,33 @@ MatrixD fit_to_track(const PoseFeatures& pose_features, const MatrixD& features,
                      const Track2d& track, const Camera& camera, const TrackFit& fit) {
   check_shapes(pose_features, features, answer, track);
   if (features.rows() == 0) return features;
-  const TrackRays seen = track_rays(joint_names, track, camera);
+  std::vector<std::string> names;
+  for (const std::string& name : joint_names) {
+    if (answer.skeleton.find(name) >= 0) names.push_back(name);
+  }
+  const TrackRays seen = track_rays(names, track, camera);
   std::vector<int> joints;
-  for (const int place : seen.places) joints.push_back(answer.skeleton.find(joint_names[place]));
+  for (const int place : seen.places) joints.push_back(answer.skeleton.find(names[place]));
   const TurnedBones bones(pose_features, answer.skeleton, joints);
-  const double focal_px = std::sqrt(camera.fx_px * camera.fy_px), frame_time_s = 1 / track.fps;
-  const double units = file_units_per_metre(answer.skeleton);
-  const double track_noise = std::max(kLeastNoise_px, track_noise_px(track)) / focal_px;
-
   std::vector<Frame> frames = answer_frames(answer, bones, camera);
+
+  const double focal_px = std::sqrt(camera.fx_px * camera.fy_px), frame_time_s = 1 / track.fps;
+  const double units = file_units_per_metre(answer.skeleton), depth = usual_depth(frames);
+  const double track_noise = std::max(kLeastNoise_px, track_noise_px(track)) / focal_px;
   look_at(seen, track_noise * track_noise, fit.fade_s, frame_time_s, frames);
   FramePrior prior;
   prior.parents = bones.parents();
   prior.turn_deviation_rad = fit.turn_deg * std::numbers::pi / 180;
   prior.likeness = fit.likeness;
   prior.place_deviation = fit.place_m * units;
-  const double depth = usual_depth(frames);
   const double least = std::max({track_noise, fit.least_noise_px / focal_px,
                                  fit.proportions_m * units / std::max(depth, 1e-9)});
   const double noise = misfit(frames, prior, std::max(least, kFirstNoise_px / focal_px), least);
 
-  MatrixD turns(features.rows(), 3 * static_cast<Eigen::Index>(bones.parents().size()));
-  for (Eigen::Index t = 0; t < turns.rows(); ++t) {
-    prior.place = frames[t].place;
-    turns.row(t) =
-        fit_frame(usable(frames[t], noise), prior).correction.head(turns.cols()).transpose();
-  }
+  MatrixD turns = solve(frames, prior, noise);
   const double noise_m = track_noise * depth / units;
   if (noise_m > 0) {
-    turns = smoothed(turns, best_width(noise_m, fit.bend_m_s2, frame_time_s));
+    turns = smoothed(turns, best_width_frames(noise_m, fit.bend_m_s2, frame_time_s));
   }
   return turned(features, turns);
 }

@@ -180,6 +180,17 @@ TEST_CASE("track fit: missing joints are ignored, whatever number stands there")
     if (wild.confidence.data()[k] == 0) wild.x_px.data()[k] = wild.y_px.data()[k] = 1e5;
   }
   CHECK(scene.fit(wild) == fitted);
+  // A joint that the track has and the body has not.
+  Track2d more = scene.track;
+  more.joint_names.push_back("ghost");
+  for (MatrixD* values : {&more.x_px, &more.y_px, &more.confidence}) {
+    values->conservativeResize(Eigen::NoChange, values->cols() + 1);
+    values->rightCols<1>().setConstant(values == &more.confidence ? 1 : 100);
+  }
+  const MatrixD with_ghost =
+      fit_to_track(scene.pose_features, scene.features, scene.decode(scene.features),
+                   more.joint_names, more, scene.camera);
+  CHECK(error(scene, with_ghost) < error(scene, scene.features) / 3);
   missing.joint_names[3] = "stranger";
   CHECK(error(scene, scene.fit(missing)) < error(scene, scene.features) / 3);
 }

@@ -26,12 +26,13 @@ struct TrackFit {
 /// Moves an answer so that its joints lie where the track shows them. The answer is the prior:
 /// every orientation is turned about the camera's axes, and the root shifted, as is most likely
 /// given the track (Gauss-Newton per frame; joints that nothing likely explains are let go of).
-/// How much the track counts is told from the clip: from how well it can be met at all, so that a
-/// body of other proportions or joints put elsewhere are not taken at their word. The turns are
-/// smoothed over time as much as the track's noise asks for, and fade where joints go missing.
+/// How much the track counts is told from the clip: from how well it can be met at all, so that the
+/// track of a body of other proportions, or of joints put elsewhere, is not taken at its word. The
+/// turns are smoothed over time as much as the track's noise asks for, and fade where joints go
+/// missing.
 /// @param features [frames x pose_features.dimension()], the answer
 /// @param answer the same, decoded, the root where root_trajectory puts it
-/// @param joint_names the joints to look at; those that the track lacks are ignored
+/// @param joint_names the joints to look at; those that the track or the answer lacks are ignored
 /// @return features with other orientations
 /// @throws ShapeError; InputError if the answer lacks a joint of the features
 MatrixD fit_to_track(const PoseFeatures& pose_features, const MatrixD& features,
