@@ -147,7 +147,7 @@ class Equations {
     return std::max(1.0, deviation * deviation);
   }
 
-  /// Of the last solution: the trace of how much of a change of the rays stays a miss.
+  /// Of the last solution, as freedom_of.
   double freedom() const {
     const Eigen::MatrixXd inverse =
         system_.solve(Eigen::MatrixXd::Identity(miss_.size(), miss_.size()));
@@ -230,7 +230,7 @@ Eigen::Matrix<double, 2, Eigen::Dynamic> ray_jacobian(const Sight& sight,
 
 FrameFit fit_frame(const std::vector<Sight>& sights, const FramePrior& prior) {
   Equations equations(sights, prior);
-  FrameFit fit{Eigen::VectorXd::Zero(equations.parameters()), {}, 0};
+  FrameFit fit{Eigen::VectorXd::Zero(equations.parameters()), {}};
   if (sights.empty() || !(prior.place.z() > 0)) return fit;
   // All joints first: how well they can be met tells what is out of the ordinary.
   fit.correction = equations.solve(fit.correction, 1, false);
@@ -246,8 +246,14 @@ FrameFit fit_frame(const std::vector<Sight>& sights, const FramePrior& prior) {
     if (equations.step_size(step) < kSmallStep) break;
   }
   fit.misses = equations.misses(fit.correction);
-  fit.freedom = equations.freedom();
   return fit;
+}
+
+double freedom_of(const FrameFit& fit, const std::vector<Sight>& sights, const FramePrior& prior) {
+  if (fit.misses.empty()) return 0;
+  Equations equations(sights, prior);
+  equations.solve(fit.correction, equations.scale(fit.correction), true);
+  return equations.freedom();
 }
 
 }  // namespace mcdbn

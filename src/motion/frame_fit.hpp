@@ -44,12 +44,15 @@ Eigen::Matrix<double, 2, Eigen::Dynamic> ray_jacobian(const Sight& sight,
 struct FrameFit {
   Eigen::VectorXd correction;  ///< three numbers a turn (radians), then the root's shift
   std::vector<double> misses;  ///< what the rays are still off by, in their deviations; two a sight
-  double freedom = 0;          ///< how many of the misses the correction does not use up
 };
 
 /// The most likely correction: Gauss-Newton on rays and prior together, halving steps that make it
 /// worse. Cauchy's weights let go of joints that nothing likely explains; joints behind the camera
 /// do not count. Zero if nothing is seen, or if the root is behind the camera.
 FrameFit fit_frame(const std::vector<Sight>& sights, const FramePrior& prior);
+
+/// How many of the fit's misses its correction does not use up: the trace of how much of a change
+/// of the rays stays a miss. 0 if nothing was seen.
+double freedom_of(const FrameFit& fit, const std::vector<Sight>& sights, const FramePrior& prior);
 
 }  // namespace mcdbn

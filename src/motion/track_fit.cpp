@@ -129,9 +129,10 @@ double misfit(const std::vector<Frame>& frames, FramePrior prior, double start, 
     double squares = 0, freedom = 0;
     for (Eigen::Index t = stride / 2; t < count; t += stride) {
       prior.place = frames[t].place;
-      const FrameFit fit = fit_frame(usable(frames[t], noise), prior);
+      const std::vector<Sight> sights = usable(frames[t], noise);
+      const FrameFit fit = fit_frame(sights, prior);
       for (const double miss : fit.misses) squares += clipped_square(miss);
-      freedom += fit.freedom;
+      freedom += freedom_of(fit, sights, prior);
     }
     if (!(freedom > 0)) break;
     noise = std::max(least, noise * std::sqrt(squares / freedom));
