@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "fit_option.hpp"
 #include "interrupt.hpp"
 #include "mcdbn/evaluation/report_page.hpp"
 #include "mcdbn/motion/clip.hpp"
@@ -18,14 +19,15 @@ namespace {
 struct EvaluateOptions {
   std::filesystem::path model, report;
   std::vector<std::filesystem::path> test;
-  std::string protocol = "subject", actions;
+  std::string protocol = "subject", actions, fit;
   TestRunOptions run;
   std::optional<std::size_t> samples;
   std::optional<double> azimuth_deg, elevation_deg, temperature;
 };
 
 /// What the protocol leaves open is filled in; what was said stays.
-/// `paper` is section V: every clip, those trained on too, regenerated ten times.
+/// `paper` is section V: every clip, those trained on too, regenerated ten times by the network
+/// alone.
 void apply_protocol(EvaluateOptions& options) {
   const bool paper = options.protocol == "paper";
   options.run.include_training |= paper;
@@ -33,6 +35,8 @@ void apply_protocol(EvaluateOptions& options) {
   options.run.regeneration.temperature =
       options.temperature.value_or(options.run.regeneration.samples > 1 ? 1.0 : 0.0);
   if (options.actions.empty()) options.actions = paper ? "by-folder" : "together";
+  if (options.fit.empty()) options.fit = paper ? kFitNone : kFitTrack;
+  options.run.fit = track_fit(options.fit);
 }
 
 void print_table(const EvaluationReport& report) {
@@ -80,6 +84,8 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   report.model = options.model.filename().string();
   report.protocol = options.protocol;
   report.temperature = options.run.regeneration.temperature;
+  report.fit = options.fit;
+  report.damage = options.run.damage;
   if (!options.report.empty()) {
     write_report(options.report, report);
     spdlog::info("{}: open report.html in a browser", options.report.string());
@@ -127,9 +133,31 @@ void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
                   "k of a sampled frame (Algorithm 5)")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  add_fit_option(command, options.fit, "default: track, none in the paper's protocol; all methods");
   command.add_option("--camera-azimuth", options.azimuth_deg, "Degrees (default: as trained)");
   command.add_option("--camera-elevation", options.elevation_deg, "Degrees (default: as trained)")
       ->check(CLI::Range(-89.0, 89.0));
+}
+
+/// What trackers do to a track, done to the test clips' before any method sees them.
+void add_damage_options(CLI::App& command, TrackDamage& damage) {
+  constexpr const char* kGroup = "Damage to the 2D tracks, by --seed";
+  command
+      .add_option("--track-noise-px", damage.noise_px, "Gaussian noise on x and y, deviation in px")
+      ->check(CLI::NonNegativeNumber)
+      ->group(kGroup);
+  command
+      .add_option("--track-missing", damage.missing_share,
+                  "Share of the joints of each frame that go missing, each on its own")
+      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("SHARE")
+      ->group(kGroup);
+  command
+      .add_option("--track-hide", damage.hidden_s,
+                  "Hide an arm for so long in the middle of each clip")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("SECONDS")
+      ->group(kGroup);
 }
 
 }  // namespace
@@ -140,6 +168,7 @@ void add_evaluate_command(CLI::App& app, CommandContext& context) {
       "evaluate", "Scores a model and its baselines on clips that it was not trained on");
   add_test_options(*command, *options);
   add_regeneration_options(*command, *options);
+  add_damage_options(*command, options->run.damage);
   add_json_option(*command, context);
   add_seed_option(*command, context);
   add_device_options(*command, context);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "fit_option.hpp"
 #include "mcdbn/errors.hpp"
 #include "mcdbn/motion/bvh.hpp"
 #include "mcdbn/regeneration/clip_regeneration.hpp"
@@ -15,6 +16,7 @@ namespace {
 struct RegenerateOptions {
   std::filesystem::path model, input, output, camera, skeleton;
   RegenerationOptions regeneration;
+  std::string fit = kFitTrack;
 };
 
 /// out.bvh, or out_01.bvh … for several samples.
@@ -32,6 +34,7 @@ void run_regenerate(const CommandContext& context, const RegenerateOptions& opti
   ClipPlacement placement;
   if (!options.camera.empty()) placement.camera = read_camera(options.camera);
   if (!options.skeleton.empty()) placement.skeleton = read_bvh(options.skeleton).skeleton;
+  placement.fit = track_fit(options.fit);
   RegenerationOptions regeneration = options.regeneration;
   regeneration.seed = context.seed;
   TrackFeatures::FillCount filled;
@@ -83,6 +86,7 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
                    "k of a sampled frame (Algorithm 5)")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  add_fit_option(*command, options->fit, "default: track");
   add_seed_option(*command, context);
   add_device_options(*command, context);
   add_quiet_option(*command, context);

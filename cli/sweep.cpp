@@ -128,6 +128,7 @@ class Sweep {
     TestRunOptions options;
     options.camera = trained.model.modalities.camera;
     options.baselines = false;
+    options.fit.reset();  // it is networks that are compared, not what the track makes of them
     const auto results = run_test(trained.model, test_, options);
     std::vector<ClipScore> scores;
     int frames = 0;

@@ -130,6 +130,10 @@ ordered_json summary_json(const EvaluationReport& report) {
   json["model_file"] = report.model;
   json["protocol"] = report.protocol;
   json["temperature"] = report.temperature;
+  json["fit"] = report.fit;
+  json["track_damage"] = {{"noise_px", report.damage.noise_px},
+                          {"missing_share", report.damage.missing_share},
+                          {"hidden_s", report.damage.hidden_s}};
   json["samples"] = report.clips.empty() ? 0 : report.clips.front().samples.size();
   json["training_clips"] = trained;
   json["verdicts"] = ordered_json::array();

@@ -72,21 +72,21 @@ Verdict against(const EvaluationReport& report, const ClipScore& answer,
 }
 
 void add_flat_warning(std::vector<Verdict>& list, const ClipScore& answer,
-                      const std::vector<MethodReport>& methods) {
+                      const std::vector<MethodReport>& methods, bool fitted) {
+  const char* pose = fitted ? "the mean pose, fitted to the track," : "a pose that never moves";
   const MethodReport* mean_pose = find(methods, "mean_pose");
   if (!mean_pose) return;
   const double constant = mean_pose->mean.pcc_flat;
   if (constant >= answer.pcc_flat)
     list.push_back(
-        {Kind::bad, fmt::format("By the flattened PCC that the paper reports, a pose that never "
-                                "moves ({:.4f}) is as good as the model ({:.4f}).",
-                                constant, answer.pcc_flat)});
+        {Kind::bad, fmt::format("By the flattened PCC that the paper reports, {} ({:.4f}) is as "
+                                "good as the model ({:.4f}).",
+                                pose, constant, answer.pcc_flat)});
   else if (constant > 0.8)
     list.push_back(
-        {Kind::note, fmt::format("A pose that never moves already reaches a flattened PCC of "
-                                 "{:.4f} (the model: {:.4f}): judge by the per-channel PCC, where "
-                                 "it gets 0.",
-                                 constant, answer.pcc_flat)});
+        {Kind::note, fmt::format("Even {} reaches a flattened PCC of {:.4f} (the model: {:.4f}): "
+                                 "judge by the per-channel PCC, where it gets {:.3g}.",
+                                 pose, constant, answer.pcc_flat, mean_pose->mean.pcc_channel)});
 }
 
 /// Where several actions are reported: those on which a baseline is nearer.
@@ -178,6 +178,27 @@ void add_known_people(std::vector<Verdict>& list, const EvaluationReport& report
                                           clips, report.clips.size(), fmt::join(people, ", "))});
 }
 
+/// What was done to the tracks and to the answers, for all methods alike.
+void add_treatment(std::vector<Verdict>& list, const EvaluationReport& report) {
+  std::vector<std::string> damage;
+  if (report.damage.noise_px > 0)
+    damage.push_back(fmt::format("{:g} px of noise", report.damage.noise_px));
+  if (report.damage.missing_share > 0)
+    damage.push_back(
+        fmt::format("{:g} % of the joints missing", 100 * report.damage.missing_share));
+  if (report.damage.hidden_s > 0)
+    damage.push_back(fmt::format("an arm hidden for {:g} s", report.damage.hidden_s));
+  if (!damage.empty())
+    list.push_back(
+        {Kind::note, fmt::format("The 2D tracks were damaged before any method saw them: "
+                                 "{}.",
+                                 fmt::join(damage, ", "))});
+  if (report.fit == "track")
+    list.push_back({Kind::note,
+                    "Every method's answer, the simpler ones' too, was fitted to the 2D track: "
+                    "--fit none shows what each says by itself."});
+}
+
 }  // namespace
 
 std::vector<Verdict> verdicts(const EvaluationReport& report) {
@@ -187,9 +208,10 @@ std::vector<Verdict> verdicts(const EvaluationReport& report) {
   const ClipScore& answer = answer_of(methods).mean;
   add_training_warning(list, report);
   add_known_people(list, report);
+  add_treatment(list, report);
   for (std::size_t i = 1; i < methods.size(); ++i)
     if (methods[i].name != kMeanField) list.push_back(against(report, answer, methods[i]));
-  add_flat_warning(list, answer, methods);
+  add_flat_warning(list, answer, methods, report.fit == "track");
   if (report.actions.size() > 1)
     for (const ActionReport& action : report.actions) add_action_losses(list, action);
   add_foot_slide(list, answer);

@@ -6,10 +6,11 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <opencv2/calib3d.hpp>
+#include <utility>
 #include <vector>
 
 #include "mcdbn/errors.hpp"
+#include "track_rays.hpp"
 
 namespace mcdbn {
 
@@ -18,10 +19,8 @@ namespace {
 /// RMS distance of a 1.7 m person's joints from the hips (0.42 to 0.64 over the skeletons that were
 /// tried): good enough to turn the noise below into file units.
 constexpr double kRmsOfBody_m = 0.5;
-/// How much the root's acceleration differs from what the motion model says, m/s² on that body:
-/// a walking pelvis without the model's own velocity, and what is wrong with that velocity.
+/// The root's acceleration on that body where no velocity is known: a walking pelvis.
 constexpr double kFreeAcceleration_m_s2 = 4.0;
-constexpr double kVelocityError_m_s2 = 1.0;
 /// Nobody is that fast; only keeps frames that nothing else determines from running away.
 constexpr double kFastest_m_s = 50.0;
 /// No estimator of 2D joints is better than this, so no frame is trusted without limit.
@@ -47,15 +46,6 @@ struct Fix {
   std::vector<double> residuals;  ///< of the rays, two a joint
 };
 
-/// Standard deviation of the bulk of the residuals (1.4826 is the normal distribution's).
-double robust_deviation(const Eigen::Ref<const Eigen::VectorXd>& residuals) {
-  std::vector<double> sizes(residuals.begin(), residuals.end());
-  for (double& size : sizes) size = std::abs(size);
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return 1.4826 * *middle;
-}
-
 /// Gauss-Newton on the distance between where a joint is seen and where it should be. The first
 /// round puts (relative + place) onto the seen ray, which is linear: [1 0 -u; 0 1 -v]·place =
 /// (u·z - x, v·z - y). To stay with those equations would draw the body nearer, as u and v are
@@ -80,7 +70,7 @@ Fix locate(const std::vector<Sight>& sights) {
                                        ? Eigen::Vector2d(jacobian.middleRows<2>(2 * k) * place)
                                        : Eigen::Vector2d(ray - sight.ray);
     }
-    const double scale = kCauchy * robust_deviation(residual) + 1e-12;
+    const double scale = kCauchy * robust_deviation({residual.begin(), residual.end()}) + 1e-12;
     for (Eigen::Index k = 0; k < joints; ++k) {
       const double miss = round == 0 ? 0 : residual.segment<2>(2 * k).norm() / scale;
       weight.segment<2>(2 * k).setConstant(sights[k].confidence / (1 + miss * miss));
@@ -95,32 +85,6 @@ Fix locate(const std::vector<Sight>& sights) {
   return fix;
 }
 
-/// The rays of the track's joints, undistorted. @return [frames x 2·joints], NaN where missing
-MatrixD undistorted_rays(const Track2d& track, const std::vector<int>& columns,
-                         const Camera& camera) {
-  std::vector<cv::Point2d> pixels;
-  for (int frame = 0; frame < track.frames(); ++frame) {
-    for (const int column : columns) {
-      pixels.emplace_back(track.x_px(frame, column), track.y_px(frame, column));
-    }
-  }
-  const cv::Matx33d intrinsics(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0,
-                               1);
-  std::vector<cv::Point2d> rays;
-  // More rounds than OpenCV's five, which leave tenths of a pixel at the edge of a wide lens.
-  const cv::TermCriteria rounds(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 40, 1e-10);
-  if (!pixels.empty()) {
-    cv::undistortPoints(pixels, rays, intrinsics, camera.distortion, cv::noArray(), cv::noArray(),
-                        rounds);
-  }
-  MatrixD result(track.frames(), 2 * static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t k = 0; k < rays.size(); ++k) {
-    result.data()[2 * k] = rays[k].x;
-    result.data()[2 * k + 1] = rays[k].y;
-  }
-  return result;
-}
-
 /// Noise of the rays over all frames: the bulk of the residuals, counted for the three numbers that
 /// every frame fits to them.
 double ray_noise(const std::vector<Fix>& fixes, const Camera& camera) {
@@ -132,10 +96,8 @@ double ray_noise(const std::vector<Fix>& fixes, const Camera& camera) {
     freedom += fix.residuals.size() - 3;
   }
   const double least = kLeastNoise_px / camera.fx_px;
-  const auto count = static_cast<Eigen::Index>(residuals.size());
-  const double share = static_cast<double>(freedom) / static_cast<double>(count);
-  return std::max(
-      least, robust_deviation(Eigen::VectorXd::Map(residuals.data(), count)) / std::sqrt(share));
+  const double share = static_cast<double>(freedom) / static_cast<double>(residuals.size());
+  return std::max(least, robust_deviation(std::move(residuals)) / std::sqrt(share));
 }
 
 /// Adds weight·|Σ coefficient_k · place_(frame + k)|² for each axis to the normal equations.
@@ -201,30 +163,13 @@ void check_shapes(const MatrixD& relative_positions, const std::vector<std::stri
   }
 }
 
-/// The joints that both sides know: places in `joint_names`, and columns of the track.
-struct SharedJoints {
-  std::vector<int> places, columns;
-};
-
-SharedJoints shared_joints(const std::vector<std::string>& joint_names, const Track2d& track) {
-  SharedJoints shared;
-  for (std::size_t k = 0; k < joint_names.size(); ++k) {
-    const int column = track.find(joint_names[k]);
-    if (column < 0) continue;
-    shared.places.push_back(static_cast<int>(k));
-    shared.columns.push_back(column);
-  }
-  return shared;
-}
-
 }  // namespace
 
 MatrixD root_trajectory(const MatrixD& relative_positions,
                         const std::vector<std::string>& joint_names, const Track2d& track,
-                        const Camera& camera, const MatrixD& velocity) {
+                        const Camera& camera, const MatrixD& velocity, double velocity_error_m_s2) {
   check_shapes(relative_positions, joint_names, track, velocity);
-  const SharedJoints joints = shared_joints(joint_names, track);
-  const MatrixD rays = undistorted_rays(track, joints.columns, camera);
+  const TrackRays seen = track_rays(joint_names, track, camera);
   const double frame_time_s = 1.0 / track.fps;
 
   std::vector<Fix> fixes;
@@ -232,14 +177,12 @@ MatrixD root_trajectory(const MatrixD& relative_positions,
   double squares = 0;
   for (int frame = 0; frame < track.frames(); ++frame) {
     std::vector<Sight> sights;
-    for (std::size_t k = 0; k < joints.places.size(); ++k) {
-      const Eigen::Vector3d relative =
-          relative_positions.row(frame).segment<3>(3 * joints.places[k]);
+    for (Eigen::Index k = 0; k < seen.joints(); ++k) {
+      const Eigen::Vector3d relative = relative_positions.row(frame).segment<3>(3 * seen.places[k]);
       squares += relative.squaredNorm();
-      Sight sight{camera.camera_from_world * relative,
-                  rays.row(frame).segment<2>(2 * static_cast<Eigen::Index>(k)),
-                  track.confidence(frame, joints.columns[k])};
-      if (sight.confidence > 0 && sight.ray.allFinite()) sights.push_back(std::move(sight));
+      if (!seen.seen(frame, k)) continue;
+      sights.push_back({camera.camera_from_world * relative, seen.rays.row(frame).segment<2>(2 * k),
+                        seen.confidence(frame, k)});
     }
     fixes.push_back(locate(sights));
     if (frame > 0) {
@@ -257,10 +200,10 @@ MatrixD root_trajectory(const MatrixD& relative_positions,
         kFewestJoints));
   }
   const double metre =
-      std::sqrt(squares / static_cast<double>(fixes.size() * joints.places.size())) / kRmsOfBody_m;
+      std::sqrt(squares / static_cast<double>(fixes.size() * seen.places.size())) / kRmsOfBody_m;
   const MatrixD path =
       fuse(fixes, prediction, ray_noise(fixes, camera),
-           metre * (velocity.rows() > 0 ? kVelocityError_m_s2 : kFreeAcceleration_m_s2),
+           metre * (velocity.rows() > 0 ? velocity_error_m_s2 : kFreeAcceleration_m_s2),
            metre * kFastest_m_s, frame_time_s);
   // x_camera = R·x_world + t, row by row.
   return (path.rowwise() - camera.translation.transpose()) * camera.camera_from_world;

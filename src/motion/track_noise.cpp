@@ -2,12 +2,56 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "mcdbn/errors.hpp"
 
 namespace mcdbn {
+namespace {
+
+void hide(Track2d& track, Eigen::Index frame, Eigen::Index joint) {
+  track.x_px(frame, joint) = track.y_px(frame, joint) = std::numeric_limits<double>::quiet_NaN();
+  track.confidence(frame, joint) = 0;
+}
+
+/// What hangs below each joint: its children, and the length of the longest chain of bones.
+struct Branches {
+  std::vector<std::vector<int>> children;
+  std::vector<double> reach;
+
+  explicit Branches(const Skeleton& skeleton)
+      : children(skeleton.joints.size()), reach(skeleton.joints.size(), 0) {
+    for (int j = skeleton.joint_count() - 1; j > 0; --j) {
+      const int parent = skeleton.joints[j].parent;
+      children[parent].insert(children[parent].begin(), j);
+      reach[parent] = std::max(reach[parent], reach[j] + skeleton.joints[j].offset.norm());
+    }
+  }
+};
+
+/// The joint that the arms hang from, or -1.
+int chest_of(const Branches& branches) {
+  int first = -1, chest = -1;
+  for (int j = 0; j < static_cast<int>(branches.children.size()); ++j) {
+    if (branches.children[j].size() < 2) continue;
+    if (first < 0) {
+      first = j;
+    } else if (chest < 0 || branches.reach[j] > branches.reach[chest]) {
+      chest = j;
+    }
+  }
+  return chest < 0 ? first : chest;
+}
+
+void add_with_all_below(const Branches& branches, int joint, std::vector<int>& joints) {
+  joints.push_back(joint);
+  for (const int child : branches.children[joint]) add_with_all_below(branches, child, joints);
+}
+
+}  // namespace
 
 void add_pixel_noise(Track2d& track, double deviation_px, std::uint64_t seed) {
   if (!std::isfinite(deviation_px) || deviation_px < 0) {
@@ -20,6 +64,57 @@ void add_pixel_noise(Track2d& track, double deviation_px, std::uint64_t seed) {
     *coordinate_px =
         coordinate_px->unaryExpr([&](double value) { return value + noise_px(generator); });
   }
+}
+
+void drop_joints(Track2d& track, double share, std::uint64_t seed) {
+  if (!(share >= 0 && share <= 1)) {
+    throw ConfigError(fmt::format("the share of missing joints is {}; give 0 to 1", share));
+  }
+  if (share == 0) return;
+  std::mt19937_64 generator(seed);
+  std::bernoulli_distribution missing(share);
+  for (Eigen::Index frame = 0; frame < track.frames(); ++frame) {
+    for (Eigen::Index joint = 0; joint < track.joint_count(); ++joint) {
+      if (missing(generator)) hide(track, frame, joint);
+    }
+  }
+}
+
+std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, double seconds,
+                                  std::uint64_t seed) {
+  if (!std::isfinite(seconds) || seconds < 0) {
+    throw ConfigError(fmt::format("an arm is to be hidden for {} s; give 0 or more", seconds));
+  }
+  const Branches branches(skeleton);
+  const int chest = chest_of(branches);
+  if (seconds == 0 || chest < 0) return {};
+  std::vector<int> limbs = branches.children[chest];
+  std::stable_sort(limbs.begin(), limbs.end(),
+                   [&](int a, int b) { return branches.reach[a] > branches.reach[b]; });
+  const int shoulder = limbs[std::mt19937_64(seed)() % 2];
+  std::vector<int> hidden;
+  for (const int child : branches.children[shoulder]) add_with_all_below(branches, child, hidden);
+  const auto frames = std::min<Eigen::Index>(track.frames(), std::lround(seconds * track.fps));
+  const Eigen::Index first = (track.frames() - frames) / 2;
+  std::vector<std::string> names;
+  for (const int joint : hidden) {
+    const int column = track.find(skeleton.joints[joint].name);
+    if (column < 0) continue;
+    names.push_back(skeleton.joints[joint].name);
+    for (Eigen::Index frame = first; frame < first + frames; ++frame) hide(track, frame, column);
+  }
+  return names;
+}
+
+void damage_track(Track2d& track, const Skeleton& skeleton, const TrackDamage& damage,
+                  std::uint64_t seed) {
+  // Seeds that nothing else uses: whoever sees the track must not draw the same numbers.
+  std::seed_seq sequence{seed & 0xffffffffU, seed >> 32U, std::uint64_t{0x74726163}};
+  std::uint32_t seeds[3];
+  sequence.generate(std::begin(seeds), std::end(seeds));
+  add_pixel_noise(track, damage.noise_px, seeds[0]);
+  drop_joints(track, damage.missing_share, seeds[1]);
+  hide_arm(track, skeleton, damage.hidden_s, seeds[2]);
 }
 
 }  // namespace mcdbn

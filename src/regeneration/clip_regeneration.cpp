@@ -1,13 +1,27 @@
 #include "mcdbn/regeneration/clip_regeneration.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "mcdbn/evaluation/foot_slide.hpp"
+#include "mcdbn/motion/planted_velocity.hpp"
 #include "mcdbn/motion/resample.hpp"
 #include "mcdbn/motion/root_trajectory.hpp"
 #include "mcdbn/motion/track_resample.hpp"
+#include "mcdbn/motion/track_smoothing.hpp"
 
 namespace mcdbn {
 namespace {
+
+/// How far the joints of other people are from where the model's skeleton has them. Measured on
+/// held-out walkers on the model's skeleton: with 0.05 the fit takes their error from 34 to 27 mm,
+/// trusted to 0.02 it makes it larger.
+constexpr double kProportions_m = 0.05;
+
+/// What is wrong with the root's velocity as planted feet tell it. On held-out walks feet slide 2.0
+/// times as fast as in the capture without it, 1.3 times with it; with less the root's place
+/// suffers.
+constexpr double kPlantedError_m_s2 = 0.5;
 
 /// The joints that the model looks at: others, such as a node that stays on the floor, may move in
 /// the file unlike anything that a camera sees.
@@ -64,7 +78,7 @@ Motion with_frames(Motion motion, Eigen::Index frames) {
 
 Motion motion_from_features(const Modalities& modalities, const MatrixF& pose, const Track2d& track,
                             const ClipPlacement& placement) {
-  const MatrixD features = modalities.pose_scale.invert(pose);
+  MatrixD features = modalities.pose_scale.invert(pose);
   const Skeleton& skeleton =
       placement.skeleton ? *placement.skeleton : modalities.pose_features.skeleton();
   const Camera camera =
@@ -73,13 +87,26 @@ Motion motion_from_features(const Modalities& modalities, const MatrixF& pose, c
     return modalities.pose_features.decode(features, camera.camera_from_world, skeleton,
                                            modalities.fps, root);
   };
-  const Motion in_place = decode(MatrixD::Zero(features.rows(), 3));
   const double units = file_units_per_metre(skeleton);
   const MatrixD root_features = modalities.pose_features.root_features(features);
   const MatrixD velocity = units * root_features.rightCols(3) * camera.camera_from_world;
   const std::vector<std::string> names = tracked_joints(modalities.track_features);
-  MatrixD root = root_trajectory(positions_of(in_place, names, modalities.root_name()), names,
-                                 track, camera, velocity);
+  const auto path = [&](const MatrixD& guess, auto... error) {
+    const Motion in_place = decode(MatrixD::Zero(features.rows(), 3));
+    return root_trajectory(positions_of(in_place, names, modalities.root_name()), names, track,
+                           camera, guess, error...);
+  };
+  MatrixD root = path(velocity);
+  if (placement.fit) {
+    TrackFit fit = *placement.fit;
+    if (!placement.skeleton) fit.proportions_m = std::max(fit.proportions_m, kProportions_m);
+    features =
+        fit_to_track(modalities.pose_features, features, decode(root), names, track, camera, fit);
+    root = path(velocity);
+    root = path(planted_velocity(decode(root), skeleton.find(modalities.root_name()),
+                                 foot_joints(skeleton), velocity),
+                kPlantedError_m_s2);
+  }
   if (!placement.camera) put_at_origin(root, units * root_features.col(0).mean());
   return decode(root);
 }
@@ -90,7 +117,8 @@ std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
                                     TrackFeatures::FillCount* filled) {
   const Modalities& modalities = model.modalities;
   const Track2d at_rate = resample_track(track, modalities.fps);
-  const auto poses = regenerate(model.network, {modalities.encode_track(at_rate, filled)}, options);
+  const MatrixF features = modalities.encode_track(smooth_track(at_rate), filled);
+  const auto poses = regenerate(model.network, {features}, options);
   std::vector<Motion> motions;
   for (const MatrixF& pose : poses) {
     const Motion motion = motion_from_features(modalities, pose, at_rate, placement);

@@ -11,6 +11,7 @@
 #include "mcdbn/evaluation/bone_length.hpp"
 #include "mcdbn/evaluation/foot_slide.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
+#include "mcdbn/motion/track_smoothing.hpp"
 
 namespace mcdbn {
 namespace {
@@ -64,6 +65,13 @@ std::vector<EncodedClip> encode_training_clips(const Model& model, const TestRun
   return clips;
 }
 
+/// From here on the clip's track is what a tracker would have made of it.
+void look_through_damage(EncodedClip& clip, const Model& model, const TrackDamage& damage,
+                         std::uint64_t seed) {
+  damage_track(clip.track, clip.motion.skeleton, damage, seed);
+  clip.track_features = model.modalities.encode_track(smooth_track(clip.track));
+}
+
 /// Reading is the first tenth of a run, regenerating up to seven tenths, then baselines.
 class Progress {
  public:
@@ -80,10 +88,11 @@ class Progress {
   const TestRunOptions& options_;
 };
 
-Regeneration answer(const Model& model, const EncodedClip& truth, const MatrixF& pose) {
+Regeneration answer(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
+                    const MatrixF& pose) {
   Regeneration result;
   result.motion = motion_from_features(model.modalities, pose, truth.track,
-                                       {truth.camera, truth.motion.skeleton});
+                                       {truth.camera, truth.motion.skeleton, options.fit});
   result.score = score_clip(truth, result.motion, model.modalities.root_name());
   return result;
 }
@@ -104,14 +113,15 @@ void regenerate_clips(const Model& model, const TestRunOptions& options, const P
     const auto poses = regenerate(model.network, tracks, regeneration);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       ClipResult& result = results[first + i / samples];
-      result.samples.push_back(answer(model, result.truth, poses[i]));
+      result.samples.push_back(answer(model, options, result.truth, poses[i]));
     }
     if (regeneration.temperature <= 0) continue;
     regeneration.temperature = 0;
     regeneration.samples = 1;
     const auto single = regenerate(model.network, tracks, regeneration);
     for (std::size_t i = 0; i < single.size(); ++i)
-      results[first + i].others[kMeanField] = answer(model, results[first + i].truth, single[i]);
+      results[first + i].others[kMeanField] =
+          answer(model, options, results[first + i].truth, single[i]);
   }
 }
 
@@ -130,7 +140,7 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
     baselines[i]->fit(tracks, poses);
     for (ClipResult& result : results)
       result.others[name] =
-          answer(model, result.truth, baselines[i]->predict(result.truth.track_features));
+          answer(model, options, result.truth, baselines[i]->predict(result.truth.track_features));
   }
 }
 
@@ -181,6 +191,8 @@ std::vector<ClipResult> run_test(const Model& model,
                       file.string()));
     ClipResult result;
     result.truth = encode_clip(file, model.modalities, options.camera, options.keep_first_frame);
+    look_through_damage(result.truth, model, options.damage,
+                        options.regeneration.seed + results.size());
     result.trained_on = trained_on;
     result.known_person = known_person(model, file);
     results.push_back(std::move(result));

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/motion/camera.hpp"
 #include "mcdbn/motion/keypoints.hpp"
 #include "mcdbn/text_file.hpp"
 #include "motion/scratch_folder.hpp"
@@ -211,6 +212,69 @@ TEST_CASE("evaluate prints one object, and refuses clips that were trained on") 
   CHECK(run_cli(evaluate + pipeline.training_clips() + " --include-training").exit_code == 0);
 }
 
+TEST_CASE("regenerate --fit none leaves the network's answer, track is the default") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const std::string clip = pipeline.test_clips().substr(1, pipeline.test_clips().find("' '"));
+  const fs::path track = pipeline.folder("fit_track.csv"), camera = pipeline.folder("fit.yaml");
+  REQUIRE(run_cli(fmt::format("project {} -o '{}' --write-camera '{}'", clip, track.string(),
+                              camera.string()))
+              .exit_code == 0);
+  const mcdbn::Track2d wanted = mcdbn::read_track_csv(track);
+  const auto regenerate = [&](const std::string& options) {
+    const fs::path output = pipeline.folder("fit.bvh");
+    REQUIRE(run_cli(fmt::format("regenerate --model '{}' --input '{}' -o '{}' --camera '{}' {}",
+                                pipeline.model().string(), track.string(), output.string(),
+                                camera.string(), options))
+                .exit_code == 0);
+    return mcdbn::read_bvh(output);
+  };
+  const auto miss_px = [&](const mcdbn::Motion& motion) {
+    CHECK(motion.frames() == wanted.frames());
+    const mcdbn::Track2d seen = mcdbn::project_motion(motion, mcdbn::read_camera(camera));
+    return (seen.x_px - wanted.x_px).norm() + (seen.y_px - wanted.y_px).norm();
+  };
+  const mcdbn::Motion fitted = regenerate("");
+  CHECK(miss_px(fitted) < miss_px(regenerate("--fit none")));
+  CHECK(fitted.channels == regenerate("--fit track").channels);
+  CHECK(miss_px(regenerate("--skeleton " + clip)) < miss_px(fitted));
+  CHECK(run_cli("regenerate --model m --input t.csv -o o.bvh --fit some").exit_code == 2);
+}
+
+TEST_CASE("evaluate fits every method, or none, and damages tracks by the seed") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const auto evaluate = [&](const std::string& options) {
+    const CliResult result =
+        run_cli(fmt::format("evaluate --model '{}' --json --quiet --test {} {}",
+                            pipeline.model().string(), pipeline.test_clips(), options));
+    CAPTURE(result.standard_error);
+    REQUIRE(result.exit_code == 0);
+    return json::parse(result.standard_output);
+  };
+  const auto mpjpe_mm = [](const json& scores) { return scores.at("mpjpe_mm").get<double>(); };
+  const json fitted = evaluate(""), plain = evaluate("--fit none");
+  CHECK(fitted.at("fit") == "track");
+  CHECK(plain.at("fit") == "none");
+  CHECK(mpjpe_mm(fitted.at("model")) < mpjpe_mm(plain.at("model")));
+  for (const auto& [name, scores] : fitted.at("baselines").items()) {
+    CAPTURE(name);
+    CHECK(mpjpe_mm(scores) < mpjpe_mm(plain.at("baselines").at(name)));
+  }
+  const std::string damage = "--fit none --track-noise-px 5 --track-missing 0.2 --track-hide 0.5";
+  const json damaged = evaluate(damage);
+  CHECK(damaged.at("track_damage") ==
+        json{{"noise_px", 5.0}, {"missing_share", 0.2}, {"hidden_s", 0.5}});
+  CHECK(mpjpe_mm(damaged.at("baselines").at("ridge_window")) >
+        mpjpe_mm(plain.at("baselines").at("ridge_window")));
+  CHECK(evaluate(damage).at("model") == damaged.at("model"));
+  CHECK(evaluate(damage + " --seed 2").at("baselines").at("ridge_window") !=
+        damaged.at("baselines").at("ridge_window"));
+  for (const char* wrong : {"--track-missing 1.5", "--track-hide -1", "--track-noise-px -1"}) {
+    CHECK(run_cli(fmt::format("evaluate --model m --test t {}", wrong)).exit_code == 2);
+  }
+}
+
 TEST_CASE("evaluate --report writes the tables, by action, training clips marked") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
@@ -245,6 +309,7 @@ TEST_CASE("evaluate --report writes the tables, by action, training clips marked
   CHECK(all.at("clips") == 4);
   CHECK(all.at("samples") == 2);
   CHECK(all.at("temperature") == 1.0);
+  CHECK(all.at("fit") == "none");
   CHECK(all.at("training_clips") == 2);
   CHECK(mcdbn::read_text_file(report / "table_3.csv").find("motion,2,pcc_flat,8,") !=
         std::string::npos);

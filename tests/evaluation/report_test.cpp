@@ -109,12 +109,30 @@ TEST_CASE("mean_score leaves out what is not finite, figure by figure") {
   CHECK(std::isnan(mean_score({}).pcc_flat));
 }
 
+TEST_CASE("a report says what was done to the tracks and to the answers") {
+  EvaluationReport report = small_report();
+  CHECK(summary_json(report).at("fit") == "none");
+  report.fit = "track";
+  report.damage = {5, 0.2, 1};
+  CHECK(says(verdicts(report), Verdict::Kind::note, "the simpler ones' too, was fitted"));
+  CHECK(says(verdicts(report), Verdict::Kind::note,
+             "5 px of noise, 20 % of the joints missing, an arm hidden for 1 s"));
+  CHECK(says(verdicts(report), Verdict::Kind::note, "Even the mean pose, fitted to the track,"));
+  const ordered_json summary = summary_json(report);
+  CHECK(summary.at("fit") == "track");
+  CHECK(summary.at("track_damage") ==
+        ordered_json{{"noise_px", 5.0}, {"missing_share", 0.2}, {"hidden_s", 1.0}});
+}
+
 TEST_CASE("verdicts say in words who wins") {
   using Kind = Verdict::Kind;
   EvaluationReport report = small_report();
   CHECK(says(verdicts(report), Kind::good, "beats ridge regression"));
-  CHECK(says(verdicts(report), Kind::note, "already reaches a flattened PCC of 0.9500"));
+  CHECK(says(verdicts(report), Kind::note,
+             "Even a pose that never moves reaches a flattened PCC of 0.9500"));
   CHECK(!says(verdicts(report), Kind::bad, "trained on"));
+  CHECK(!says(verdicts(report), Kind::note, "fitted to the 2D track"));
+  CHECK(!says(verdicts(report), Kind::note, "damaged"));
   CHECK(!says(verdicts(report), Kind::note, "show a person"));
   report.clips[0].known_person = "08";
   CHECK(says(verdicts(report), Kind::note, "1 of 4 clips show a person"));

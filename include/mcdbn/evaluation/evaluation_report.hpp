@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mcdbn/evaluation/action_report.hpp"
+#include "mcdbn/motion/track_noise.hpp"
 
 namespace mcdbn {
 
@@ -20,6 +21,8 @@ struct EvaluationReport {
   std::string model;     ///< file name
   std::string protocol;  ///< subject, paper
   double temperature = 0;
+  std::string fit = "none";  ///< track: every method's answer was fitted to the 2D track
+  TrackDamage damage;        ///< done to the tracks before any method saw them
   std::vector<ReportClip> clips;
   std::vector<ActionReport> actions;  ///< analyse_actions of the clips
 };

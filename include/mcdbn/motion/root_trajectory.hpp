@@ -12,9 +12,12 @@ namespace mcdbn {
 /// @param relative_positions [frames x 3·joints] world axes, file units, relative to the root
 /// @param joint_names of those joints; joined to the track by name
 /// @param velocity [frames x 3] root velocity, world axes, file units per second (may have 0 rows)
+/// @param velocity_error_m_s2 how much its changes are off, on a 1.7 m body
 /// @return [frames x 3] world, file units
+/// @throws ShapeError; InputError if no frame shows enough joints
 MatrixD root_trajectory(const MatrixD& relative_positions,
                         const std::vector<std::string>& joint_names, const Track2d& track,
-                        const Camera& camera, const MatrixD& velocity);
+                        const Camera& camera, const MatrixD& velocity,
+                        double velocity_error_m_s2 = 1.0);
 
 }  // namespace mcdbn

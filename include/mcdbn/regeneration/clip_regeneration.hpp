@@ -6,17 +6,22 @@
 #include "mcdbn/model/model_file.hpp"
 #include "mcdbn/motion/camera.hpp"
 #include "mcdbn/motion/keypoints.hpp"
+#include "mcdbn/motion/track_fit.hpp"
 #include "mcdbn/regeneration/mcdbn_regeneration.hpp"
 
 namespace mcdbn {
 
-/// Where a regenerated clip is to stand.
+/// Where a regenerated clip is to stand, and how near to its track.
 struct ClipPlacement {
-  std::optional<Camera> camera;      ///< unset: the model's own view, the clip put at the origin
-  std::optional<Skeleton> skeleton;  ///< unset: the model's
+  std::optional<Camera> camera;  ///< unset: the model's own view, the clip put at the origin
+  /// The person's own; unset: the model's, and the fit allows for other proportions.
+  std::optional<Skeleton> skeleton;
+  std::optional<TrackFit> fit = TrackFit{};  ///< unset: the network's answer as it is
 };
 
-/// What the root's features say when the pose is known: its path in the world (root_trajectory).
+/// The pose as the features say it, the root where the track shows it (root_trajectory). With a fit
+/// the joints are turned to where the track shows them (fit_to_track), and feet that stand say how
+/// fast the root travels (planted_velocity).
 /// @param pose standardized 3D [frames x dimension]  @return the clip at the model's rate
 Motion motion_from_features(const Modalities& modalities, const MatrixF& pose, const Track2d& track,
                             const ClipPlacement& placement);

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "mcdbn/evaluation/report_clip.hpp"
 #include "mcdbn/model/encoded_clip.hpp"
 #include "mcdbn/model/model_file.hpp"
+#include "mcdbn/motion/track_noise.hpp"
 #include "mcdbn/regeneration/clip_regeneration.hpp"
 
 namespace mcdbn {
@@ -18,6 +20,8 @@ namespace mcdbn {
 struct TestRunOptions {
   CameraPlacement camera;
   RegenerationOptions regeneration;
+  std::optional<TrackFit> fit = TrackFit{};  ///< of every method's answer; unset: none
+  TrackDamage damage;  ///< done to the test clips' tracks before anyone sees them
   bool keep_first_frame = false;
   bool include_training = false;  ///< else a clip that was trained on is refused
   bool baselines = true;

@@ -1,0 +1,20 @@
+#include "fit_option.hpp"
+
+#include <fmt/format.h>
+
+namespace mcdbn::cli {
+
+void add_fit_option(CLI::App& command, std::string& fit, const std::string& note) {
+  command
+      .add_option("--fit", fit,
+                  fmt::format("track: turn the answer's joints to where the 2D track shows them; "
+                              "none: leave it as it is ({})",
+                              note))
+      ->check(CLI::IsMember({kFitTrack, kFitNone}));
+}
+
+std::optional<TrackFit> track_fit(const std::string& fit) {
+  return fit == kFitNone ? std::nullopt : std::optional(TrackFit{});
+}
+
+}  // namespace mcdbn::cli

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "mcdbn/motion/track_fit.hpp"
+
+namespace mcdbn::cli {
+
+inline constexpr const char *kFitTrack = "track", *kFitNone = "none";
+
+/// --fit track|none. @param note in the help, behind what it means
+void add_fit_option(CLI::App& command, std::string& fit, const std::string& note);
+std::optional<TrackFit> track_fit(const std::string& fit);
+
+}  // namespace mcdbn::cli

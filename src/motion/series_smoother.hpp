@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace mcdbn {
+
+/// One number of a series with its variance; infinite where it was not measured.
+struct Measured {
+  double value = 0;
+  double variance = 0;
+};
+
+/// How a number and its rate of change go on from one frame to the next.
+struct SeriesDynamics {
+  Eigen::Matrix2d start;  ///< covariance before anything was measured
+  Eigen::Matrix2d step;   ///< of the mean
+  Eigen::Matrix2d noise;  ///< covariance that a step adds
+
+  /// Around zero, once differentiable, remembering for about `correlation_s` (Matérn 3/2).
+  static SeriesDynamics around_zero(double variance, double correlation_s, double frame_time_s);
+  /// With a velocity that white acceleration of that spectral density changes: what is not measured
+  /// becomes a cubic spline.
+  static SeriesDynamics with_velocity(double density, double frame_time_s);
+};
+
+/// What the whole series says of each of its numbers: a Kalman filter, and the Rauch-Tung-Striebel
+/// smoother back. Measurements that their neighbours think impossible are let go of (Cauchy).
+std::vector<Measured> smooth_series(const std::vector<Measured>& series,
+                                    const SeriesDynamics& dynamics);
+
+/// What is left of a belief when a part that went into it is taken out again.
+Measured without(const Measured& whole, const Measured& part);
+
+}  // namespace mcdbn

@@ -1,0 +1,254 @@
+#include "mcdbn/motion/track_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "frame_fit.hpp"
+#include "mcdbn/errors.hpp"
+#include "mcdbn/motion/body_size.hpp"
+#include "mcdbn/motion/track_smoothing.hpp"
+#include "series_smoother.hpp"
+#include "track_rays.hpp"
+#include "turned_bones.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr double kUnseen = std::numeric_limits<double>::infinity();
+/// The noise is told from so many frames, spread over the clip, in so many rounds.
+constexpr Eigen::Index kNoiseFrames = 40;
+constexpr int kNoiseRounds = 4;
+constexpr double kFirstNoise_px = 4;
+/// No estimator of 2D joints is better than this, so no clip is left unsmoothed.
+constexpr double kLeastNoise_px = 0.25;
+constexpr int kOrientation = 6;  ///< numbers of one orientation
+
+/// One frame of the answer and what the track says of it.
+struct Frame {
+  Eigen::Vector3d place;      ///< of the root, camera axes
+  std::vector<Sight> sights;  ///< by tracked joint; the variance for a noise of one
+};
+
+Eigen::Vector2d ray_of(const Eigen::Vector3d& position) {
+  return position.head<2>() / position.z();
+}
+
+/// By frame, where the answer has the tracked joints; sights still without their rays.
+std::vector<Frame> answer_frames(const Motion& answer, const TurnedBones& bones,
+                                 const Camera& camera) {
+  std::vector<Frame> frames;
+  for (int t = 0; t < answer.frames(); ++t) {
+    const WorldPose pose = forward_kinematics(answer.skeleton, answer.channels.row(t));
+    Frame frame;
+    frame.place = camera.camera_from_world * pose.position[bones.root()] + camera.translation;
+    for (auto& levers : bones.levers(pose, camera.camera_from_world)) {
+      Eigen::Vector3d position = frame.place;
+      for (const Lever& lever : levers) position += lever.bone;
+      frame.sights.push_back({std::move(levers), ray_of(position), kUnseen});
+    }
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+/// What the track says against the answer in one coordinate of one joint, where it shows the joint.
+std::vector<Measured> differences(const std::vector<Frame>& frames, const TrackRays& track,
+                                  Eigen::Index joint, int axis, double variance) {
+  std::vector<Measured> series(frames.size(), {0, kUnseen});
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    const auto row = static_cast<Eigen::Index>(t);
+    const double answer = frames[t].sights[joint].ray[axis];
+    if (!track.seen(row, joint) || !std::isfinite(answer)) continue;
+    series[t] = {track.rays(row, 2 * joint + axis) - answer,
+                 variance / track.confidence(row, joint)};
+  }
+  return series;
+}
+
+double mean_square(const std::vector<Measured>& series) {
+  double sum = 0, count = 0;
+  for (const Measured& measured : series) {
+    if (std::isinf(measured.variance)) continue;
+    sum += measured.value * measured.value;
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+/// Gives the sights the rays of the track. Where it does not show a joint, what it said against the
+/// answer before and after goes on, ever less sure, so that nothing jumps when a joint is lost.
+/// @param variance of a ray that is seen
+void look_at(const TrackRays& track, double variance, double fade_s, double frame_time_s,
+             std::vector<Frame>& frames) {
+  for (Eigen::Index joint = 0; joint < track.joints(); ++joint) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const std::vector<Measured> seen = differences(frames, track, joint, axis, variance);
+      const double spread = std::max(mean_square(seen), variance);
+      const std::vector<Measured> known =
+          smooth_series(seen, SeriesDynamics::around_zero(spread, fade_s, frame_time_s));
+      for (std::size_t t = 0; t < frames.size(); ++t) {
+        Sight& sight = frames[t].sights[joint];
+        const Measured said =
+            std::isinf(seen[t].variance) ? without(known[t], {0, spread}) : seen[t];
+        sight.ray[axis] += said.value;
+        sight.variance = said.variance / variance;
+      }
+    }
+  }
+}
+
+/// The sights that say anything, for a noise of that deviation.
+std::vector<Sight> usable(const Frame& frame, double noise) {
+  std::vector<Sight> sights;
+  for (const Sight& sight : frame.sights) {
+    if (!std::isfinite(sight.variance) || !sight.ray.allFinite()) continue;
+    sights.push_back(sight);
+    sights.back().variance *= noise * noise;
+  }
+  return sights;
+}
+
+/// Squares that stop growing: a joint that was swapped says nothing of the noise.
+double clipped_square(double miss) {
+  constexpr double kLargestMiss = 4;
+  return miss * miss / (1 + miss * miss / (kLargestMiss * kLargestMiss));
+}
+
+/// How far off the rays are: what the fit leaves, counted for what it uses up (MacKay's evidence).
+/// As the fit depends on it in turn, in rounds.
+/// @param start a guess, `least` the least answer
+double misfit(const std::vector<Frame>& frames, FramePrior prior, double start, double least) {
+  const auto count = static_cast<Eigen::Index>(frames.size());
+  const Eigen::Index stride = std::max<Eigen::Index>(1, count / kNoiseFrames);
+  double noise = start;
+  for (int round = 0; round < kNoiseRounds; ++round) {
+    double squares = 0, freedom = 0;
+    for (Eigen::Index t = stride / 2; t < count; t += stride) {
+      prior.place = frames[t].place;
+      const std::vector<Sight> sights = usable(frames[t], noise);
+      const FrameFit fit = fit_frame(sights, prior);
+      for (const double miss : fit.misses) squares += clipped_square(miss);
+      freedom += freedom_of(fit, sights, prior);
+    }
+    if (!(freedom > 0)) break;
+    noise = std::max(least, noise * std::sqrt(squares / freedom));
+  }
+  return std::max(least, noise);
+}
+
+/// @return [rows x columns], Gaussian of that deviation over the rows
+MatrixD smoothed(const MatrixD& values, double deviation_frames) {
+  const auto reach = static_cast<Eigen::Index>(std::ceil(3 * deviation_frames));
+  MatrixD result(values.rows(), values.cols());
+  for (Eigen::Index t = 0; t < values.rows(); ++t) {
+    RowVectorD sum = RowVectorD::Zero(values.cols());
+    double total = 0;
+    const Eigen::Index last = std::min(values.rows() - 1, t + reach);
+    for (Eigen::Index k = std::max<Eigen::Index>(0, t - reach); k <= last; ++k) {
+      const double away = static_cast<double>(k - t) / deviation_frames;
+      const double weight = std::exp(-0.5 * away * away);
+      sum += weight * values.row(k);
+      total += weight;
+    }
+    result.row(t) = sum / total;
+  }
+  return result;
+}
+
+/// The deviation of the Gaussian that is off least, in frames: of width w it leaves
+/// noise² / (2 √π w) of the noise's variance and bends the path by w² bend / 2.
+double best_width_frames(double noise_m, double bend_m_s2, double frame_time_s) {
+  const double ratio = noise_m / (bend_m_s2 * frame_time_s * frame_time_s);
+  return std::pow(ratio * ratio / (2 * std::sqrt(std::numbers::pi)), 0.2);
+}
+
+/// How far the root is from the camera in the middle frame by distance.
+double usual_depth(const std::vector<Frame>& frames) {
+  std::vector<double> depths;
+  for (const Frame& frame : frames) depths.push_back(frame.place.z());
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
+}
+
+/// @param turns [frames x 3·orientations] radians
+MatrixD turned(MatrixD features, const MatrixD& turns) {
+  for (Eigen::Index t = 0; t < features.rows(); ++t) {
+    for (Eigen::Index k = 0; k < turns.cols() / 3; ++k) {
+      const Eigen::Matrix3d rotation = rotation_of(turns.row(t).segment<3>(3 * k).transpose());
+      auto block = features.row(t).segment<kOrientation>(kOrientation * k);
+      block.head<3>() *= rotation.transpose();
+      block.tail<3>() *= rotation.transpose();
+    }
+  }
+  return features;
+}
+
+/// The turns of every frame, each for itself. @return [frames x 3·orientations] radians
+MatrixD solve(const std::vector<Frame>& frames, FramePrior prior, double noise) {
+  MatrixD turns(static_cast<Eigen::Index>(frames.size()),
+                3 * static_cast<Eigen::Index>(prior.parents.size()));
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    prior.place = frames[t].place;
+    const FrameFit fit = fit_frame(usable(frames[t], noise), prior);
+    turns.row(static_cast<Eigen::Index>(t)) = fit.correction.head(turns.cols()).transpose();
+  }
+  return turns;
+}
+
+void check_shapes(const PoseFeatures& pose_features, const MatrixD& features, const Motion& answer,
+                  const Track2d& track) {
+  if (features.cols() == pose_features.dimension() && features.rows() == answer.frames() &&
+      features.rows() == track.frames()) {
+    return;
+  }
+  throw ShapeError(fmt::format(
+      "fit_to_track: features {}x{}, expected {} columns, and as many rows as the answer ({}) and "
+      "the track ({}) have frames",
+      features.rows(), features.cols(), pose_features.dimension(), answer.frames(),
+      track.frames()));
+}
+
+}  // namespace
+
+MatrixD fit_to_track(const PoseFeatures& pose_features, const MatrixD& features,
+                     const Motion& answer, const std::vector<std::string>& joint_names,
+                     const Track2d& track, const Camera& camera, const TrackFit& fit) {
+  check_shapes(pose_features, features, answer, track);
+  if (features.rows() == 0) return features;
+  std::vector<std::string> names;
+  for (const std::string& name : joint_names) {
+    if (answer.skeleton.find(name) >= 0) names.push_back(name);
+  }
+  const TrackRays seen = track_rays(names, track, camera);
+  std::vector<int> joints;
+  for (const int place : seen.places) joints.push_back(answer.skeleton.find(names[place]));
+  const TurnedBones bones(pose_features, answer.skeleton, joints);
+  std::vector<Frame> frames = answer_frames(answer, bones, camera);
+
+  const double focal_px = std::sqrt(camera.fx_px * camera.fy_px), frame_time_s = 1 / track.fps;
+  const double units = file_units_per_metre(answer.skeleton), depth = usual_depth(frames);
+  const double track_noise = std::max(kLeastNoise_px, track_noise_px(track)) / focal_px;
+  look_at(seen, track_noise * track_noise, fit.fade_s, frame_time_s, frames);
+  FramePrior prior;
+  prior.parents = bones.parents();
+  prior.turn_deviation_rad = fit.turn_deg * std::numbers::pi / 180;
+  prior.likeness = fit.likeness;
+  prior.place_deviation = fit.place_m * units;
+  const double least = std::max({track_noise, fit.least_noise_px / focal_px,
+                                 fit.proportions_m * units / std::max(depth, 1e-9)});
+  const double noise = misfit(frames, prior, std::max(least, kFirstNoise_px / focal_px), least);
+
+  MatrixD turns = solve(frames, prior, noise);
+  const double noise_m = track_noise * depth / units;
+  if (noise_m > 0) {
+    turns = smoothed(turns, best_width_frames(noise_m, fit.bend_m_s2, frame_time_s));
+  }
+  return turned(features, turns);
+}
+
+}  // namespace mcdbn

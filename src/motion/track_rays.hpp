@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mcdbn/motion/camera.hpp"
+#include "mcdbn/motion/keypoints.hpp"
+
+namespace mcdbn {
+
+/// A track as the rays that the camera saw its joints along, the lens's distortion taken out.
+struct TrackRays {
+  std::vector<int> places;  ///< by joint, its place in the names that were asked for
+  MatrixD rays;             ///< [frames x 2·joints] x/z and y/z in camera axes
+  MatrixD confidence;       ///< [frames x joints], 0 where there is no ray
+
+  Eigen::Index frames() const { return rays.rows(); }
+  Eigen::Index joints() const { return confidence.cols(); }
+  bool seen(Eigen::Index frame, Eigen::Index joint) const { return confidence(frame, joint) > 0; }
+};
+
+/// The joints that both `joint_names` and the track know, joined by name.
+TrackRays track_rays(const std::vector<std::string>& joint_names, const Track2d& track,
+                     const Camera& camera);
+
+/// Standard deviation of the bulk of the residuals, whatever the signs: 1.4826 times their middle
+/// size, as of the normal distribution. 0 for none.
+double robust_deviation(std::vector<double> residuals);
+
+}  // namespace mcdbn
