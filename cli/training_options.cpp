@@ -144,6 +144,18 @@ nlohmann::json settings_json(const TrainingConfig& config) {
   return json;
 }
 
+TrainingConfig settings_from_json(const nlohmann::json& json) {
+  TrainingConfig config;
+  // Models from before there was a joint stage say nothing of it.
+  config.joint.steps = 0;
+  for (const auto& [pointer, value] : json.flatten().items()) {
+    std::string name = pointer.substr(1);
+    std::replace(name.begin(), name.end(), '/', '.');
+    assign_setting(config, name, value, "the model's settings");
+  }
+  return config;
+}
+
 std::string settings_toml(const TrainingConfig& config) {
   toml::table table;
   visit_settings(config, [&](const std::string& name, const auto& member, const char*) {

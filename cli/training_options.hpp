@@ -35,6 +35,8 @@ void assign_setting(TrainingConfig& config, const std::string& name, const nlohm
 
 /// Every setting by its name, nested at the dots.
 nlohmann::json settings_json(const TrainingConfig& config);
+/// The settings that settings_json recorded. @throws ConfigError
+TrainingConfig settings_from_json(const nlohmann::json& json);
 /// The same as a TOML file that --config reads.
 std::string settings_toml(const TrainingConfig& config);
 

@@ -1,0 +1,122 @@
+#include "mcdbn/training/joint_fine_tuning.hpp"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "device/every_device.hpp"
+#include "mcdbn/errors.hpp"
+#include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/motion/synthesize.hpp"
+#include "mcdbn/training/joint_pass.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+/// Two synthesized walks as files, and a configuration small enough for a test.
+class SmallRun {
+ public:
+  SmallRun() : folder_(std::filesystem::temp_directory_path() / "mcdbn_joint_test") {
+    std::filesystem::create_directories(folder_);
+    for (int i = 0; i < 2; ++i) {
+      files.push_back(folder_ / ("walk_" + std::to_string(i) + ".bvh"));
+      write_bvh(files.back(), synthesize_clip(i));
+    }
+    config.hidden = 10;
+    config.mrbm_hidden = 8;
+    config.order = 2;
+    config.look_ahead = 2;
+    config.augment.views = 2;
+    config.joint.steps = 40;
+    config.joint.windows = 8;
+    config.joint.window_frames = 8;
+    data = std::make_unique<TrainingSet>(make_training_set(files, config, nullptr));
+  }
+  ~SmallRun() { std::filesystem::remove_all(folder_); }
+
+  Mcdbn start(Device& device) const {
+    return random_start(device, static_cast<std::size_t>(data->tracks.front().cols()),
+                        static_cast<std::size_t>(data->poses.front().cols()), config);
+  }
+
+  std::vector<std::filesystem::path> files;
+  TrainingConfig config;
+  std::unique_ptr<TrainingSet> data;
+
+ private:
+  static Motion synthesize_clip(int clip) {
+    SynthesisOptions options;
+    options.seconds = 2.0;
+    options.seed = 7;
+    options.clip = clip + 1;
+    return synthesize(options);
+  }
+  std::filesystem::path folder_;
+};
+
+bool same_bits(const Mcdbn& x, const Mcdbn& y) {
+  bool same = x.mrbm.W[0].to_host() == y.mrbm.W[0].to_host();
+  for (std::size_t i = 0; i < x.pose.layers.size(); ++i)
+    same = same && x.pose.layers[i].A.to_host() == y.pose.layers[i].A.to_host() &&
+           x.track.layers[i].B.to_host() == y.track.layers[i].B.to_host();
+  return same;
+}
+
+}  // namespace
+
+TEST_CASE("the joint stage lowers its loss, and the same seed gives the same bits") {
+  const SmallRun run;
+  const TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
+  REQUIRE(views.poses.size() == 4);
+  CHECK(views.poses[0] != views.poses[1]);
+  on_every_device([&](Device& device) {
+    std::vector<double> losses;
+    const auto observer = [&](const EpochReport& report) {
+      CHECK(report.stage == "joint");
+      losses.push_back(report.loss);
+    };
+    const Mcdbn start = run.start(device);
+    const Mcdbn once = train_joint(device, start, views, run.config, observer);
+    REQUIRE(losses.size() == 2);
+    CHECK(losses[1] < losses[0]);
+    CHECK(once.mean_field_steps == run.config.joint.mean_field_steps);
+    CHECK(once.look_ahead == run.config.look_ahead);
+    CHECK(same_bits(once, train_joint(device, start, views, run.config)));
+    TrainingConfig other = run.config;
+    other.seed = 2;
+    CHECK_FALSE(same_bits(once, train_joint(device, start, views, other)));
+  });
+}
+
+TEST_CASE("an observer stops the joint stage, and windows need their histories") {
+  const SmallRun run;
+  const TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
+  on_every_device([&](Device& device) {
+    const Mcdbn start = run.start(device);
+    const auto stop = [](const EpochReport&) { throw InputError("enough"); };
+    CHECK_THROWS_AS(train_joint(device, start, views, run.config, stop), InputError);
+    JointNetwork network(device, start);
+    CHECK_THROWS_AS(JointPass(network, Modality::track, {4, 10, 3, 5}), ShapeError);
+    CHECK_THROWS_AS(JointPass(network, Modality::track, {4, 10, 4, 10}), ShapeError);
+  });
+}
+
+TEST_CASE("greedy weights keep their direction when they are sized for the joint stage") {
+  const SmallRun run;
+  on_every_device([&](Device& device) {
+    TrainingConfig other = run.config;
+    other.seed = 5;
+    Mcdbn greedy = random_start(device, static_cast<std::size_t>(run.data->tracks.front().cols()),
+                                static_cast<std::size_t>(run.data->poses.front().cols()), other);
+    const Mcdbn sized = sized_for_joint_stage(device, greedy, run.config), size = run.start(device);
+    for (std::size_t i = 0; i < greedy.pose.layers.size(); ++i) {
+      const MatrixF from = greedy.pose.layers[i].W.to_host(), to = sized.pose.layers[i].W.to_host();
+      CHECK(to.norm() == doctest::Approx(size.pose.layers[i].W.to_host().norm()).epsilon(1e-4));
+      CHECK((from.array() * to.array()).sum() ==
+            doctest::Approx(from.norm() * to.norm()).epsilon(1e-4));
+    }
+  });
+}
