@@ -11,7 +11,9 @@
 #include "mcdbn/evaluation/report_page.hpp"
 #include "mcdbn/motion/clip.hpp"
 #include "mcdbn/regeneration/test_run.hpp"
+#include "mcdbn/training/joint_fine_tuning.hpp"
 #include "progress.hpp"
+#include "training_options.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -57,6 +59,20 @@ void print_table(const EvaluationReport& report) {
                verdict.text);
 }
 
+/// The views that the model's joint stage learnt from, made again, for the MLP to learn from too.
+void add_views(const Model& model, TestRunOptions& run) {
+  const TrainingConfig config = settings_from_json(model.config);
+  if (config.joint.steps == 0) return;
+  std::vector<std::filesystem::path> files;
+  for (const TrainingClip& clip : model.training_clips) {
+    if (!std::filesystem::exists(clip.path)) return;  // run_test says so
+    if (files.empty() || files.back() != clip.path) files.emplace_back(clip.path);
+  }
+  TrainingSet views = make_augmented_views(files, model.modalities, config);
+  run.view_tracks = std::move(views.tracks);
+  run.view_poses = std::move(views.poses);
+}
+
 void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   apply_protocol(options);
   Device device = Device::open({context.platform, context.device});
@@ -76,6 +92,7 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
     if (options.azimuth_deg) run.camera.azimuth_deg = *options.azimuth_deg;
     if (options.elevation_deg) run.camera.elevation_deg = *options.elevation_deg;
     run.regeneration.seed = context.seed;
+    add_views(model, run);
     run.progress = show(0.0, 0.9);
     report.clips = report_clips(model, run_test(model, find_clips(options.test), run),
                                 options.actions == "by-folder");

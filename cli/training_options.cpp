@@ -148,7 +148,8 @@ TrainingConfig settings_from_json(const nlohmann::json& json) {
   TrainingConfig config;
   // Models from before there was a joint stage say nothing of it.
   config.joint.steps = 0;
-  for (const auto& [pointer, value] : json.flatten().items()) {
+  const nlohmann::json flat = json.flatten();
+  for (const auto& [pointer, value] : flat.items()) {
     std::string name = pointer.substr(1);
     std::replace(name.begin(), name.end(), '/', '.');
     assign_setting(config, name, value, "the model's settings");

@@ -51,6 +51,13 @@ MatrixD judged_positions(const Motion& motion, int root) {
   return positions;
 }
 
+/// @param positions [frames x 3·joints]  @return the same along other axes
+MatrixD turned(MatrixD positions, const Eigen::Matrix3d& axes_from_world) {
+  for (Eigen::Index joint = 0; joint < positions.cols(); joint += 3)
+    positions.middleCols(joint, 3) = positions.middleCols(joint, 3) * axes_from_world.transpose();
+  return positions;
+}
+
 std::vector<EncodedClip> encode_training_clips(const Model& model, const TestRunOptions& options) {
   std::vector<EncodedClip> clips;
   for (const TrainingClip& clip : model.training_clips) {
@@ -133,11 +140,17 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
     poses.push_back(std::move(clip.pose_features));
   }
   auto baselines = default_baselines();
-  baselines.push_back(std::make_unique<MlpWindow>(model.network.mrbm.device()));
+  const bool has_views = !options.view_tracks.empty();
+  baselines.push_back(std::make_unique<MlpWindow>(
+      model.network.mrbm.device(),
+      has_views ? MlpWindow::Settings::for_views() : MlpWindow::Settings()));
   for (std::size_t i = 0; i < baselines.size(); ++i) {
     const std::string name = baselines[i]->name();
     progress.show("baseline " + name, Progress::kBaselines, i, baselines.size());
-    baselines[i]->fit(tracks, poses);
+    if (has_views && i + 1 == baselines.size())
+      baselines[i]->fit(options.view_tracks, options.view_poses);
+    else
+      baselines[i]->fit(tracks, poses);
     for (ClipResult& result : results)
       result.others[name] =
           answer(model, options, result.truth, baselines[i]->predict(result.truth.track_features));
@@ -164,7 +177,11 @@ ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
   // The root's own columns are zero on both sides: they would flatter the flattened figure.
   const auto joints = real.cols() - 3;
   score.pcc_flat = pearson_flat(real.rightCols(joints), other.rightCols(joints));
-  score.pcc_channel = pearson_per_channel(real.rightCols(joints), other.rightCols(joints));
+  // Along the camera's axes (DESIGN section 2): along the world's own a walk straight ahead has
+  // channels in which next to nothing moves.
+  const Eigen::Matrix3d& axes = truth.camera.camera_from_world;
+  score.pcc_channel = pearson_per_channel(turned(real.rightCols(joints), axes),
+                                          turned(other.rightCols(joints), axes));
   score.error = joint_error(real, other, truth.motion.fps(), 0);
   const MatrixD path = joint_positions(regenerated).middleCols(3 * root, 3);
   const double mm = 1000.0 / file_units_per_metre(truth.motion.skeleton);

@@ -21,6 +21,15 @@ class MlpWindow : public Baseline {
     double dropout = 0.3;
     double weight_decay = 2.0;  ///< decoupled, times the rate: what generalizes to unseen people
     std::uint64_t seed = 1;
+
+    /// For many augmented views of each clip: fewer rounds of larger mini-batches.
+    static Settings for_views() {
+      Settings settings;
+      settings.epochs = 6;
+      settings.batch = 500;
+      settings.weight_decay = 1.0;
+      return settings;
+    }
   };
   static constexpr std::size_t kReach = 5;
   static constexpr std::size_t kFrames = 2 * kReach + 1;

@@ -20,6 +20,9 @@ namespace mcdbn {
 struct TestRunOptions {
   CameraPlacement camera;
   RegenerationOptions regeneration;
+  /// What the MLP is fitted on where there are any, in place of the training clips: the views that
+  /// the model's joint stage saw, [frames x dimension] each, so that both learnt from the same.
+  std::vector<MatrixF> view_tracks, view_poses;
   std::optional<TrackFit> fit = TrackFit{};  ///< of every method's answer; unset: none
   TrackDamage damage;  ///< done to the test clips' tracks before anyone sees them
   bool keep_first_frame = false;
