@@ -300,6 +300,9 @@ Mcdbn random_start(Device& device, std::size_t track, std::size_t pose,
   const double shared = 1.0 / std::sqrt(static_cast<double>(config.hidden));
   mrbm.W[0] *= static_cast<float>(3.0 * shared);
   mrbm.W[1] *= static_cast<float>(2.0 * shared);
+  // The mean field starts with all units of the absent modality at the same value: that must not
+  // push the shared units anywhere.
+  for (MatrixF& W : mrbm.W) W.rowwise() -= RowVectorF(W.colwise().mean());
   Mcdbn network{
       {}, {}, Mrbm(device, uncentered(mrbm)), config.look_ahead, config.joint.mean_field_steps};
   for (const Modality modality : {Modality::track, Modality::pose}) {

@@ -144,6 +144,40 @@ TEST_CASE("small: Adam leaves a parameter without gradient where it is") {
   });
 }
 
+TEST_CASE(
+    "small: a long gradient is cut to the length that is allowed, a short one is left alone") {
+  on_every_device([](Device& device) {
+    const MatrixF first = random_matrix(7, 17, 1), second = random_matrix(1, 3, 2);
+    const Matrix first_device = Matrix::from_host(device, first),
+                 second_device = Matrix::from_host(device, second);
+    const double length =
+        std::sqrt(first.cast<double>().squaredNorm() + second.cast<double>().squaredNorm());
+    GradientLimit limit(device, 2);
+    limit.measure({&first_device, &second_device}, static_cast<float>(0.5 * length));
+    const double scale = static_cast<double>(limit.scale().to_host()(0));
+    // A sum of squares of so many terms under a root, the root, the division, and 0.5·length
+    // itself.
+    const double terms = static_cast<double>(first.size() + second.size());
+    const double relative = gamma_n(terms / 2.0 + kSqrtError + kDivisionError + 3.0);
+    CHECK(std::abs(scale - 0.5) <= 0.5 * relative);
+    limit.measure({&first_device, &second_device}, static_cast<float>(2.0 * length));
+    CHECK(limit.scale().to_host()(0) == 1.0F);
+    CHECK_THROWS_AS(limit.measure({&first_device}, 1.0F), ShapeError);
+
+    // Adam with a scale is Adam on the scaled gradient, to the bit.
+    const float half = 0.375F;
+    const auto run = [&](const MatrixF& gradient, const Matrix* with) {
+      Matrix parameter = Matrix::from_host(device, random_matrix(7, 17, 3));
+      Matrix mean = Matrix::like(parameter), square = Matrix::like(parameter);
+      adam_update(parameter, mean, square, Matrix::from_host(device, gradient), AdamRule{}, 3,
+                  with);
+      return parameter.to_host();
+    };
+    const Matrix given = Matrix::from_host(device, MatrixF::Constant(1, 1, half));
+    CHECK(run(first, &given) == run(half * first, nullptr));
+  });
+}
+
 TEST_CASE("small: a moving average goes the given share of the way") {
   on_every_device([](Device& device) {
     const MatrixF before = random_matrix(5, 19, 1), parameter = random_matrix(5, 19, 2);
