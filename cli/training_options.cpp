@@ -75,7 +75,7 @@ void TrainingOptions::add_to(CLI::App& command) {
   command
       .add_option("--stages", stages_,
                   "greedy: layer by layer, as the paper does; joint: the whole network by "
-                  "back-propagation; both: one after the other (default, but for --preset paper)")
+                  "back-propagation (default, but for --preset paper); both: one after the other")
       ->check(CLI::IsMember({"greedy", "joint", "both"}));
   command.add_option("--config", file_, "TOML file of settings; flags override it")
       ->type_name("FILE");
