@@ -56,7 +56,7 @@ class Scripts(unittest.TestCase):
         (self.folder / "sweep.toml").write_text(text)
         return self.run_cli("train", self.folder / "walk/walk_s01_01.bvh", "-o",
                             self.folder / "sweep", "--sweep", self.folder / "sweep.toml",
-                            "--quiet", *TINY.split())
+                            "--quiet", "--stages", "both", *TINY.split())
 
     def records(self):
         lines = (self.folder / "sweep/sweep.jsonl").read_text().splitlines()
