@@ -39,9 +39,9 @@ double rate_at(double rate, std::size_t step, std::size_t steps) {
   return rate * fall * std::min(1.0, static_cast<double>(step + 1) / kRise);
 }
 
+/// Frames that either direction's up-pass needs before the first it can judge.
 std::size_t longest_history(const Mcdbn& network) {
-  std::size_t longest = std::max(network.track.total_order(), network.pose.total_order());
-  return longest;
+  return std::max(network.track.total_order(), network.pose.total_order());
 }
 
 /// Draws windows and names the rows of their frames. Beyond a clip's ends its first and last frame
