@@ -181,6 +181,19 @@ class JointTrainer {
   IndexBuffer index_;
 };
 
+/// Fewer views of much data: it varies by itself, and all views are kept in memory.
+std::size_t views_that_fit(const std::vector<std::filesystem::path>& files,
+                           const ClipOptions& options, const TrainingConfig& config) {
+  constexpr double kMostFrames = 200'000;
+  double frames = 0;
+  for (const auto& file : files) {
+    const Motion raw = load_clip(file, options);
+    frames += static_cast<double>(raw.frames()) * raw.frame_time_s * config.fps;
+  }
+  const double fitting = std::max(1.0, std::floor(kMostFrames / std::max(frames, 1.0)));
+  return std::min(config.augment.views, static_cast<std::size_t>(fitting));
+}
+
 Mcdbn copied(Device& device, const Mcdbn& network) {
   Mcdbn copy{
       {}, {}, Mrbm(device, network.mrbm.to_host()), network.look_ahead, network.mean_field_steps};
@@ -195,11 +208,13 @@ Mcdbn copied(Device& device, const Mcdbn& network) {
 
 TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files,
                                  const Modalities& modalities, const TrainingConfig& config) {
+  const ClipOptions options{.fps = 0, .keep_first_frame = config.keep_first_frame};
+  const std::size_t count = views_that_fit(files, options, config);
   TrainingSet views{modalities, {}, {}, {}};
   RandomKey key{config.seed, 0, kViewStream, 0};
   for (const auto& file : files) {
-    const Motion raw = load_clip(file, {.fps = 0, .keep_first_frame = config.keep_first_frame});
-    for (std::size_t i = 0; i < config.augment.views; ++i, ++key.step) {
+    const Motion raw = load_clip(file, options);
+    for (std::size_t i = 0; i < count; ++i, ++key.step) {
       const AugmentedView view =
           augmented_view(raw, config.fps, config.camera, config.augment, key);
       views.tracks.push_back(modalities.encode_track(view.track));
