@@ -8,8 +8,7 @@
 
 #include "mcdbn/errors.hpp"
 #include "mcdbn/text_file.hpp"
-#include "mcdbn/training/greedy_schedule.hpp"
-#include "mcdbn/training/joint_fine_tuning.hpp"
+#include "mcdbn/training/training_schedule.hpp"
 #include "progress.hpp"
 #include "training_options.hpp"
 
@@ -51,32 +50,6 @@ void make_run_folder(const std::filesystem::path& run, const TrainingConfig& con
   std::filesystem::create_directories(run, error);
   if (error) throw InputError(fmt::format("{}: cannot be made: {}", run.string(), error.message()));
   write_text_file(run / "config.toml", settings_toml(config));
-}
-
-/// An observer of one stage that shows it as the part `from` … `to` of the run.
-EpochObserver part_of_run(const EpochObserver& observer, double from, double to) {
-  return [=](EpochReport report) {
-    report.overall_progress = from + (to - from) * report.overall_progress;
-    observer(report);
-  };
-}
-
-/// The greedy stages, the joint one, or both, as the configuration says.
-Mcdbn train_network(Device& device, const TrainingSet& data,
-                    const std::vector<std::filesystem::path>& clips, const TrainingConfig& config,
-                    const EpochObserver& observer) {
-  if (config.joint.steps == 0) return train_greedy(device, data, config, observer);
-  const double greedy_share = config.joint.from_greedy ? 0.2 : 0.0;  // of the time, about
-  const Mcdbn start =
-      config.joint.from_greedy
-          ? sized_for_joint_stage(
-                device,
-                train_greedy(device, data, config, part_of_run(observer, 0.0, greedy_share)),
-                config)
-          : random_start(device, static_cast<std::size_t>(data.tracks.front().cols()),
-                         static_cast<std::size_t>(data.poses.front().cols()), config);
-  return train_joint(device, start, make_augmented_views(clips, data.modalities, config), config,
-                     part_of_run(observer, greedy_share, 1.0));
 }
 
 }  // namespace

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "mcdbn/training/greedy_schedule.hpp"
+
+namespace mcdbn {
+
+/// The greedy stages (Algorithm 1), the joint one, or the joint one after the greedy ones, as
+/// config.joint says.
+/// @param files as make_training_set read them, for the joint stage's views
+/// The observer may throw to stop. @throws DivergenceError, InputError
+Mcdbn train_network(Device& device, const TrainingSet& data,
+                    const std::vector<std::filesystem::path>& files, const TrainingConfig& config,
+                    const EpochObserver& observer = {});
+
+}  // namespace mcdbn
