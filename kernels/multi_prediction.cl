@@ -71,7 +71,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
   local float h[ROWS * H_LD];
   const int row0 = get_group_id(0) * ROWS;
   // q is the absent modality, p the present one. No branch around barriers: with one, groups of
-  // more than one work-item gave wrong results on PoCL 3.1 (the cause was not isolated). Sizes that are the same, as they usually are, still fold into constants.
+  // more than one work-item gave wrong results on PoCL 3.1 (the cause was not isolated). Sizes that
+  // are the same, as they usually are, still fold into constants.
   const bool q_is_0 = get_group_id(1) == 0;
 #define EITHER(of_0, of_1) (q_is_0 ? (of_0) : (of_1))
   const int Q = EITHER(VISIBLE_0, VISIBLE_1), P = EITHER(VISIBLE_1, VISIBLE_0);

@@ -44,6 +44,10 @@ Matrix Matrix::from_host(Device& device, const Eigen::Ref<const MatrixF>& values
   return matrix;
 }
 
+Matrix Matrix::filled_with_row(const Matrix& row, std::size_t rows) {
+  return from_host(row.device(), row.to_host().replicate(static_cast<Eigen::Index>(rows), 1));
+}
+
 MatrixF Matrix::to_host() const {
   MatrixF wide(rows_, stride());
   if (!empty())

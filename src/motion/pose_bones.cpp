@@ -14,14 +14,6 @@ struct Turned {
   int bone = -1;  ///< that ends at the joint, -1 at the root
 };
 
-/// Where the joint's constant channels put it in its parent's frame.
-Eigen::Vector3d constant_position(const Joint& joint, const double* channels) {
-  Eigen::Vector3d position = joint.offset;
-  for (std::size_t k = 0; k < joint.channels.size(); ++k)
-    if (!is_rotation(joint.channels[k])) position[axis_of(joint.channels[k])] = channels[k];
-  return position;
-}
-
 }  // namespace
 
 std::vector<PoseBone> pose_bones(const PoseFeatures& features) {
@@ -44,7 +36,7 @@ std::vector<PoseBone> pose_bones(const PoseFeatures& features) {
       turned[j].block_from_joint = parent.block_from_joint * local_rotation(joint, channels);
     }
     const Eigen::Vector3d lever =
-        metres * (parent.block_from_joint * constant_position(joint, channels));
+        metres * (parent.block_from_joint * local_position(joint, channels));
     turned[j].bone = parent.bone;
     if (lever.norm() < kShortest) continue;
     turned[j].bone = static_cast<int>(bones.size());

@@ -63,15 +63,6 @@ void set_local_position(const Joint& joint, const Eigen::Vector3d& position, dou
   }
 }
 
-/// Where the joint's channels put it in its parent's frame.
-Eigen::Vector3d local_position(const Joint& joint, const double* channels) {
-  Eigen::Vector3d position = joint.offset;
-  for (std::size_t k = 0; k < joint.channels.size(); ++k) {
-    if (!is_rotation(joint.channels[k])) position[axis_of(joint.channels[k])] = channels[k];
-  }
-  return position;
-}
-
 /// Fills one frame after the other; each starts from the one before, so that angles run on.
 class FrameDecoder {
  public:

@@ -132,6 +132,14 @@ WorldPose forward_kinematics(const Skeleton& skeleton,
   return pose;
 }
 
+Eigen::Vector3d local_position(const Joint& joint, const double* joint_channels) {
+  Eigen::Vector3d position = joint.offset;
+  for (std::size_t k = 0; k < joint.channels.size(); ++k) {
+    if (!is_rotation(joint.channels[k])) position[axis_of(joint.channels[k])] = joint_channels[k];
+  }
+  return position;
+}
+
 MatrixD joint_positions(const Motion& motion) {
   const int joints = motion.skeleton.joint_count();
   MatrixD positions(motion.frames(), 3 * joints);

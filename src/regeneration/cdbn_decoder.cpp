@@ -7,12 +7,6 @@
 namespace mcdbn {
 namespace {
 
-/// @param row [1 x n]  @return [rows x n]
-Matrix filled_with_row(const Matrix& row, std::size_t rows) {
-  return Matrix::from_host(row.device(),
-                           row.to_host().replicate(static_cast<Eigen::Index>(rows), 1));
-}
-
 Activation activation_of(const Crbm& layer) {
   return layer.shape().kind == VisibleKind::binary ? Activation::sigmoid : Activation::none;
 }
@@ -27,7 +21,7 @@ CdbnDecoder::CdbnDecoder(const Cdbn& cdbn, const Matrix& code, std::size_t seque
   if (sequences == 0 || code.rows() % sequences != 0 || code.columns() != cdbn.code_dimension())
     throw ShapeError("decoder: the code does not fit the CDBN");
   for (const Crbm& layer : cdbn.layers)
-    states_.push_back(filled_with_row(layer.visible_mean, code.rows()));
+    states_.push_back(Matrix::filled_with_row(layer.visible_mean, code.rows()));
 }
 
 void CdbnDecoder::decode(std::size_t first, std::size_t last, const RegenerationOptions& options,

@@ -91,21 +91,21 @@ Motion motion_from_features(const Modalities& modalities, const MatrixF& pose, c
   const MatrixD root_features = modalities.pose_features.root_features(features);
   const MatrixD velocity = units * root_features.rightCols(3) * camera.camera_from_world;
   const std::vector<std::string> names = tracked_joints(modalities.track_features);
-  const auto path = [&](const MatrixD& guess, auto... error) {
+  const auto relative_positions = [&] {
     const Motion in_place = decode(MatrixD::Zero(features.rows(), 3));
-    return root_trajectory(positions_of(in_place, names, modalities.root_name()), names, track,
-                           camera, guess, error...);
+    return positions_of(in_place, names, modalities.root_name());
   };
-  MatrixD root = path(velocity);
+  MatrixD root = root_trajectory(relative_positions(), names, track, camera, velocity);
   if (placement.fit) {
     TrackFit fit = *placement.fit;
     if (!placement.skeleton) fit.proportions_m = std::max(fit.proportions_m, kProportions_m);
     features =
         fit_to_track(modalities.pose_features, features, decode(root), names, track, camera, fit);
-    root = path(velocity);
-    root = path(planted_velocity(decode(root), skeleton.find(modalities.root_name()),
-                                 foot_joints(skeleton), velocity),
-                kPlantedError_m_s2);
+    const MatrixD positions = relative_positions();
+    root = root_trajectory(positions, names, track, camera, velocity);
+    const MatrixD planted = planted_velocity(decode(root), skeleton.find(modalities.root_name()),
+                                             foot_joints(skeleton), velocity);
+    root = root_trajectory(positions, names, track, camera, planted, kPlantedError_m_s2);
   }
   if (!placement.camera) put_at_origin(root, units * root_features.col(0).mean());
   return decode(root);

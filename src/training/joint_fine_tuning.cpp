@@ -116,7 +116,7 @@ class JointTrainer {
       : settings_(config.joint),
         seed_(config.seed),
         windows_(windows),
-        network_(device, start),
+        network_(device, start, settings_.mean_field_steps),
         tracks_(Sequences::from_host(device, views.tracks)),
         poses_(Sequences::from_host(device, views.poses)),
         sampler_(views, windows, config.look_ahead, config.seed),
@@ -158,14 +158,13 @@ class JointTrainer {
     network_.update(rule, kLongestGradient, static_cast<float>(std::min(settings_.average, young)));
   }
 
-  /// The weighted loss since the last call; `features` is its first part.
-  double read_loss(double* features) {
+  /// The weighted loss since the last call.
+  double read_loss() {
     const auto parts = pose_loss_.read_and_reset();
-    *features = parts[0];
     return parts[0] + settings_.places * parts[1] + settings_.velocities * parts[2];
   }
 
-  Mcdbn result() { return network_.to_mcdbn(true); }
+  Mcdbn result() { return network_.averaged(); }
 
  private:
   const JointSettings& settings_;
@@ -194,16 +193,6 @@ std::size_t views_that_fit(const std::vector<std::filesystem::path>& files,
   return std::min(config.augment.views, static_cast<std::size_t>(fitting));
 }
 
-Mcdbn copied(Device& device, const Mcdbn& network) {
-  Mcdbn copy{
-      {}, {}, Mrbm(device, network.mrbm.to_host()), network.look_ahead, network.mean_field_steps};
-  for (const Crbm& layer : network.track.layers)
-    copy.track.layers.emplace_back(device, layer.to_host());
-  for (const Crbm& layer : network.pose.layers)
-    copy.pose.layers.emplace_back(device, layer.to_host());
-  return copy;
-}
-
 }  // namespace
 
 TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files,
@@ -227,22 +216,19 @@ TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files
 Mcdbn train_joint(Device& device, const Mcdbn& start, const TrainingSet& views,
                   const TrainingConfig& config, const EpochObserver& observer) {
   const JointSettings& settings = config.joint;
-  Mcdbn own = copied(device, start);
-  own.mean_field_steps = settings.mean_field_steps;
   JointWindows windows;
   windows.count = settings.windows;
-  windows.first = longest_history(own);
+  windows.first = longest_history(start);
   windows.lead = windows.first + settings.settle_frames;
   windows.frames = windows.lead + settings.window_frames;
-  JointTrainer trainer(device, own, views, windows, config);
+  JointTrainer trainer(device, start, views, windows, config);
   DivergenceGuard guard("joint", fmt::format("lower --joint-rate (now {:g})", settings.rate));
   auto last = std::chrono::steady_clock::now();
   for (std::size_t step = 0; step < settings.steps; ++step) {
     trainer.step(step);
     const std::size_t done = step + 1;
     if (done % kReportEvery != 0 && done != settings.steps) continue;
-    double features = 0;
-    const double loss = trainer.read_loss(&features);
+    const double loss = trainer.read_loss();
     guard.check(done, loss);
     const auto now = std::chrono::steady_clock::now();
     EpochReport report;
@@ -276,18 +262,17 @@ Mcdbn sized_for_joint_stage(Device& device, const Mcdbn& greedy, const TrainingC
   const MrbmParameters mrbm_sizes = sizes.mrbm.to_host();
   for (std::size_t m = 0; m < 2; ++m) take_size(mrbm.W[m], mrbm_sizes.W[m]);
   Mcdbn network{{}, {}, Mrbm(device, uncentered(mrbm)), greedy.look_ahead, greedy.mean_field_steps};
-  const auto resize = [&](const Cdbn& from, const Cdbn& like, Cdbn& to) {
+  for (const Modality modality : {Modality::track, Modality::pose}) {
+    const Cdbn& from = greedy.cdbn(modality);
     for (std::size_t i = 0; i < from.layers.size(); ++i) {
       CrbmParameters layer = centered(from.layers[i].to_host());
-      const CrbmParameters size = like.layers[i].to_host();
+      const CrbmParameters size = sizes.cdbn(modality).layers[i].to_host();
       take_size(layer.W, size.W);
       take_size(layer.A, size.A);
       take_size(layer.B, size.B);
-      to.layers.emplace_back(device, uncentered(layer));
+      network.cdbn(modality).layers.emplace_back(device, uncentered(layer));
     }
-  };
-  resize(greedy.track, sizes.track, network.track);
-  resize(greedy.pose, sizes.pose, network.pose);
+  }
   return network;
 }
 
@@ -321,7 +306,6 @@ Mcdbn random_start(Device& device, std::size_t track, std::size_t pose,
   Mcdbn network{
       {}, {}, Mrbm(device, uncentered(mrbm)), config.look_ahead, config.joint.mean_field_steps};
   for (const Modality modality : {Modality::track, Modality::pose}) {
-    Cdbn& cdbn = modality == Modality::track ? network.track : network.pose;
     for (std::size_t i = 0; i < config.layers; ++i) {
       CrbmParameters drawn =
           i == 0 ? layer(modality == Modality::track ? track : pose, VisibleKind::gaussian)
@@ -330,7 +314,7 @@ Mcdbn random_start(Device& device, std::size_t track, std::size_t pose,
       if (i == 0 && modality == Modality::pose)
         drawn.W *= static_cast<float>(
             1.5 / 0.8 * std::sqrt(static_cast<double>(pose) / static_cast<double>(config.hidden)));
-      cdbn.layers.emplace_back(device, uncentered(drawn));
+      network.cdbn(modality).layers.emplace_back(device, uncentered(drawn));
     }
   }
   return network;

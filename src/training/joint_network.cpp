@@ -62,15 +62,14 @@ JointNetwork::Layer::Layer(Device& device, const CrbmParameters& parameters)
       A_following(device, parameters.shape.order * crbm.A.stride(), parameters.shape.visible),
       B_following(device, parameters.shape.order * crbm.B.stride(), parameters.shape.visible) {}
 
-JointNetwork::JointNetwork(Device& device, const Mcdbn& start)
+JointNetwork::JointNetwork(Device& device, const Mcdbn& start, std::size_t mean_field_steps)
     : look_ahead_(start.look_ahead),
-      mean_field_steps_(start.mean_field_steps),
+      mean_field_steps_(mean_field_steps),
       mrbm_(device, centered(start.mrbm.to_host())),
       mrbm_b_(mrbm_.b, false),
       limit_(device, 5 * (start.track.layers.size() + start.pose.layers.size()) + 5) {
   for (const Modality modality : {Modality::track, Modality::pose}) {
-    const Cdbn& cdbn = modality == Modality::track ? start.track : start.pose;
-    for (const Crbm& layer : cdbn.layers)
+    for (const Crbm& layer : start.cdbn(modality).layers)
       layers(modality).emplace_back(device, centered(layer.to_host()));
     mrbm_W_.emplace_back(mrbm_.W[index_of(modality)], true);
     mrbm_a_.emplace_back(mrbm_.a[index_of(modality)], false);
@@ -123,18 +122,16 @@ void JointNetwork::refresh_copies() {
   mrbm_.refresh_transposed();
 }
 
-Mcdbn JointNetwork::to_mcdbn(bool averaged) {
+Mcdbn JointNetwork::averaged() {
   const auto swap_averages = [&] {
-    if (!averaged) return;
     for (TrainedParameter* parameter : parameters())
       std::swap(*parameter->value, parameter->average);
   };
   swap_averages();
   Mcdbn result{{}, {}, Mrbm(device(), uncentered(mrbm_.to_host())), look_ahead_, mean_field_steps_};
   for (const Modality modality : {Modality::track, Modality::pose}) {
-    Cdbn& cdbn = modality == Modality::track ? result.track : result.pose;
     for (const Layer& layer : layers(modality))
-      cdbn.layers.emplace_back(device(), uncentered(layer.crbm.to_host()));
+      result.cdbn(modality).layers.emplace_back(device(), uncentered(layer.crbm.to_host()));
   }
   swap_averages();
   return result;

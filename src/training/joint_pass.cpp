@@ -20,10 +20,6 @@ std::size_t total_order(const std::deque<JointNetwork::Layer>& layers) {
   return order;
 }
 
-Matrix filled(Device& device, std::size_t rows, const MatrixF& row) {
-  return Matrix::from_host(device, row.replicate(static_cast<Eigen::Index>(rows), 1));
-}
-
 /// `count` rows from `first` on, each with the `order` frames that follow it.
 Rows following(const Matrix& errors, std::size_t first, std::size_t count, std::size_t step,
                std::size_t order) {
@@ -79,7 +75,7 @@ JointPass::JointPass(JointNetwork& network, Modality present, const JointWindows
   hidden_ = Matrix(device, steps_ * rows_, shared);
   hidden_errors_ = Matrix(device, steps_ * rows_, shared);
   for (const auto& layer : down_layers_) {
-    states_.push_back(filled(device, rows_, layer.crbm.visible_mean.to_host()));
+    states_.push_back(Matrix::filled_with_row(layer.crbm.visible_mean, rows_));
     state_errors_.emplace_back(device, rows_ + layer.crbm.shape().order,
                                layer.crbm.shape().visible);
   }

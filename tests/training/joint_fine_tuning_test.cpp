@@ -98,7 +98,7 @@ TEST_CASE("an observer stops the joint stage, and windows need their histories")
     const Mcdbn start = run.start(device);
     const auto stop = [](const EpochReport&) { throw InputError("enough"); };
     CHECK_THROWS_AS(train_joint(device, start, views, run.config, stop), InputError);
-    JointNetwork network(device, start);
+    JointNetwork network(device, start, run.config.joint.mean_field_steps);
     CHECK_THROWS_AS(JointPass(network, Modality::track, {4, 10, 3, 5}), ShapeError);
     CHECK_THROWS_AS(JointPass(network, Modality::track, {4, 10, 4, 10}), ShapeError);
   });

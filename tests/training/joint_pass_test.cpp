@@ -206,7 +206,7 @@ TEST_CASE("the joint pass predicts what the reference does, frame by frame") {
   const Windows windows(figure.dimension());
   const reference::JointModel model = small.in_double();
   on_every_device([&](Device& device) {
-    JointNetwork network(device, small.on(device));
+    JointNetwork network(device, small.on(device), kSteps);
     const IndexBuffer index(device, windows.rows);
     for (const auto& [present, kept] : kVariants) {
       const MatrixF& frames = present == Modality::track ? windows.track : windows.pose;
@@ -258,7 +258,7 @@ TEST_CASE("gradients of the joint stage are the finite differences of its loss")
     move_to_center(want.mrbm);
 
     on_every_device([&](Device& device) {
-      JointNetwork network(device, small.on(device));
+      JointNetwork network(device, small.on(device), kSteps);
       const IndexBuffer index(device, windows.rows);
       const Matrix input = Matrix::from_host(device, inputs),
                    all = Matrix::from_host(device, targets);

@@ -27,6 +27,9 @@ class Matrix {
     return {other.device(), other.rows(), other.columns()};
   }
 
+  /// `row` [1 x n] so many times. @return [rows x n]
+  static Matrix filled_with_row(const Matrix& row, std::size_t rows);
+
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return columns_; }
   std::size_t stride() const { return padded(columns_); }  ///< floats from row to row

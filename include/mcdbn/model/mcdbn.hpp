@@ -13,6 +13,9 @@ struct Mcdbn {
   Mrbm mrbm;
   std::size_t look_ahead = 0;  ///< the 2D code of frame t + look_ahead stands for the 3D code of t
   std::size_t mean_field_steps = 10;
+
+  Cdbn& cdbn(Modality modality) { return modality == Modality::track ? track : pose; }
+  const Cdbn& cdbn(Modality modality) const { return modality == Modality::track ? track : pose; }
 };
 
 }  // namespace mcdbn

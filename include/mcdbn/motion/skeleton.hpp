@@ -69,6 +69,9 @@ WorldPose forward_kinematics(const Skeleton& skeleton,
 /// Forward kinematics of a clip. @return [frames x 3·joints], x y z of joint 0, then of joint 1 …
 MatrixD joint_positions(const Motion& motion);
 
+/// Where the joint's channels put it in its parent's frame: its offset, or its position channels.
+Eigen::Vector3d local_position(const Joint& joint, const double* joint_channels);
+
 /// The joint's rotation matrix parent_from_joint from its rotation channels (degrees).
 Eigen::Matrix3d local_rotation(const Joint& joint, const double* joint_channels);
 

@@ -30,7 +30,8 @@ struct TrainedParameter {
 /// needs, and the copies that the backward pass reads.
 class JointNetwork {
  public:
-  JointNetwork(Device& device, const Mcdbn& start);
+  /// @param mean_field_steps that the result takes too, whatever `start` took
+  JointNetwork(Device& device, const Mcdbn& start, std::size_t mean_field_steps);
   JointNetwork(const JointNetwork&) = delete;
   JointNetwork& operator=(const JointNetwork&) = delete;
 
@@ -55,8 +56,8 @@ class JointNetwork {
   /// Adam on all parameters with a gradient of at most `longest_gradient`, then the moving average
   /// keeps `average_kept` of itself.
   void update(const AdamRule& rule, float longest_gradient, float average_kept);
-  /// The network as it is, or the moving average of it.
-  Mcdbn to_mcdbn(bool averaged);
+  /// The network that the moving average of the parameters makes.
+  Mcdbn averaged();
 
  private:
   void refresh_copies();
