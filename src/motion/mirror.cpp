@@ -64,18 +64,20 @@ struct Reflection {
 };
 
 /// The reflection of a joint's own axes that brings its bones onto the other side's; `otherwise`
-/// where no bone tells.
+/// where the bones do not clearly say something else: a neck that leans by a hair must not end up
+/// turned half round its length.
 Reflection joint_reflection(const Skeleton& skeleton, const std::vector<int>& opposite, int joint,
                             const Axes& otherwise) {
   Reflection best{otherwise, std::numeric_limits<double>::infinity()};
   for (const Axes& axes : {otherwise, Axes(-1, 1, 1), Axes(1, -1, 1), Axes(1, 1, -1)}) {
-    double miss = 0;
-    for (int child = 0; child < skeleton.joint_count(); ++child)
-      if (skeleton.joints[child].parent == joint)
-        miss += (axes.cwiseProduct(skeleton.joints[child].offset) -
-                 skeleton.joints[opposite[child]].offset)
-                    .norm();
-    if (miss < best.miss - 1e-9) best = {axes, miss};
+    double miss = 0, length = 0;
+    for (int child = 0; child < skeleton.joint_count(); ++child) {
+      const Eigen::Vector3d& bone = skeleton.joints[child].offset;
+      if (skeleton.joints[child].parent != joint) continue;
+      miss += (axes.cwiseProduct(bone) - skeleton.joints[opposite[child]].offset).norm();
+      length += bone.norm();
+    }
+    if (miss <= best.miss - kMostDifference * length && miss < best.miss) best = {axes, miss};
   }
   return best;
 }

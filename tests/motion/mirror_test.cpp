@@ -65,6 +65,28 @@ TEST_CASE("a mirrored motion stands where the mirror shows the other side") {
   }
 }
 
+TEST_CASE("a bone that leans by a hair does not turn its joint round in the mirror") {
+  Motion motion = two_armed(true);
+  Joint head;
+  head.name = "Head";
+  head.parent = 0;
+  head.offset = {0.05, 6, 0.2};
+  head.channels = {Channel::z_rotation, Channel::x_rotation, Channel::y_rotation};
+  Joint crown = head;
+  crown.name = "Crown";
+  crown.parent = 5;
+  crown.offset = {0.1, 2, 0.01};  // turned half round y it would miss itself by less
+  motion.skeleton.joints.push_back(head);
+  motion.skeleton.joints.push_back(crown);
+  const int first = motion.skeleton.first_channel(5);
+  motion.channels = MatrixD::Zero(20, motion.skeleton.channel_count());
+  motion.channels.col(first + 2).setConstant(20.0);  // y, the head looks aside
+  const auto other = mirrored(motion);
+  REQUIRE(other);
+  CHECK((other->channels.col(first + 2).array() + 20.0).abs().maxCoeff() < 1e-11);
+  CHECK(other->channels.middleCols(first, 2).cwiseAbs().maxCoeff() < 1e-11);
+}
+
 TEST_CASE("without sides, or with sides that differ, there is no mirrored motion") {
   Motion nameless = two_armed(true);
   for (Joint& joint : nameless.skeleton.joints)
