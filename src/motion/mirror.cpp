@@ -39,25 +39,6 @@ std::string other_side(const std::string& name) {
   return {};
 }
 
-/// For every joint the one on the other side, itself in the middle; empty if there are no sides.
-std::vector<int> opposite_joints(const Skeleton& skeleton) {
-  std::vector<int> opposite;
-  bool has_sides = false;
-  for (int j = 0; j < skeleton.joint_count(); ++j) {
-    const int found = skeleton.find(other_side(skeleton.joints[j].name));
-    has_sides |= found >= 0;
-    opposite.push_back(found >= 0 ? found : j);
-  }
-  for (int j = 0; j < skeleton.joint_count(); ++j) {
-    const int parent = skeleton.joints[j].parent;
-    const int parent_there = skeleton.joints[opposite[j]].parent;
-    if (opposite[opposite[j]] != j || (parent < 0) != (parent_there < 0) ||
-        (parent >= 0 && opposite[parent] != parent_there))
-      return {};
-  }
-  return has_sides ? opposite : std::vector<int>{};
-}
-
 struct Reflection {
   Axes axes = kWorldMirror;
   double miss = 0;  ///< how far the reflected bones end from those of the other side
@@ -99,6 +80,24 @@ std::vector<Axes> reflections(const Skeleton& skeleton, const std::vector<int>& 
 }
 
 }  // namespace
+
+std::vector<int> opposite_joints(const Skeleton& skeleton) {
+  std::vector<int> opposite;
+  bool has_sides = false;
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const int found = skeleton.find(other_side(skeleton.joints[j].name));
+    has_sides |= found >= 0;
+    opposite.push_back(found >= 0 ? found : j);
+  }
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const int parent = skeleton.joints[j].parent;
+    const int parent_there = skeleton.joints[opposite[j]].parent;
+    if (opposite[opposite[j]] != j || (parent < 0) != (parent_there < 0) ||
+        (parent >= 0 && opposite[parent] != parent_there))
+      return {};
+  }
+  return has_sides ? opposite : std::vector<int>{};
+}
 
 std::optional<Motion> mirrored(const Motion& motion) {
   const Skeleton& skeleton = motion.skeleton;

@@ -92,4 +92,12 @@ TEST_CASE("bones of both sides change alike") {
                         raw.skeleton.joints[raw.skeleton.find(joint.name)].offset.norm()) > 1e-6;
   }
   CHECK(changed > 0);
+  // In units of its own size the figure stands and walks as it did.
+  AugmentationSettings same = settings;
+  same.bone = 0;
+  const Motion unchanged = augmented_view(raw, 30.0, {}, same, kKey).motion;
+  const double size = body_height(view.motion.skeleton) / body_height(raw.skeleton);
+  CHECK(std::abs(size - 1.0) > 1e-3);
+  CHECK(largest_difference(view.motion.channels.leftCols(3),
+                           size * unchanged.channels.leftCols(3)) < 1e-9);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "mcdbn/motion/skeleton.hpp"
 
@@ -12,5 +13,9 @@ namespace mcdbn {
 /// side, so that rest poses with every bone along one axis come out right too.
 /// @return nothing where names show no sides or the two sides are built too differently
 std::optional<Motion> mirrored(const Motion& motion);
+
+/// For every joint the one on the other side by its name (Left… and Right…, L_… and …_R and the
+/// like), itself in the middle; empty if the names tell of no sides.
+std::vector<int> opposite_joints(const Skeleton& skeleton);
 
 }  // namespace mcdbn
