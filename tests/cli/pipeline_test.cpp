@@ -175,11 +175,14 @@ TEST_CASE("regenerate gives every input frame an output frame on the model's ske
                                        .rightCols(regenerated.skeleton.channel_count() - 6);
   CHECK(steps_deg.cwiseAbs().maxCoeff() <= 180.0);
 
-  REQUIRE(run_cli(command + " --samples 2 --temperature 1 --seed 9").exit_code == 0);
+  const std::string sampled = command + " --samples 2 --temperature 1 --seed 9";
+  REQUIRE(run_cli(sampled).exit_code == 0);
   const std::string first = mcdbn::read_text_file(pipeline.folder("out_01.bvh"));
   CHECK(first != mcdbn::read_text_file(pipeline.folder("out_02.bvh")));
-  REQUIRE(run_cli(command + " --samples 2 --temperature 1 --seed 9").exit_code == 0);
+  REQUIRE(run_cli(sampled).exit_code == 0);
   CHECK(first == mcdbn::read_text_file(pipeline.folder("out_01.bvh")));
+  REQUIRE(run_cli(sampled + " --mrbm-gibbs-steps 2").exit_code == 0);
+  CHECK(first != mcdbn::read_text_file(pipeline.folder("out_01.bvh")));
 }
 
 TEST_CASE("evaluate prints one object, and refuses clips that were trained on") {
@@ -282,8 +285,9 @@ TEST_CASE("evaluate --report writes the tables, by action, training clips marked
   const std::string evaluate =
       fmt::format("evaluate --model '{}' --quiet --report '{}' --json --test ",
                   pipeline.model().string(), report.string());
-  const CliResult result = run_cli(evaluate + pipeline.test_clips() +
-                                   " --samples 3 --temperature 0.5 --actions by-folder");
+  const CliResult result =
+      run_cli(evaluate + pipeline.test_clips() +
+              " --samples 3 --temperature 0.5 --mrbm-gibbs-steps 2 --actions by-folder");
   CAPTURE(result.standard_error);
   REQUIRE(result.exit_code == 0);
   const json summary = json::parse(result.standard_output);
