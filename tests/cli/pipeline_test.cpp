@@ -45,9 +45,8 @@ std::string clips_of(const fs::path& folder, int subject) {
   std::string files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().filename().string().find(fmt::format("_s{:02}_", subject)) !=
-        std::string::npos) {
+        std::string::npos)
       files += fmt::format(" '{}'", entry.path().string());
-    }
   }
   REQUIRE(!files.empty());
   return files;
@@ -166,13 +165,11 @@ TEST_CASE("regenerate gives every input frame an output frame on the model's ske
   const mcdbn::Motion regenerated = mcdbn::read_bvh(output);
   CHECK(regenerated.frames() == mcdbn::read_track_csv(track).frames());
   REQUIRE(regenerated.skeleton.joint_count() == truth.skeleton.joint_count());
-  for (int joint = 0; joint < truth.skeleton.joint_count(); ++joint) {
+  for (int joint = 0; joint < truth.skeleton.joint_count(); ++joint)
     CHECK(regenerated.skeleton.joints[joint].name == truth.skeleton.joints[joint].name);
-  }
-  const mcdbn::MatrixD steps_deg = regenerated.channels.bottomRows(regenerated.frames() - 1)
-                                       .rightCols(regenerated.skeleton.channel_count() - 6) -
-                                   regenerated.channels.topRows(regenerated.frames() - 1)
-                                       .rightCols(regenerated.skeleton.channel_count() - 6);
+  const auto angles_deg = regenerated.channels.rightCols(regenerated.skeleton.channel_count() - 6);
+  const mcdbn::MatrixD steps_deg = angles_deg.bottomRows(regenerated.frames() - 1) -
+                                   angles_deg.topRows(regenerated.frames() - 1);
   CHECK(steps_deg.cwiseAbs().maxCoeff() <= 180.0);
 
   const std::string sampled = command + " --samples 2 --temperature 1 --seed 9";
@@ -273,9 +270,8 @@ TEST_CASE("evaluate fits every method, or none, and damages tracks by the seed")
   CHECK(evaluate(damage).at("model") == damaged.at("model"));
   CHECK(evaluate(damage + " --seed 2").at("baselines").at("ridge_window") !=
         damaged.at("baselines").at("ridge_window"));
-  for (const char* wrong : {"--track-missing 1.5", "--track-hide -1", "--track-noise-px -1"}) {
+  for (const char* wrong : {"--track-missing 1.5", "--track-hide -1", "--track-noise-px -1"})
     CHECK(run_cli(fmt::format("evaluate --model m --test t {}", wrong)).exit_code == 2);
-  }
 }
 
 TEST_CASE("evaluate --report writes the tables, by action, training clips marked") {
