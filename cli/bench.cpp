@@ -104,9 +104,9 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
   command
       ->add_option("--only", options->layers,
                    "Layers to measure (default: all but epoch): gaussian_crbm, binary_crbm, mrbm, "
-                   "gemm, regeneration, epoch (a thousand to a million frames)")
-      ->check(
-          CLI::IsMember({"gaussian_crbm", "binary_crbm", "mrbm", "gemm", "regeneration", "epoch"}))
+                   "mrbm_chain, gemm, regeneration, epoch (a thousand to a million frames)")
+      ->check(CLI::IsMember(
+          {"gaussian_crbm", "binary_crbm", "mrbm", "mrbm_chain", "gemm", "regeneration", "epoch"}))
       ->type_name("LAYER");
   command->add_flag("--tune", options->tune,
                     "First find what suits the device best and keep it in the user's cache folder");

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numeric>
 
+#include "mcdbn/model/mrbm_chain.hpp"
 #include "mcdbn/regeneration/mcdbn_regeneration.hpp"
 #include "mcdbn/training/contrastive_divergence.hpp"
 #include "mcdbn/training/minibatch.hpp"
@@ -149,6 +150,35 @@ BenchStep mrbm_step(Device& device, std::size_t visible, std::size_t hidden, std
           }};
 }
 
+/// Inference of one modality from the other, mean field or sampled.
+BenchStep mrbm_chain_step(Device& device, std::size_t visible, std::size_t hidden,
+                          std::size_t batch, std::size_t steps, double temperature) {
+  struct State {
+    Matrix track, pose;
+    Mrbm mrbm;
+    MrbmChain chain;
+    State(Device& device, std::size_t visible, std::size_t hidden, std::size_t batch)
+        : track(Matrix::from_host(device, random_frames(batch, visible, VisibleKind::binary))),
+          pose(device, batch, visible),
+          mrbm(device, MrbmParameters::random(visible, visible, hidden, kWeightDeviation, {})),
+          chain(mrbm, Modality::track, batch) {}
+  };
+  const auto state = std::make_shared<State>(device, visible, hidden, batch);
+  MrbmChainOptions options;
+  options.steps = steps;
+  options.temperature = static_cast<float>(temperature);
+  // The first pass up is the drive alone.
+  const double multiply_adds = 2.0 * static_cast<double>(steps * visible * hidden);
+  return {{{"layer", "mrbm_chain"},
+           {"visible", 2 * visible},
+           {"hidden", hidden},
+           {"batch", batch},
+           {"steps", steps},
+           {"temperature", temperature}},
+          2.0 * multiply_adds * static_cast<double>(batch),
+          [=] { state->chain.run(state->track, options, state->pose); }};
+}
+
 BenchStep gemm_step(Device& device, std::size_t m, std::size_t n, std::size_t k,
                     GemmBackend backend) {
   const auto matrix = [&](std::size_t rows, std::size_t columns) {
@@ -229,6 +259,10 @@ std::vector<BenchStepMaker> bench_steps() {
       return crbm_step(device, {300, 300, 5, VisibleKind::binary}, batch, 1);
     });
     makers.emplace_back([=](Device& device) { return mrbm_step(device, 300, 150, batch, 10); });
+    for (const double temperature : {0.0, 1.0})
+      makers.emplace_back([=](Device& device) {
+        return mrbm_chain_step(device, 300, 150, batch, 10, temperature);
+      });
   }
   for (const auto backend : {GemmBackend::own, GemmBackend::clblast})
     for (const auto& [m, n, k] : {std::array<std::size_t, 3>{100, 300, 96},

@@ -22,8 +22,9 @@ double median_time_s(Device& device, const BenchStep& step, double seconds);
 /// Makes a step when its turn comes.
 using BenchStepMaker = std::function<BenchStep(Device&)>;
 
-/// The mini-batch step of every kind of layer at batch 100 and 1024, the products of the model's
-/// sizes by both back ends, and the regeneration of ten samples of a 1,000-frame clip.
+/// The mini-batch step of every kind of layer at batch 100 and 1024, the MRBM's inference, the
+/// products of the model's sizes by both back ends, and the regeneration of ten samples of a
+/// 1,000-frame clip.
 std::vector<BenchStepMaker> bench_steps();
 
 /// An epoch of a CRBM over a thousand to a million frames: whether the cost is that of the data.

@@ -150,6 +150,12 @@ void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
                   "k of a sampled frame (Algorithm 5)")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command
+      .add_option("--mrbm-gibbs-steps", options.run.regeneration.mrbm_gibbs_steps,
+                  "k of the chain that draws each sample a 3D code of its own above temperature 0; "
+                  "0: one mean-field code for all")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
   add_fit_option(command, options.fit, "default: track, none in the paper's protocol; all methods");
   command.add_option("--camera-azimuth", options.azimuth_deg, "Degrees (default: as trained)");
   command.add_option("--camera-elevation", options.elevation_deg, "Degrees (default: as trained)")

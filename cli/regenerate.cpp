@@ -86,6 +86,13 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
                    "k of a sampled frame (Algorithm 5)")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command
+      ->add_option(
+          "--mrbm-gibbs-steps", options->regeneration.mrbm_gibbs_steps,
+          "k of the chain that draws each sample a 3D code of its own above temperature 0; "
+          "0: one mean-field code for all")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
   add_fit_option(*command, options->fit, "default: track");
   add_seed_option(*command, context);
   add_device_options(*command, context);

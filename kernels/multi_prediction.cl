@@ -29,21 +29,6 @@ INLINE void through_sigmoid(floatN sum[ROWS][COLUMNS], const int count, global c
     }
 }
 
-INLINE void clear_tile(floatN sum[ROWS][COLUMNS], const int count) {
-#pragma unroll
-  for (int r = 0; r < ROWS; ++r)
-#pragma unroll
-    for (int c = 0; c < count; ++c) sum[r][c] = (floatN)(0.0f);
-}
-
-INLINE void add_tile(floatN sum[ROWS][COLUMNS], const int count, global const float* x,
-                     const int ld, int column) {
-#pragma unroll
-  for (int r = 0; r < ROWS; ++r)
-#pragma unroll
-    for (int c = 0; c < count; ++c) sum[r][c] += loadN(r * ld + column + c * VEC, x);
-}
-
 // − Σ t · log y + (1 − t) · log(1 − y) of one row, y kept away from 0 and 1; a NaN stays one.
 INLINE float row_cross_entropy(global const float* target, local const float* prediction,
                                const int units, const int ld) {

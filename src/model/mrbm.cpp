@@ -1,8 +1,11 @@
 #include "mcdbn/model/mrbm.hpp"
 
+#include <algorithm>
+
 #include "mcdbn/device/units.hpp"
 #include "mcdbn/errors.hpp"
 #include "mcdbn/model/crbm.hpp"
+#include "mcdbn/model/mrbm_chain.hpp"
 
 namespace mcdbn {
 
@@ -40,32 +43,10 @@ MrbmParameters Mrbm::to_host() const {
 
 void Mrbm::infer(Modality modality, const Rows& present, std::size_t steps, const Rows& absent,
                  bool doubled) const {
-  const std::size_t p = index_of(modality), q = index_of(other(modality));
-  Matrix drive(device(), present.count,
-               hidden());  // what the present modality says, all steps long
-  Matrix h(device(), present.count, hidden());
-  GemmOptions bias;
-  bias.bias = &b;
-  gemm(present, W[p], drive, bias);
-  for (std::size_t step = 0; step < std::max<std::size_t>(steps, 1); ++step) {
-    GemmOptions hidden;
-    hidden.bias = &drive;
-    hidden.activation = Activation::sigmoid;
-    if (step > 0)
-      gemm(absent, W[q], h, hidden);
-    else if (doubled)
-      gemm(present, W[p], h, hidden);
-    else {
-      h.copy_from(drive);
-      GemmOptions sigmoid;
-      sigmoid.activation = Activation::sigmoid;
-      apply_epilogue(h, sigmoid);
-    }
-    GemmOptions visible;
-    visible.bias = &a[q];
-    visible.activation = Activation::sigmoid;
-    gemm(h, W_transposed[q], absent, visible);
-  }
+  MrbmChainOptions options;
+  options.steps = std::max<std::size_t>(steps, 1);
+  options.doubled = doubled;
+  MrbmChain(*this, modality, present.count).run(present, options, absent);
 }
 
 void Mrbm::refresh_transposed() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mcdbn/errors.hpp"
+#include "mcdbn/model/mrbm_chain.hpp"
 #include "mcdbn/regeneration/cdbn_decoder.hpp"
 #include "mcdbn/regeneration/track_completion.hpp"
 
@@ -32,16 +33,32 @@ Matrix repeated(const Matrix& code, std::size_t sequences, std::size_t copies) {
   return result;
 }
 
-/// The 3D code of every frame from the 2D code `look_ahead` frames later (eq 32, 33).
-Matrix infer_pose_code(const Mcdbn& network, const Sequences& track_code) {
-  Matrix code(track_code.values.device(), track_code.values.rows(), network.pose.code_dimension());
-  for (const auto& clip : track_code.clips) {
-    const std::size_t first = clip.first + track_code.valid_from;
-    const std::size_t count = clip.frames - track_code.valid_from - network.look_ahead;
-    network.mrbm.infer(Modality::track, Rows(track_code.values, first + network.look_ahead, count),
-                       network.mean_field_steps, Rows(code, first, count));
+/// The 3D code of every frame from the 2D code `look_ahead` frames later, once for each sample: its
+/// own sampled chain (eq 21 to 23), or the one mean field again (eq 32, 33).
+/// @param track_code sequences of one length  @return [sequences·samples·frames x dimension]
+Matrix infer_pose_code(const Mcdbn& network, const Sequences& track_code,
+                       const RegenerationOptions& options) {
+  constexpr std::uint16_t kStream = 201;  // of random numbers; the decoder has 200
+  const bool sampled = options.temperature > 0.0 && options.mrbm_gibbs_steps > 0;
+  MrbmChainOptions chain;
+  chain.steps = std::max<std::size_t>(network.mean_field_steps, 1);
+  if (sampled) {
+    chain.steps = options.mrbm_gibbs_steps;
+    chain.temperature = static_cast<float>(options.temperature);
   }
-  return code;
+  const std::size_t chains = sampled ? options.samples : 1, sequences = track_code.clips.size();
+  const std::size_t frames = track_code.values.rows() / sequences;
+  const std::size_t count = frames - track_code.valid_from - network.look_ahead;
+  Matrix code(track_code.values.device(), sequences * chains * frames,
+              network.pose.code_dimension());
+  MrbmChain inference(network.mrbm, Modality::track, count);
+  for (std::size_t i = 0; i < sequences * chains; ++i) {
+    const std::size_t present = i / chains * frames + track_code.valid_from + network.look_ahead;
+    chain.random = {options.seed, static_cast<std::uint32_t>(i), kStream, 0};
+    inference.run(Rows(track_code.values, present, count), chain,
+                  Rows(code, i * frames + track_code.valid_from, count));
+  }
+  return repeated(code, sequences, options.samples / chains);
 }
 
 }  // namespace
@@ -69,10 +86,8 @@ std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>
                                  static_cast<Eigen::Index>(frames)));
   Device& device = network.mrbm.device();
   const Sequences track_code = network.track.up_pass(Sequences::from_host(device, sequences));
-  // A track's samples differ in the decoder only.
   const std::size_t decoded = sequences.size() * options.samples;
-  const Matrix code =
-      repeated(infer_pose_code(network, track_code), sequences.size(), options.samples);
+  const Matrix code = infer_pose_code(network, track_code, options);
   CdbnDecoder decoder(network.pose, code, decoded);
   decoder.decode(start, frames - network.look_ahead, options);
 

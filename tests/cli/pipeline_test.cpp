@@ -45,9 +45,8 @@ std::string clips_of(const fs::path& folder, int subject) {
   std::string files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().filename().string().find(fmt::format("_s{:02}_", subject)) !=
-        std::string::npos) {
+        std::string::npos)
       files += fmt::format(" '{}'", entry.path().string());
-    }
   }
   REQUIRE(!files.empty());
   return files;
@@ -166,20 +165,21 @@ TEST_CASE("regenerate gives every input frame an output frame on the model's ske
   const mcdbn::Motion regenerated = mcdbn::read_bvh(output);
   CHECK(regenerated.frames() == mcdbn::read_track_csv(track).frames());
   REQUIRE(regenerated.skeleton.joint_count() == truth.skeleton.joint_count());
-  for (int joint = 0; joint < truth.skeleton.joint_count(); ++joint) {
+  for (int joint = 0; joint < truth.skeleton.joint_count(); ++joint)
     CHECK(regenerated.skeleton.joints[joint].name == truth.skeleton.joints[joint].name);
-  }
-  const mcdbn::MatrixD steps_deg = regenerated.channels.bottomRows(regenerated.frames() - 1)
-                                       .rightCols(regenerated.skeleton.channel_count() - 6) -
-                                   regenerated.channels.topRows(regenerated.frames() - 1)
-                                       .rightCols(regenerated.skeleton.channel_count() - 6);
+  const auto angles_deg = regenerated.channels.rightCols(regenerated.skeleton.channel_count() - 6);
+  const mcdbn::MatrixD steps_deg = angles_deg.bottomRows(regenerated.frames() - 1) -
+                                   angles_deg.topRows(regenerated.frames() - 1);
   CHECK(steps_deg.cwiseAbs().maxCoeff() <= 180.0);
 
-  REQUIRE(run_cli(command + " --samples 2 --temperature 1 --seed 9").exit_code == 0);
+  const std::string sampled = command + " --samples 2 --temperature 1 --seed 9";
+  REQUIRE(run_cli(sampled).exit_code == 0);
   const std::string first = mcdbn::read_text_file(pipeline.folder("out_01.bvh"));
   CHECK(first != mcdbn::read_text_file(pipeline.folder("out_02.bvh")));
-  REQUIRE(run_cli(command + " --samples 2 --temperature 1 --seed 9").exit_code == 0);
+  REQUIRE(run_cli(sampled).exit_code == 0);
   CHECK(first == mcdbn::read_text_file(pipeline.folder("out_01.bvh")));
+  REQUIRE(run_cli(sampled + " --mrbm-gibbs-steps 2").exit_code == 0);
+  CHECK(first != mcdbn::read_text_file(pipeline.folder("out_01.bvh")));
 }
 
 TEST_CASE("evaluate prints one object, and refuses clips that were trained on") {
@@ -270,9 +270,8 @@ TEST_CASE("evaluate fits every method, or none, and damages tracks by the seed")
   CHECK(evaluate(damage).at("model") == damaged.at("model"));
   CHECK(evaluate(damage + " --seed 2").at("baselines").at("ridge_window") !=
         damaged.at("baselines").at("ridge_window"));
-  for (const char* wrong : {"--track-missing 1.5", "--track-hide -1", "--track-noise-px -1"}) {
+  for (const char* wrong : {"--track-missing 1.5", "--track-hide -1", "--track-noise-px -1"})
     CHECK(run_cli(fmt::format("evaluate --model m --test t {}", wrong)).exit_code == 2);
-  }
 }
 
 TEST_CASE("evaluate --report writes the tables, by action, training clips marked") {
@@ -282,8 +281,9 @@ TEST_CASE("evaluate --report writes the tables, by action, training clips marked
   const std::string evaluate =
       fmt::format("evaluate --model '{}' --quiet --report '{}' --json --test ",
                   pipeline.model().string(), report.string());
-  const CliResult result = run_cli(evaluate + pipeline.test_clips() +
-                                   " --samples 3 --temperature 0.5 --actions by-folder");
+  const CliResult result =
+      run_cli(evaluate + pipeline.test_clips() +
+              " --samples 3 --temperature 0.5 --mrbm-gibbs-steps 2 --actions by-folder");
   CAPTURE(result.standard_error);
   REQUIRE(result.exit_code == 0);
   const json summary = json::parse(result.standard_output);

@@ -181,6 +181,41 @@ TEST_CASE("samples differ, the same seed gives the same ones, a low temperature 
   });
 }
 
+TEST_CASE(
+    "with the MRBM's own Gibbs steps samples differ in the 3D code, without them they do not") {
+  const Parameters parameters;
+  const MatrixF track = random_matrix(11, kTrack, 3), other = random_matrix(5, kTrack, 4);
+  on_every_device([&](Device& device) {
+    const Mcdbn network = parameters.on(device);
+    const auto single = regenerate(network, {track, other});
+    RegenerationOptions options;
+    options.samples = 3;
+    options.gibbs_steps = 0;  // the decoder draws nothing
+    options.temperature = 1.0;
+    const auto shared_code = regenerate(network, {track, other}, options);
+    for (std::size_t i = 0; i < 6; ++i) CHECK(shared_code[i] == single[i / 3]);
+
+    options.mrbm_gibbs_steps = parameters.mean_field_steps;
+    const auto samples = regenerate(network, {track, other}, options);
+    REQUIRE(samples.size() == 6);
+    for (const std::size_t i : {0U, 1U, 3U, 4U})
+      CHECK((samples[i] - samples[i + 1]).cwiseAbs().maxCoeff() > 1e-2F);
+    CHECK(regenerate(network, {track, other}, options) == samples);
+    // What follows in the batch changes nothing.
+    const auto alone = regenerate(network, {track}, options);
+    CHECK((alone[2] - samples[2]).cwiseAbs().maxCoeff() < 1e-5F);
+    options.seed = 2;
+    CHECK(regenerate(network, {track, other}, options)[2] != samples[2]);
+
+    options.temperature = 1e-6;
+    const auto cold = regenerate(network, {track, other}, options);
+    for (std::size_t i = 0; i < 6; ++i)
+      CHECK((cold[i] - single[i / 3]).cwiseAbs().maxCoeff() < 1e-4F);
+    options.temperature = 0.0;
+    CHECK(regenerate(network, {track, other}, options)[4] == single[1]);
+  });
+}
+
 TEST_CASE("the start of a regeneration does not depend on the frames that follow the look-ahead") {
   Parameters parameters;
   parameters.look_ahead = 2;

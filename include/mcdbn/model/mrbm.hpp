@@ -36,7 +36,7 @@ class Mrbm {
 
   /// Mean-field inference of the absent modality (eq 32, 33), started from zeros, `steps` times.
   /// With `doubled` the first pass counts the present modality twice in place of the absent one's
-  /// zeros (Sohn et al.).
+  /// zeros (Sohn et al.). Sampled inference is MrbmChain's.
   /// @param present [rows x visible(modality)]  @param absent [rows x visible(other)] result
   void infer(Modality modality, const Rows& present, std::size_t steps, const Rows& absent,
              bool doubled = false) const;

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+
+#include "reference/mrbm_reference.hpp"
+#include "reference/running_error.hpp"
+
+namespace mcdbn::reference {
+
+struct ClampedChain {
+  int steps = 1;
+  double temperature = 0.0;  ///< 0 mean field, 1 sampled, between: p + temperature · (draw − p)
+  bool double_first_pass = false;
+};
+
+/// Uniform numbers for the draws of pass 0, 1, …: hidden units in even passes, the absent
+/// modality's in odd ones. @return [rows x units]
+using PassDraws = std::function<MatrixD(int pass, Eigen::Index units)>;
+
+/// The MRBM's chain with modality `present` (0 or 1) clamped, started from zeros (eq 21 to 23 and
+/// 32, 33), in double with a bound on what single precision makes of it. Where rounding may decide
+/// a draw, the bound of its row is that of not knowing it.
+/// @param values the present modality [rows x D_present]
+/// @return p(absent | hidden) of the last step [rows x D_absent]
+Bounded bounded_clamped_chain(const Mrbm& model, int present, const MatrixD& values,
+                              const ClampedChain& chain, const PassDraws& draws);
+
+/// The sampled chain of one row as a Markov chain over the 2^K hidden states, bit k of a state
+/// being unit k, by summing over all states of the absent modality.
+struct HiddenStates {
+  RowVectorD start;       ///< p(h | present, absent = 0): the first step's
+  MatrixD transition;     ///< from a row's state to a column's: absent given h, then h given both
+  RowVectorD stationary;  ///< p(h | present), eq 18 and 19 summed over the absent modality
+  MatrixD absent;         ///< p(absent unit = 1 | h) [2^K x D_absent]
+};
+HiddenStates enumerate_hidden(const Mrbm& model, int present, const RowVectorD& values);
+
+}  // namespace mcdbn::reference
