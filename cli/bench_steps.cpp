@@ -218,7 +218,7 @@ BenchStep regeneration_step(Device& device, double temperature) {
            {"frames", kClipFrames},
            {"samples", options.samples},
            {"temperature", temperature},
-           {"k", temperature > 0.0 ? options.gibbs_steps : 0}},
+           {"k", temperature > 0.0 ? options.sampling.gibbs_steps : 0}},
           0.0,
           [=] { regenerate(*network, tracks, options); }};
 }

@@ -13,18 +13,21 @@
 #include "mcdbn/regeneration/test_run.hpp"
 #include "mcdbn/training/joint_fine_tuning.hpp"
 #include "progress.hpp"
+#include "sampling_options.hpp"
 #include "training_options.hpp"
 
 namespace mcdbn::cli {
 namespace {
+
+constexpr std::size_t kPaperSamples = 10;
 
 struct EvaluateOptions {
   std::filesystem::path model, report;
   std::vector<std::filesystem::path> test;
   std::string protocol = "subject", actions, fit;
   TestRunOptions run;
-  std::optional<std::size_t> samples;
-  std::optional<double> azimuth_deg, elevation_deg, temperature;
+  SamplingOptions sampling;
+  std::optional<double> azimuth_deg, elevation_deg;
 };
 
 /// What the protocol leaves open is filled in; what was said stays.
@@ -33,9 +36,6 @@ struct EvaluateOptions {
 void apply_protocol(EvaluateOptions& options) {
   const bool paper = options.protocol == "paper";
   options.run.include_training |= paper;
-  options.run.regeneration.samples = options.samples.value_or(paper ? 10 : 1);
-  options.run.regeneration.temperature =
-      options.temperature.value_or(options.run.regeneration.samples > 1 ? 1.0 : 0.0);
   if (options.actions.empty()) options.actions = paper ? "by-folder" : "together";
   if (options.fit.empty()) options.fit = paper ? kFitNone : kFitTrack;
   options.run.fit = track_fit(options.fit);
@@ -91,7 +91,9 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
     run.camera = model.modalities.camera;
     if (options.azimuth_deg) run.camera.azimuth_deg = *options.azimuth_deg;
     if (options.elevation_deg) run.camera.elevation_deg = *options.elevation_deg;
-    run.regeneration.seed = context.seed;
+    run.regeneration = options.sampling.regeneration(
+        model.network, context.seed, options.protocol == "paper" ? kPaperSamples : 1);
+    report.temperature = run.regeneration.temperature;
     add_views(model, run);
     run.progress = show(0.0, 0.9);
     report.clips = report_clips(model, run_test(model, find_clips(options.test), run),
@@ -100,7 +102,6 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   }
   report.model = options.model.filename().string();
   report.protocol = options.protocol;
-  report.temperature = options.run.regeneration.temperature;
   report.fit = options.fit;
   report.damage = options.run.damage;
   if (!options.report.empty()) {
@@ -139,23 +140,7 @@ void add_test_options(CLI::App& command, EvaluateOptions& options) {
 }
 
 void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
-  command.add_option("--samples", options.samples, "Regenerations of each clip (default: 1)")
-      ->check(CLI::Range(1, 1000));
-  command
-      .add_option("--temperature", options.temperature,
-                  "0: mean field; towards 1: sampled (default: 1 with several samples, else 0)")
-      ->check(CLI::Range(0.0, 10.0));
-  command
-      .add_option("--gibbs-steps", options.run.regeneration.gibbs_steps,
-                  "k of a sampled frame (Algorithm 5)")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command
-      .add_option("--mrbm-gibbs-steps", options.run.regeneration.mrbm_gibbs_steps,
-                  "k of the chain that draws each sample a 3D code of its own above temperature 0; "
-                  "0: one mean-field code for all")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
+  add_sampling_options(command, options.sampling, "Regenerations of each clip (default: 1)");
   add_fit_option(command, options.fit, "default: track, none in the paper's protocol; all methods");
   command.add_option("--camera-azimuth", options.azimuth_deg, "Degrees (default: as trained)");
   command.add_option("--camera-elevation", options.elevation_deg, "Degrees (default: as trained)")

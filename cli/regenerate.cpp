@@ -9,13 +9,14 @@
 #include "mcdbn/errors.hpp"
 #include "mcdbn/motion/bvh.hpp"
 #include "mcdbn/regeneration/clip_regeneration.hpp"
+#include "sampling_options.hpp"
 
 namespace mcdbn::cli {
 namespace {
 
 struct RegenerateOptions {
   std::filesystem::path model, input, output, camera, skeleton;
-  RegenerationOptions regeneration;
+  SamplingOptions sampling;
   std::string fit = kFitTrack;
 };
 
@@ -35,8 +36,8 @@ void run_regenerate(const CommandContext& context, const RegenerateOptions& opti
   if (!options.camera.empty()) placement.camera = read_camera(options.camera);
   if (!options.skeleton.empty()) placement.skeleton = read_bvh(options.skeleton).skeleton;
   placement.fit = track_fit(options.fit);
-  RegenerationOptions regeneration = options.regeneration;
-  regeneration.seed = context.seed;
+  const RegenerationOptions regeneration =
+      options.sampling.regeneration(model.network, context.seed);
   TrackFeatures::FillCount filled;
   const Track2d track = read_track_csv(options.input);
   const auto motions = regenerate_clip(model, track, placement, regeneration, &filled);
@@ -71,28 +72,8 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
       ->add_option("--skeleton", options->skeleton,
                    "BVH whose skeleton to use, of the same joint names")
       ->type_name("FILE");
-  command
-      ->add_option("--samples", options->regeneration.samples,
-                   "Variations; several are written as out_01.bvh …")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command
-      ->add_option("--temperature", options->regeneration.temperature,
-                   "0: the mean-field answer; towards 1: sampled variations")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
-  command
-      ->add_option("--gibbs-steps", options->regeneration.gibbs_steps,
-                   "k of a sampled frame (Algorithm 5)")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--mrbm-gibbs-steps", options->regeneration.mrbm_gibbs_steps,
-          "k of the chain that draws each sample a 3D code of its own above temperature 0; "
-          "0: one mean-field code for all")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
+  add_sampling_options(*command, options->sampling,
+                       "Variations; several are written as out_01.bvh … (default: 1)");
   add_fit_option(*command, options->fit, "default: track");
   add_seed_option(*command, context);
   add_device_options(*command, context);
@@ -100,8 +81,7 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
   command->footer(
       "Example:\n  mcdbn-cl regenerate --model run/model.safetensors --input track.csv -o out.bvh\n"
       "  mcdbn-cl regenerate --model run/model.safetensors --input track.csv -o out.bvh --samples "
-      "5 "
-      "--temperature 1");
+      "5");
   command->callback([&context, options] {
     context.run = [&context, options] { run_regenerate(context, *options); };
   });

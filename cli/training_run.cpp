@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mcdbn/errors.hpp"
+#include "mcdbn/regeneration/sample_calibration.hpp"
 #include "mcdbn/text_file.hpp"
 #include "mcdbn/training/training_schedule.hpp"
 #include "progress.hpp"
@@ -76,6 +77,8 @@ TrainedRun train_to_folder(const CommandContext& context, Device& device,
                   report.overall_progress);
   };
   Mcdbn network = train_network(device, data, clips, config, observer);
+  if (config.joint.steps > 0)
+    network.sampling = calibrated_sampling(network, data.modalities, data.tracks, data.poses);
   TrainedRun trained{{std::move(network), data.modalities, data.clips, settings_json(config)},
                      progress.elapsed_s()};
   const std::filesystem::path file = run / "model.safetensors";

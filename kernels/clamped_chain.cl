@@ -10,11 +10,14 @@
 // that are present_ld floats apart; row r of `absent` likewise, without index. `drive` is scratch,
 // [blocks · ROWS x H_LD]: what the present modality says to the hidden units.
 //
-// With a temperature other than 0 units are drawn (row_draws.clh), phase 2 · step for the hidden ones
-// and 2 · step + 1 for the absent ones; the last step's absent ones stay probabilities.
+// With a temperature other than 0 units are drawn as SAMPLE says, 1 or 3 (row_draws.clh), phase
+// 2 · step for the hidden ones and 2 · step + 1 for the absent ones; the last step's absent ones stay
+// probabilities.
 
+#if SAMPLE != 3
 #undef SAMPLE
 #define SAMPLE 1
+#endif
 #include "philox.clh"
 #include "activation.clh"
 #include "sampling.clh"

@@ -126,6 +126,21 @@ Modalities modalities_from(const json& entry) {
           camera_from(entry.at("camera"))};
 }
 
+json sampling_json(const SamplingRule& rule) {
+  return {{"gibbs_steps", rule.gibbs_steps},
+          {"mrbm_gibbs_steps", rule.mrbm_gibbs_steps},
+          {"steady", rule.steady},
+          {"scale", rule.scale}};
+}
+
+/// Algorithm 5's rule for models that say none.
+SamplingRule sampling_from(const json& about) {
+  if (!about.contains("sampling")) return {};
+  const json& entry = about.at("sampling");
+  return {entry.at("gibbs_steps"), entry.at("mrbm_gibbs_steps"), entry.at("steady"),
+          entry.at("scale")};
+}
+
 Model model_from(Device& device, const Safetensors& file, const std::string& path) {
   const auto text = file.metadata.find("mcdbn");
   if (text == file.metadata.end()) throw InputError(path + ": not a model of mcdbn-cl");
@@ -139,7 +154,7 @@ Model model_from(Device& device, const Safetensors& file, const std::string& pat
   Mrbm mrbm = get_mrbm(device, file, path, {track.code_dimension(), pose.code_dimension()},
                        about.at("mrbm_hidden"));
   Model model{{std::move(track), std::move(pose), std::move(mrbm), about.at("look_ahead"),
-               about.at("mean_field_steps")},
+               about.at("mean_field_steps"), sampling_from(about), about.value("fills_gaps", true)},
               modalities_from(about.at("modalities")),
               {},
               about.at("config")};
@@ -165,6 +180,8 @@ void save_model(const std::filesystem::path& path, const Model& model) {
   about["mrbm_hidden"] = model.network.mrbm.hidden();
   about["look_ahead"] = model.network.look_ahead;
   about["mean_field_steps"] = model.network.mean_field_steps;
+  about["fills_gaps"] = model.network.fills_gaps;
+  about["sampling"] = sampling_json(model.network.sampling);
   about["modalities"] = modalities_json(model.modalities);
   about["config"] = model.config;
   about["training_clips"] = json::array();

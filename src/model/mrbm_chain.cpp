@@ -29,7 +29,7 @@ GemmOptions units_options(const Matrix& bias, const Rows& units, const MrbmChain
   epilogue.bias = &bias;
   epilogue.activation = Activation::sigmoid;
   if (options.temperature == 0.0F) return epilogue;
-  epilogue.sampling = Sampling::bernoulli;
+  epilogue.sampling = options.sampling;
   epilogue.sample = &units;
   epilogue.temperature = options.temperature;
   epilogue.random = options.random;
@@ -60,6 +60,8 @@ void MrbmChain::run(const Rows& present, const MrbmChainOptions& options, const 
   require(absent.index == nullptr, "MRBM chain: the result may not be indexed");
   require(present.count <= largest_rows_, "MRBM chain: more rows than it was made for");
   require(options.steps > 0, "MRBM chain: wants at least one step");
+  require(options.sampling == Sampling::bernoulli || options.sampling == Sampling::concrete,
+          "MRBM chain: its units are binary");
   if (present.count == 0) return;
   if (tile_)
     fused(present, options, absent);
@@ -69,12 +71,14 @@ void MrbmChain::run(const Rows& present, const MrbmChainOptions& options, const 
 
 void MrbmChain::fused(const Rows& present, const MrbmChainOptions& options, const Rows& absent) {
   Device& device = mrbm_.device();
-  cl::Kernel& kernel = device.programs().kernel("clamped_chain.cl", "clamped_chain",
-                                                with_tile({{"VEC", tile_->vector_width},
-                                                           {"VISIBLE_0", to_int(present.columns)},
-                                                           {"VISIBLE_1", to_int(absent.columns)},
-                                                           {"HIDDEN", to_int(mrbm_.hidden())}},
-                                                          *tile_));
+  cl::Kernel& kernel =
+      device.programs().kernel("clamped_chain.cl", "clamped_chain",
+                               with_tile({{"VEC", tile_->vector_width},
+                                          {"VISIBLE_0", to_int(present.columns)},
+                                          {"VISIBLE_1", to_int(absent.columns)},
+                                          {"HIDDEN", to_int(mrbm_.hidden())},
+                                          {"SAMPLE", static_cast<int>(options.sampling)}},
+                                         *tile_));
   const auto group = static_cast<std::size_t>(tile_->group);
   const std::size_t blocks = ceil_divide(present.count, static_cast<std::size_t>(tile_->rows));
   // Without an index its argument still needs a buffer.

@@ -106,6 +106,37 @@ std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, doub
   return names;
 }
 
+void hide_limbs(Track2d& track, const Skeleton& skeleton, std::uint64_t seed) {
+  constexpr double kEvery_s = 2.0, kShortest_s = 0.3, kLongest_s = 1.5;
+  const Branches branches(skeleton);
+  std::vector<std::vector<int>> limbs;  // as columns of the track
+  for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
+    std::vector<int> joints, columns;
+    add_with_all_below(branches, joint, joints);
+    for (const int below : joints)
+      if (const int column = track.find(skeleton.joints[below].name); column >= 0)
+        columns.push_back(column);
+    if (!columns.empty() && 3 * static_cast<int>(columns.size()) <= track.joint_count())
+      limbs.push_back(std::move(columns));
+  }
+  if (limbs.empty()) return;
+  std::mt19937_64 generator(seed);
+  const auto uniform = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(generator);
+  };
+  const double duration_s = track.frames() / track.fps;
+  const auto times = static_cast<int>(std::lround(std::max(1.0, duration_s / kEvery_s)));
+  for (int i = 0; i < times; ++i) {
+    const auto limb = static_cast<std::size_t>(uniform(0.0, static_cast<double>(limbs.size())));
+    const double from_s = uniform(-kShortest_s, duration_s);
+    const double to_s = from_s + uniform(kShortest_s, kLongest_s);
+    const auto last = std::min<Eigen::Index>(track.frames(), std::lround(to_s * track.fps));
+    for (auto frame = std::max<Eigen::Index>(0, std::lround(from_s * track.fps)); frame < last;
+         ++frame)
+      for (const int column : limbs[std::min(limb, limbs.size() - 1)]) hide(track, frame, column);
+  }
+}
+
 void damage_track(Track2d& track, const Skeleton& skeleton, const TrackDamage& damage,
                   std::uint64_t seed) {
   // Seeds that nothing else uses: whoever sees the track must not draw the same numbers.

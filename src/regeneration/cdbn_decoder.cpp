@@ -28,7 +28,7 @@ void CdbnDecoder::decode(std::size_t first, std::size_t last, const Regeneration
                          bool fused) {
   for (const Crbm& layer : cdbn_.layers)
     if (first < layer.shape().order) throw ShapeError("decoder: the first frame has no history");
-  const bool sampled = options.temperature > 0.0 && options.gibbs_steps > 0;
+  const bool sampled = options.drawn_share() > 0.0 && options.sampling.gibbs_steps > 0;
   last = std::min(last, frames_);
   if (first >= last) return;
   const auto tiles = fused ? fused_tiles(sampled) : std::nullopt;
@@ -101,8 +101,8 @@ void CdbnDecoder::sample_top_layer(std::size_t frame, const RegenerationOptions&
   up.activation = Activation::sigmoid;
   up.sampling = Sampling::bernoulli;
   up.sample = &top_sample;
-  down.temperature = up.temperature = static_cast<float>(options.temperature);
-  for (std::size_t k = 0; k < options.gibbs_steps; ++k) {
+  down.temperature = up.temperature = static_cast<float>(options.drawn_share());
+  for (std::size_t k = 0; k < options.sampling.gibbs_steps; ++k) {
     key.phase = static_cast<std::uint16_t>(2 * k);
     down.random = key;
     gemm(k == 0 ? at(code_, frame) : top_sample, top.W_transposed, state, down);

@@ -48,7 +48,7 @@ std::optional<std::vector<RowTile>> CdbnDecoder::fused_tiles(bool sampled) const
 void CdbnDecoder::fused_decode(std::size_t first, std::size_t last,
                                const RegenerationOptions& options,
                                const std::vector<RowTile>& tiles) {
-  const bool sampled = options.temperature > 0.0 && options.gibbs_steps > 0;
+  const bool sampled = options.drawn_share() > 0.0 && options.sampling.gibbs_steps > 0;
   for (std::size_t i = cdbn_.layers.size(); i-- > 0;) {
     if (sampled && i + 1 == cdbn_.layers.size())
       fused_samples(first, last, options, tiles[i]);
@@ -79,7 +79,7 @@ void CdbnDecoder::fused_samples(std::size_t first, std::size_t last,
          states_.back().buffer(), code_.buffer(), to_int(sequences_), to_int(frames_),
          to_int(first), to_int(last), top.W.buffer(), top.W_transposed.buffer(), top.A.buffer(),
          top.B.buffer(), top.a.buffer(), top.b.buffer(), below_bias_.buffer(), top_bias_.buffer(),
-         to_int(options.gibbs_steps), static_cast<float>(options.temperature),
+         to_int(options.sampling.gibbs_steps), static_cast<float>(options.drawn_share()),
          random_argument(key));
 }
 

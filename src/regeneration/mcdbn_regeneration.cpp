@@ -23,6 +23,11 @@ MatrixF extended(const MatrixF& track, Eigen::Index lead, Eigen::Index frames) {
   return result;
 }
 
+MatrixF without_gaps(const Mcdbn& network, const MatrixF& track) {
+  if (network.fills_gaps) return complete_track(network.track, track);
+  return track.array().isNaN().select(0.0F, track);
+}
+
 /// Each sequence `copies` times in a row. @param code [sequences·frames x dimension]
 Matrix repeated(const Matrix& code, std::size_t sequences, std::size_t copies) {
   if (copies == 1) return code;
@@ -39,26 +44,40 @@ Matrix repeated(const Matrix& code, std::size_t sequences, std::size_t copies) {
 Matrix infer_pose_code(const Mcdbn& network, const Sequences& track_code,
                        const RegenerationOptions& options) {
   constexpr std::uint16_t kStream = 201;  // of random numbers; the decoder has 200
-  const bool sampled = options.temperature > 0.0 && options.mrbm_gibbs_steps > 0;
+  const std::size_t tracks = track_code.clips.size();
+  const std::size_t frames = track_code.values.rows() / tracks, first = track_code.valid_from,
+                    end = frames - network.look_ahead;
+  const bool sampled = options.drawn_share() > 0.0 && options.sampling.mrbm_gibbs_steps > 0;
+  const std::size_t chains = sampled ? options.samples : 1, rows = tracks * chains;
+  Device& device = track_code.values.device();
+  Matrix code(device, rows * frames, network.pose.code_dimension());
   MrbmChainOptions chain;
-  chain.steps = std::max<std::size_t>(network.mean_field_steps, 1);
-  if (sampled) {
-    chain.steps = options.mrbm_gibbs_steps;
-    chain.temperature = static_cast<float>(options.temperature);
+  if (!sampled) {
+    chain.steps = std::max<std::size_t>(network.mean_field_steps, 1);
+    MrbmChain inference(network.mrbm, Modality::track, end - first);
+    for (std::size_t i = 0; i < tracks; ++i)
+      inference.run(Rows(track_code.values, i * frames + first + network.look_ahead, end - first),
+                    chain, Rows(code, i * frames + first, end - first));
+    return repeated(code, tracks, options.samples);
   }
-  const std::size_t chains = sampled ? options.samples : 1, sequences = track_code.clips.size();
-  const std::size_t frames = track_code.values.rows() / sequences;
-  const std::size_t count = frames - track_code.valid_from - network.look_ahead;
-  Matrix code(track_code.values.device(), sequences * chains * frames,
-              network.pose.code_dimension());
-  MrbmChain inference(network.mrbm, Modality::track, count);
-  for (std::size_t i = 0; i < sequences * chains; ++i) {
-    const std::size_t present = i / chains * frames + track_code.valid_from + network.look_ahead;
-    chain.random = {options.seed, static_cast<std::uint32_t>(i), kStream, 0};
-    inference.run(Rows(track_code.values, present, count), chain,
-                  Rows(code, i * frames + track_code.valid_from, count));
+  chain.steps = options.sampling.mrbm_gibbs_steps;
+  chain.temperature = static_cast<float>(options.drawn_share());
+  if (options.sampling.steady) chain.sampling = Sampling::concrete;
+  // A frame of all samples at a time: a sample is the same row in every frame, and so are its
+  // draws.
+  std::vector<std::int32_t> start;
+  for (std::size_t i = 0; i < rows; ++i)
+    start.push_back(static_cast<std::int32_t>(i / chains * frames));
+  const IndexBuffer index(device, start);
+  MrbmChain inference(network.mrbm, Modality::track, rows);
+  for (std::size_t frame = first; frame < end; ++frame) {
+    const auto step = options.sampling.steady ? 0U : static_cast<std::uint32_t>(frame);
+    chain.random = {options.seed, step, kStream, 0};
+    inference.run(Rows::indexed(track_code.values, index, 0, rows,
+                                static_cast<int>(frame + network.look_ahead)),
+                  chain, Rows::strided(code, frame, rows, frames));
   }
-  return repeated(code, sequences, options.samples / chains);
+  return code;
 }
 
 }  // namespace
@@ -81,8 +100,7 @@ std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>
 
   std::vector<MatrixF> sequences;
   for (const MatrixF& track : tracks)
-    sequences.push_back(extended(complete_track(network.track, track),
-                                 static_cast<Eigen::Index>(lead),
+    sequences.push_back(extended(without_gaps(network, track), static_cast<Eigen::Index>(lead),
                                  static_cast<Eigen::Index>(frames)));
   Device& device = network.mrbm.device();
   const Sequences track_code = network.track.up_pass(Sequences::from_host(device, sequences));

@@ -13,7 +13,7 @@ namespace mcdbn {
 namespace {
 
 /// Which number of a view a draw decides; the column counts joints and axes.
-enum Draw : std::uint32_t { kSpeed, kPhase, kMirror, kCamera, kNoise, kBones, kTurns };
+enum Draw : std::uint32_t { kSpeed, kPhase, kMirror, kCamera, kNoise, kBones, kTurns, kMissing };
 
 double uniform(const RandomKey& key, Draw draw, std::uint32_t column = 0) {
   return static_cast<double>(random_uniform(key, draw, column));
@@ -98,6 +98,8 @@ AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacemen
       view.track,
       2.0 * uniform(key, kNoise) * settings.noise_px * size_px(view.track) / kUsualSize_px,
       key.seed + key.step);
+  if (uniform(key, kMissing) < settings.missing)
+    hide_limbs(view.track, view.motion.skeleton, key.seed + key.step);
   return view;
 }
 

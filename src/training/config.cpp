@@ -20,6 +20,7 @@ TrainingConfig TrainingConfig::paper() {
   config.binary = table2;
   config.mrbm.rate = 0.1;
   config.mrbm.initial_deviation = 1.0;
+  config.hidden = 300;
   config.mrbm_hidden = 150;
   config.look_ahead = 0;
   config.least_batches = 1;

@@ -134,6 +134,7 @@ Mcdbn JointNetwork::averaged() {
       result.cdbn(modality).layers.emplace_back(device(), uncentered(layer.crbm.to_host()));
   }
   swap_averages();
+  result.fills_gaps = false;
   return result;
 }
 

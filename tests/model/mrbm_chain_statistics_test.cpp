@@ -91,8 +91,8 @@ TEST_CASE("the sampled clamped chain's states are distributed as enumeration say
       for (std::size_t steps = 1; steps <= 40; ++steps, want = want * states.transition) {
         if (steps > 2 && steps < 40) continue;
         CAPTURE(steps);
-        chain.run(codes, {steps, 1.0F, false, {11, static_cast<std::uint32_t>(steps), 1, 0}},
-                  absent);
+        const RandomKey key{11, static_cast<std::uint32_t>(steps), 1, 0};
+        chain.run(codes, {.steps = steps, .temperature = 1.0F, .random = key}, absent);
         const MatrixF got = absent.to_host();
         const RowVectorD shares = hidden_shares(got, states);
         CHECK(distance(shares, want) < bound);

@@ -49,13 +49,14 @@ struct Problem {
   }
 
   MrbmChainOptions options(float temperature, bool doubled = false) const {
-    return {test.steps, temperature, doubled, {kSeed, 7, 3, 0}};
+    return {test.steps, temperature, doubled, Sampling::bernoulli, {kSeed, 7, 3, 0}};
   }
 
   Bounded want(Modality present, const MrbmChainOptions& options) const {
     const MatrixD values = codes[index_of(present)].cast<double>();
     const reference::ClampedChain chain{static_cast<int>(options.steps),
-                                        static_cast<double>(options.temperature), options.doubled};
+                                        static_cast<double>(options.temperature), options.doubled,
+                                        options.sampling == Sampling::concrete};
     return reference::bounded_clamped_chain(
         model(), static_cast<int>(index_of(present)), values, chain,
         [&](int pass, Eigen::Index units) {
@@ -108,18 +109,20 @@ double check_rows(const MatrixF& got, const Bounded& want) {
 }
 
 void check_against_reference(Device& device, const std::vector<Case>& cases, float temperature,
-                             bool doubled = false) {
+                             bool doubled = false, Sampling sampling = Sampling::bernoulli) {
   for (const Case& test : cases)
     for (const Modality present : kModalities) {
       const Problem problem(test);
       INFO(test.track, " + ", test.pose, " / ", test.hidden, ", rows ", test.rows, ", present ",
            index_of(present), ", temperature ", temperature);
-      const MrbmChainOptions options = problem.options(temperature, doubled);
+      MrbmChainOptions options = problem.options(temperature, doubled);
+      options.sampling = sampling;
       const Bounded want = problem.want(present, options);
       const auto tile = chosen_tile(device, problem);
       REQUIRE(tile);
       const MatrixF fused = run(device, problem, present, options, tile);
-      const double least = temperature == 0.0F ? 1.0 : 0.5;
+      const bool jumps = temperature != 0.0F && sampling == Sampling::bernoulli;
+      const double least = jumps ? 0.5 : 1.0;
       CHECK(check_rows(fused, want) >= least);
       const MatrixF composed = run(device, problem, present, options, std::nullopt);
       CHECK(check_rows(composed, want) >= least);
@@ -141,6 +144,14 @@ TEST_CASE("small: the sampled clamped chain is the reference's with the same dra
     check_against_reference(device, kSmallCases, 1.0F);
     check_against_reference(device, {kSmallCases[1]}, 1.0F, true);
     check_against_reference(device, kSmallCases, 0.3F);
+  });
+}
+
+TEST_CASE("small: the chain with concrete draws is the reference's, every row of it") {
+  on_every_device([](Device& device) {
+    for (const float temperature : {1.0F, 0.3F})
+      check_against_reference(device, kSmallCases, temperature, false, Sampling::concrete);
+    check_against_reference(device, {kOddCase}, 1.0F, false, Sampling::concrete);
   });
 }
 
@@ -271,7 +282,8 @@ TEST_CASE("small: the clamped chain refuses what it cannot do") {
     const Matrix track(device, 8, 4), pose(device, 8, 3);
     const IndexBuffer index(device, {0, 1, 2});
     const auto check = [&](const Rows& present, const Rows& absent, std::size_t steps = 1) {
-      CHECK_THROWS_AS(chain.run(present, {steps, 1.0F, false, {}}, absent), ShapeError);
+      CHECK_THROWS_AS(chain.run(present, {.steps = steps, .temperature = 1.0F}, absent),
+                      ShapeError);
     };
     check(Rows(pose, 0, 3), Rows(track, 0, 3));
     check(Rows(track, 0, 3), Rows(track, 3, 3));

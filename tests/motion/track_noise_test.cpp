@@ -53,6 +53,31 @@ TEST_CASE("joints go missing in the share that was asked for, the same for the s
   }
 }
 
+TEST_CASE("limbs go out of sight with all that hangs from them, at most a third of the joints") {
+  const Skeleton body = test::small_body();
+  const Track2d whole = track_of(240);
+  std::set<int> seen_hidden;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Track2d track = whole, again = whole;
+    hide_limbs(track, body, seed);
+    hide_limbs(again, body, seed);
+    CHECK(same(track, again));
+    const auto hidden = (track.confidence.array() == 0).eval();
+    CHECK((hidden == track.x_px.array().isNaN()).all());
+    CHECK((hidden || track.x_px.array() == whole.x_px.array()).all());
+    CHECK(!hidden.col(track.find(body.joints[0].name)).any());
+    for (int j = 1; j < body.joint_count(); ++j) {
+      const int column = track.find(body.joints[j].name),
+                above = track.find(body.joints[body.joints[j].parent].name);
+      if (column < 0) continue;
+      if (hidden.col(column).any()) seen_hidden.insert(j);
+      // What hangs from a hidden joint is hidden, too.
+      if (above >= 0) CHECK((!hidden.col(above) || hidden.col(column)).all());
+    }
+  }
+  CHECK(seen_hidden.size() > 4);
+}
+
 TEST_CASE("an arm is hidden from the shoulder's child down, in the middle of the clip") {
   const Skeleton body = test::small_body();
   std::set<std::vector<std::string>> arms;

@@ -1,13 +1,18 @@
 #include "reference/mrbm_chain_reference.hpp"
 
+#include <utility>
+
 #include "reference/units_reference.hpp"
 
 namespace mcdbn::reference {
 namespace {
 
-Bounded drawn(const Bounded& probability, double temperature, const PassDraws& draws, int pass) {
+Bounded drawn(const Bounded& probability, const ClampedChain& chain, const PassDraws& draws,
+              int pass) {
+  const auto [temperature, relaxed] = std::pair(chain.temperature, chain.concrete);
   if (temperature == 0.0) return probability;
-  const Bounded draw = bernoulli(probability, draws(pass, probability.value.cols()));
+  const MatrixD uniform = draws(pass, probability.value.cols());
+  const Bounded draw = relaxed ? concrete(probability, uniform) : bernoulli(probability, uniform);
   if (temperature == 1.0) return draw;
   return probability + temperature * (draw - probability);
 }
@@ -44,10 +49,10 @@ Bounded bounded_clamped_chain(const Mrbm& model, int present, const MatrixD& val
     Bounded input = drive;
     if (step > 0) input = drive + product(units, W);
     if (step == 0 && chain.double_first_pass) input = drive + said;
-    const Bounded hidden = drawn(sigmoid(input), chain.temperature, draws, 2 * step);
+    const Bounded hidden = drawn(sigmoid(input), chain, draws, 2 * step);
     probability = sigmoid(
         plus_row(product(hidden, W.transposed()), Bounded::exact(model.visible_bias[absent])));
-    units = drawn(probability, chain.temperature, draws, 2 * step + 1);
+    units = drawn(probability, chain, draws, 2 * step + 1);
   }
   return probability;
 }

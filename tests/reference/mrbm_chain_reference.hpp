@@ -11,6 +11,7 @@ struct ClampedChain {
   int steps = 1;
   double temperature = 0.0;  ///< 0 mean field, 1 sampled, between: p + temperature · (draw − p)
   bool double_first_pass = false;
+  bool concrete = false;  ///< draws are σ(logit p + logit u)
 };
 
 /// Uniform numbers for the draws of pass 0, 1, …: hidden units in even passes, the absent

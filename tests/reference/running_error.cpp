@@ -71,4 +71,16 @@ Bounded bernoulli(const Bounded& probability, const MatrixD& uniform) {
           (distance <= probability.bound.array()).cast<double>()};
 }
 
+Bounded concrete(const Bounded& probability, const MatrixD& uniform) {
+  const auto draw = [&](const MatrixD& p) {
+    const Eigen::ArrayXXd yes = p.array() * uniform.array();
+    return MatrixD(yes / (yes + (1.0 - p.array()) * (1.0 - uniform.array())));
+  };
+  const MatrixD& p = probability.value;
+  const MatrixD value = draw(p);
+  const MatrixD high = draw((p + probability.bound).cwiseMin(1.0)),
+                low = draw((p - probability.bound).cwiseMax(0.0));
+  return {value, (high - value).cwiseMax(value - low) + gamma_n(6) * value};
+}
+
 }  // namespace mcdbn::reference

@@ -32,5 +32,7 @@ Bounded sigmoid(const Bounded& x);
 Bounded sigmoid_gradient(const Bounded& y);
 /// u < p. Where u lies within p's error the device may draw either: an error of 1.
 Bounded bernoulli(const Bounded& probability, const MatrixD& uniform);
+/// σ(logit p + logit u), by the formula's value at both ends of p's error and six roundings.
+Bounded concrete(const Bounded& probability, const MatrixD& uniform);
 
 }  // namespace mcdbn::reference

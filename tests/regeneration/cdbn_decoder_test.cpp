@@ -129,7 +129,7 @@ std::size_t check_samples(const MatrixF& states, const MatrixF& code, const Crbm
       closest = closest.min(((probability - u).cwiseAbs() - bound).rowwise().minCoeff().array());
       return reference::bernoulli(probability, u);
     };
-    for (std::size_t k = 0; k < options.gibbs_steps; ++k) {
+    for (std::size_t k = 0; k < options.sampling.gibbs_steps; ++k) {
       const MatrixD v = draw(reference::sigmoid(MatrixD(bias_v.value + h * W.transpose())),
                              bound_of(bias_v.magnitude + h * W.cwiseAbs().transpose()));
       h = draw(reference::sigmoid(MatrixD(bias_h.value + v * W)),
@@ -216,7 +216,7 @@ TEST_CASE("decoder: a temperature between 0 and 1 draws as frame by frame does")
   on_every_device([](Device& device) {
     RegenerationOptions options;
     options.temperature = 0.5;
-    options.gibbs_steps = 1;
+    options.sampling.gibbs_steps = 1;
     const CrbmParameters p = parameters_of({7, 13, 1, kBinary}, 3);
     const MatrixF code = random_code(kFrames, 13);
     const MatrixF fused = decoded(device, {p}, code, 1, options);

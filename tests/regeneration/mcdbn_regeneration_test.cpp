@@ -190,12 +190,12 @@ TEST_CASE(
     const auto single = regenerate(network, {track, other});
     RegenerationOptions options;
     options.samples = 3;
-    options.gibbs_steps = 0;  // the decoder draws nothing
+    options.sampling.gibbs_steps = 0;  // the decoder draws nothing
     options.temperature = 1.0;
     const auto shared_code = regenerate(network, {track, other}, options);
     for (std::size_t i = 0; i < 6; ++i) CHECK(shared_code[i] == single[i / 3]);
 
-    options.mrbm_gibbs_steps = parameters.mean_field_steps;
+    options.sampling.mrbm_gibbs_steps = parameters.mean_field_steps;
     const auto samples = regenerate(network, {track, other}, options);
     REQUIRE(samples.size() == 6);
     for (const std::size_t i : {0U, 1U, 3U, 4U})
@@ -243,6 +243,12 @@ TEST_CASE("missing joints are filled in, and what is seen stays as it was") {
     CHECK(filled[0].allFinite());
     CHECK(filled[0].topRows(4 - 1) == whole[0].topRows(4 - 1));  // look-ahead 1
     CHECK((filled[0].row(4) - whole[0].row(4)).cwiseAbs().maxCoeff() > 0.0F);
+    // Or left at the mean, where the network has learnt that.
+    Mcdbn taught = parameters.on(device);
+    taught.fills_gaps = false;
+    MatrixF at_mean = track;
+    at_mean.block(4, 2, 3, 2).setZero();
+    CHECK(regenerate(taught, {gappy})[0] == regenerate(network, {at_mean})[0]);
   });
 }
 

@@ -14,7 +14,7 @@ AugmentationSettings nothing() {
   AugmentationSettings settings;
   settings.mirror = false;
   settings.azimuth_deg = settings.elevation_deg = settings.distance = 0;
-  settings.bone = settings.turn_deg = settings.speed = settings.noise_px = 0;
+  settings.bone = settings.turn_deg = settings.speed = settings.noise_px = settings.missing = 0;
   return settings;
 }
 
@@ -36,7 +36,9 @@ double largest_difference(const MatrixD& x, const MatrixD& y) {
 TEST_CASE("a view is the same for the same key, and another for another") {
   const Motion raw = walk();
   const auto view = [&](const RandomKey& key) {
-    return augmented_view(raw, 30.0, {}, AugmentationSettings{}, key);
+    AugmentationSettings settings;
+    settings.missing = 0;
+    return augmented_view(raw, 30.0, {}, settings, key);
   };
   RandomKey other = kKey;
   other.step = 2;
@@ -63,7 +65,7 @@ TEST_CASE("without settings a view is the clip itself, at another phase") {
 
 TEST_CASE("a track shows the motion beside it, with the noise that was asked for") {
   AugmentationSettings settings;
-  settings.noise_px = 0;
+  settings.noise_px = settings.missing = 0;
   const AugmentedView clean = augmented_view(walk(), 30.0, {}, settings, kKey);
   CHECK(largest_difference(clean.track.x_px, project_motion(clean.motion, clean.camera).x_px) <
         1e-9);
@@ -72,6 +74,20 @@ TEST_CASE("a track shows the motion beside it, with the noise that was asked for
   const MatrixD noise = noisy.track.x_px - clean.track.x_px;
   CHECK(noise.cwiseAbs().maxCoeff() > 0);
   CHECK(std::sqrt(noise.array().square().mean()) < 4.0);  // twice the mean, for a larger figure
+}
+
+TEST_CASE("limbs go out of sight in the share of the views that was asked for") {
+  const Motion raw = walk();
+  AugmentationSettings settings = nothing();
+  settings.missing = 0.5;
+  int gappy = 0;
+  constexpr int kViews = 60;
+  for (std::uint32_t i = 0; i < kViews; ++i) {
+    const AugmentedView view = augmented_view(raw, 30.0, {}, settings, {3, i, 0, 0});
+    gappy += view.track.x_px.array().isNaN().any();
+  }
+  // Five deviations of the binomial distribution.
+  CHECK(std::abs(gappy - kViews / 2) < 5 * std::sqrt(kViews / 4.0));
 }
 
 TEST_CASE("bones of both sides change alike") {

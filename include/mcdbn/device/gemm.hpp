@@ -14,7 +14,9 @@ enum class Activation {
   centered_sigmoid,           ///< sigmoid − ½
   centered_sigmoid_gradient,  ///< times ¼ − y², y after drop-out: see GemmOptions::kept_share
 };
-enum class Sampling { none, bernoulli, gaussian };
+/// Draws of units. concrete is a Bernoulli draw's smooth relaxation, σ(logit p + logit u) for a
+/// uniform u (Maddison et al. 2017).
+enum class Sampling { none, bernoulli, gaussian, concrete };
 /// Who multiplies: our register-tiled kernel, or CLBlast followed by the epilogue as a kernel;
 /// tuned: whichever Device::tuning() names for a product of that size.
 enum class GemmBackend { own, clblast, tuned };

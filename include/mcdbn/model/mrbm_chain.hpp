@@ -15,9 +15,10 @@ struct MrbmChainOptions {
   /// The first pass counts the present modality twice in place of the absent one's zeros (Sohn et
   /// al.).
   bool doubled = false;
+  Sampling sampling = Sampling::bernoulli;  ///< or concrete
   /// The draws are those of row r of the chain, with phase 2 · step for the hidden units and
   /// 2 · step + 1 for the absent ones.
-  RandomKey random;
+  RandomKey random = {};
 };
 
 /// The MRBM's chain with one modality clamped to what is present (Algorithm 5's inference): `steps`

@@ -29,6 +29,11 @@ void drop_joints(Track2d& track, double share, std::uint64_t seed);
 std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, double seconds,
                                   std::uint64_t seed);
 
+/// Lets limbs go out of sight as behind the body or a table: every two seconds or so a joint with
+/// all that hangs from it, at most a third of the joints, for 0.3 to 1.5 s. The same seed hides the
+/// same.
+void hide_limbs(Track2d& track, const Skeleton& skeleton, std::uint64_t seed);
+
 /// What may go wrong with a track.
 struct TrackDamage {
   double noise_px = 0;       ///< add_pixel_noise

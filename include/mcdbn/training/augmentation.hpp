@@ -19,6 +19,7 @@ struct AugmentationSettings {
   double turn_deg = 2.0;  ///< each joint is held otherwise, throughout the clip
   double speed = 0.05;    ///< up to so much faster or slower
   double noise_px = 0.5;  ///< mean deviation of the 2D joints, up to twice as much in a view
+  double missing = 0.3;   ///< share of the views in which limbs go out of sight (hide_limbs)
 };
 
 /// A view of a clip before scaling.

@@ -60,9 +60,9 @@ struct TrainingConfig {
   CameraPlacement camera;
 
   std::size_t order = 5;
-  std::size_t hidden = 300;
+  std::size_t hidden = 448;
   std::size_t layers = 2;
-  std::size_t mrbm_hidden = 300;
+  std::size_t mrbm_hidden = 448;
   std::size_t look_ahead = 5;  ///< the MRBM pairs the 2D code of frame t + look_ahead with 3D of t
   std::size_t batch = 100;
   /// An epoch has at least so many mini-batches: few clips are gone over several times in it, or
@@ -140,6 +140,8 @@ void visit_settings(Config& config, Visit&& visit) {
   visit("augment.speed", config.augment.speed, "relative change of speed");
   visit("augment.noise", config.augment.noise_px,
         "pixels of noise on 2D joints of a 200 px figure");
+  visit("augment.missing", config.augment.missing,
+        "share of the views in which limbs go out of sight");
   visit("camera.azimuth", config.camera.azimuth_deg, "degrees around the clip, 0 in front");
   visit("camera.elevation", config.camera.elevation_deg, "degrees above the horizon");
   visit("camera.fov", config.camera.field_of_view_deg, "vertical field of view in degrees");

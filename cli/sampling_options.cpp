@@ -1,0 +1,42 @@
+#include "sampling_options.hpp"
+
+namespace mcdbn::cli {
+
+RegenerationOptions SamplingOptions::regeneration(const Mcdbn& network, std::uint64_t seed,
+                                                  std::size_t usual_samples) const {
+  RegenerationOptions options;
+  options.samples = samples.value_or(usual_samples);
+  options.temperature = temperature.value_or(options.samples > 1 ? 1.0 : 0.0);
+  options.seed = seed;
+  options.sampling = network.sampling;
+  if (gibbs_steps || mrbm_gibbs_steps) {
+    // Algorithm 5 as it stands: drawn anew in every frame, the temperature as it was said.
+    options.sampling = {};
+    options.sampling.gibbs_steps = gibbs_steps.value_or(mrbm_gibbs_steps ? 0 : 1);
+    options.sampling.mrbm_gibbs_steps = mrbm_gibbs_steps.value_or(0);
+  }
+  return options;
+}
+
+void add_sampling_options(CLI::App& command, SamplingOptions& options, const char* samples_help) {
+  command.add_option("--samples", options.samples, samples_help)->check(CLI::Range(1, 1000));
+  command
+      .add_option(
+          "--temperature", options.temperature,
+          "0: the mean-field answer; towards 1: sampled variations (default: 1 with several "
+          "samples, else 0)")
+      ->check(CLI::Range(0.0, 10.0));
+  command
+      .add_option(
+          "--gibbs-steps", options.gibbs_steps,
+          "Draw every frame anew, with k steps in the decoder (Algorithm 5; default: as the "
+          "model was trained for)")
+      ->check(CLI::Range(0, 1000));
+  command
+      .add_option("--mrbm-gibbs-steps", options.mrbm_gibbs_steps,
+                  "Draw every frame anew, with k steps of the chain that infers each sample's 3D "
+                  "code")
+      ->check(CLI::Range(0, 1000));
+}
+
+}  // namespace mcdbn::cli

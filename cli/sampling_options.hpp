@@ -1,0 +1,22 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "mcdbn/regeneration/mcdbn_regeneration.hpp"
+
+namespace mcdbn::cli {
+
+/// How variations are drawn; what is not said is as the model was trained for.
+struct SamplingOptions {
+  std::optional<std::size_t> samples, gibbs_steps, mrbm_gibbs_steps;
+  std::optional<double> temperature;
+
+  /// @param usual_samples where none are asked for
+  RegenerationOptions regeneration(const Mcdbn& network, std::uint64_t seed,
+                                   std::size_t usual_samples = 1) const;
+};
+
+void add_sampling_options(CLI::App& command, SamplingOptions& options, const char* samples_help);
+
+}  // namespace mcdbn::cli

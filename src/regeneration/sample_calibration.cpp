@@ -1,0 +1,61 @@
+#include "mcdbn/regeneration/sample_calibration.hpp"
+
+#include <algorithm>
+
+#include "mcdbn/errors.hpp"
+#include "mcdbn/regeneration/mcdbn_regeneration.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// Joints about the root at rest, file units. @return for each clip [frames x 3·joints]
+std::vector<MatrixD> places(const Modalities& modalities, const std::vector<MatrixF>& poses) {
+  const PoseFeatures& features = modalities.pose_features;
+  std::vector<MatrixD> result;
+  for (const MatrixF& pose : poses)
+    result.push_back(joint_positions(
+        features.decode(modalities.pose_scale.invert(pose), Eigen::Matrix3d::Identity(),
+                        features.skeleton(), modalities.fps, MatrixD::Zero(pose.rows(), 3))));
+  return result;
+}
+
+/// Σ distances of joints in `many` from where `single` has them, for each of the copies in `many`.
+double distance(const std::vector<MatrixD>& many, const std::vector<MatrixD>& single) {
+  const std::size_t copies = many.size() / single.size();
+  double sum = 0;
+  for (std::size_t i = 0; i < many.size(); ++i) {
+    const MatrixD difference = many[i] - single[i / copies];
+    for (Eigen::Index joint = 0; joint < difference.cols(); joint += 3)
+      sum += difference.middleCols<3>(joint).rowwise().norm().sum();
+  }
+  return sum / static_cast<double>(copies);
+}
+
+}  // namespace
+
+SamplingRule calibrated_sampling(const Mcdbn& network, const Modalities& modalities,
+                                 const std::vector<MatrixF>& tracks,
+                                 const std::vector<MatrixF>& poses) {
+  if (tracks.size() != poses.size())
+    throw ShapeError("calibration: as many tracks as poses are wanted");
+  constexpr std::size_t kSamples = 4, kHalvings = 6;
+  RegenerationOptions options;
+  const std::vector<MatrixD> answers = places(modalities, regenerate(network, tracks, options));
+  const double error = distance(answers, places(modalities, poses));
+  options.samples = kSamples;
+  options.temperature = 1.0;
+  options.sampling = {.gibbs_steps = 0,
+                      .mrbm_gibbs_steps = std::max<std::size_t>(network.mean_field_steps, 1),
+                      .steady = true};
+  double low = 0.0, high = 2.0;
+  for (std::size_t i = 0; i < kHalvings; ++i) {
+    options.sampling.scale = 0.5 * (low + high);
+    const bool strays =
+        distance(places(modalities, regenerate(network, tracks, options)), answers) > error;
+    (strays ? high : low) = options.sampling.scale;
+  }
+  options.sampling.scale = 0.5 * (low + high);
+  return options.sampling;
+}
+
+}  // namespace mcdbn
