@@ -12,16 +12,13 @@
 #include "mcdbn/motion/clip.hpp"
 #include "mcdbn/training/divergence_guard.hpp"
 #include "mcdbn/training/window_loss.hpp"
+#include "mcdbn/training/window_sampler.hpp"
 
 namespace mcdbn {
 namespace {
 
-enum RandomStream : std::uint16_t {
-  kViewStream = 192,
-  kWindowStream,
-  kDropoutStream,
-  kStartStream
-};
+/// 193 is WindowSampler's.
+enum RandomStream : std::uint16_t { kViewStream = 192, kDropoutStream = 194, kStartStream };
 
 /// Mini-batches between two reports.
 constexpr std::size_t kReportEvery = 25;
@@ -44,70 +41,6 @@ std::size_t longest_history(const Mcdbn& network) {
   return std::max(network.track.total_order(), network.pose.total_order());
 }
 
-/// Draws windows and names the rows of their frames. Beyond a clip's ends its first and last frame
-/// stand, as they do where regeneration starts without history.
-class WindowSampler {
- public:
-  WindowSampler(const TrainingSet& views, const JointWindows& windows, std::size_t look_ahead,
-                std::uint64_t seed)
-      : windows_(windows), look_ahead_(look_ahead), seed_(seed) {
-    std::size_t first = 0;
-    for (const MatrixF& pose : views.poses) {
-      const auto frames = static_cast<std::size_t>(pose.rows());
-      clips_.push_back({first, frames});
-      first += frames;
-      ends_.push_back(first);
-    }
-  }
-
-  /// Windows of mini-batch `step`: rows of the 3D frames, then those of the 2D frames look_ahead
-  /// later.
-  std::vector<std::int32_t> rows(std::size_t step) const {
-    std::vector<std::int32_t> rows(2 * windows_.rows());
-    for (std::size_t i = 0; i < windows_.count; ++i) {
-      const RandomKey key{seed_, static_cast<std::uint32_t>(step), kWindowStream, 0};
-      const auto row = static_cast<std::uint32_t>(i);
-      const Sequences::Clip& clip = draw_clip(random_uniform(key, row, 0));
-      const auto judged = windows_.frames - windows_.lead;
-      const double starts = clip.frames > judged ? static_cast<double>(clip.frames - judged) : 0.0;
-      // Now and then the clip's very first frame: there is no history, and every clip has it.
-      constexpr float kFromStart = 0.1F;
-      const double where = random_uniform(key, row, 1) < kFromStart
-                               ? 0.0
-                               : std::floor((starts + 1.0) * random_uniform(key, row, 2));
-      const auto lead = static_cast<std::int64_t>(windows_.lead);
-      for (std::size_t t = 0; t < windows_.frames; ++t) {
-        const std::int64_t frame =
-            static_cast<std::int64_t>(where) + static_cast<std::int64_t>(t) - lead;
-        const std::size_t at = i * windows_.frames + t;
-        rows[at] = row_of(clip, frame);
-        rows[windows_.rows() + at] = row_of(clip, frame + static_cast<std::int64_t>(look_ahead_));
-      }
-    }
-    return rows;
-  }
-
- private:
-  const Sequences::Clip& draw_clip(float uniform) const {
-    const auto frame =
-        static_cast<std::size_t>(static_cast<double>(uniform) * static_cast<double>(ends_.back()));
-    const auto found = std::upper_bound(ends_.begin(), ends_.end(), frame);
-    return clips_[std::min<std::size_t>(static_cast<std::size_t>(found - ends_.begin()),
-                                        clips_.size() - 1)];
-  }
-  static std::int32_t row_of(const Sequences::Clip& clip, std::int64_t frame) {
-    const auto last = static_cast<std::int64_t>(clip.frames) - 1;
-    return static_cast<std::int32_t>(static_cast<std::int64_t>(clip.first) +
-                                     std::clamp<std::int64_t>(frame, 0, last));
-  }
-
-  JointWindows windows_;
-  std::size_t look_ahead_;
-  std::uint64_t seed_;
-  std::vector<Sequences::Clip> clips_;
-  std::vector<std::size_t> ends_;
-};
-
 /// Both directions, their losses, and what a mini-batch of them needs.
 class JointTrainer {
  public:
@@ -119,7 +52,7 @@ class JointTrainer {
         network_(device, start, settings_.mean_field_steps),
         tracks_(Sequences::from_host(device, views.tracks)),
         poses_(Sequences::from_host(device, views.poses)),
-        sampler_(views, windows, config.look_ahead, config.seed),
+        sampler_(views, windows, config),
         forward_(network_, Modality::track, windows),
         reverse_(network_, Modality::pose, windows),
         pose_loss_(device, views.modalities, windows,
@@ -199,11 +132,14 @@ TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files
                                  const Modalities& modalities, const TrainingConfig& config) {
   const ClipOptions options{.fps = 0, .keep_first_frame = config.keep_first_frame};
   const std::size_t count = views_that_fit(files, options, config);
-  TrainingSet views{modalities, {}, {}, {}};
+  TrainingSet views{modalities, {}, {}, {}, {}};
+  PeopleCount people;
   RandomKey key{config.seed, 0, kViewStream, 0};
   for (const auto& file : files) {
     const Motion raw = load_clip(file, options);
+    const std::size_t person = people.number_of(raw.skeleton);
     for (std::size_t i = 0; i < count; ++i, ++key.step) {
+      views.people.push_back(person);
       const AugmentedView view =
           augmented_view(raw, config.fps, config.camera, config.augment, key);
       MatrixF track = modalities.encode_track(view.track);

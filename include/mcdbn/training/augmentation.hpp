@@ -15,7 +15,7 @@ struct AugmentationSettings {
   bool mirror = true;      ///< every other view, where the skeleton has sides
   double azimuth_deg = 0.0, elevation_deg = 0.0;  ///< the camera turns by up to so much
   double distance = 0.0;                          ///< relative deviation of the camera's distance
-  double bone = 0.04;     ///< relative deviation of each bone's length, both sides alike
+  double bone = 0.05;     ///< relative deviation of each bone's length, both sides alike
   double turn_deg = 2.0;  ///< each joint is held otherwise, throughout the clip
   double speed = 0.05;    ///< up to so much faster or slower
   double noise_px = 0.5;  ///< mean deviation of the 2D joints, up to twice as much in a view

@@ -37,7 +37,10 @@ struct JointSettings {
   /// Start from the greedy network. From random weights the error on held-out CMU walks is 5 mm
   /// smaller: greedy weights fit the people of the training clips too well already.
   bool from_greedy = false;
-  std::size_t windows = 48;        ///< in a mini-batch
+  std::size_t windows = 48;  ///< in a mini-batch
+  /// Windows are drawn from people as their frames to this power: 1 draws every frame alike, 0
+  /// every person, however many clips there are of them.
+  double people_power = 0.5;
   std::size_t window_frames = 20;  ///< judged frames of a window
   std::size_t settle_frames = 4;   ///< frames before them that run freely too
   double rate = 2e-3;              ///< Adam's; falls along a cosine to a fiftieth
@@ -120,6 +123,8 @@ void visit_settings(Config& config, Visit&& visit) {
   visit("joint.from-greedy", config.joint.from_greedy,
         "start from the greedy network; else the greedy stages are left out");
   visit("joint.windows", config.joint.windows, "windows in a mini-batch");
+  visit("joint.people-power", config.joint.people_power,
+        "1: every frame counts alike; 0: every person, told by their bones");
   visit("joint.window-frames", config.joint.window_frames, "judged frames of a window");
   visit("joint.settle-frames", config.joint.settle_frames, "free-running frames before them");
   visit("joint.rate", config.joint.rate, "Adam's rate");

@@ -15,7 +15,19 @@ struct TrainingSet {
   std::vector<MatrixF> tracks;  ///< 2D
   std::vector<MatrixF> poses;   ///< 3D
   std::vector<TrainingClip> clips;
+  /// Who is seen in each of `poses`, counted from 0; empty where nobody asked.
+  std::vector<std::size_t> people;
   std::size_t frames() const;
+};
+
+/// Numbers people in the order in which they come, told by the bones of their skeletons: files of
+/// one capture session share them.
+class PeopleCount {
+ public:
+  std::size_t number_of(const Skeleton& skeleton);
+
+ private:
+  std::vector<std::vector<double>> bones_;  ///< of each person so far
 };
 
 /// Reads BVH files, resamples each on `phases` shifted grids, projects it through the camera and
