@@ -29,10 +29,6 @@ void check_track(const MatrixF& track, Eigen::Index fitted_dimension) {
                                  track.cols(), fitted_dimension));
 }
 
-MatrixF without_nan(const MatrixF& track) {
-  return track.array().isNaN().select(0.0F, track);
-}
-
 MatrixF stacked(const std::vector<MatrixF>& clips) {
   Eigen::Index rows = 0;
   for (const MatrixF& clip : clips) rows += clip.rows();

@@ -13,9 +13,6 @@ void check_clip_pairs(const std::vector<MatrixF>& tracks, const std::vector<Matr
 /// @throws ShapeError unless the baseline was fitted, to tracks of that many columns
 void check_track(const MatrixF& track, Eigen::Index fitted_dimension);
 
-/// A joint that was not seen is taken as 0, the training mean of a standardized feature.
-MatrixF without_nan(const MatrixF& track);
-
 /// All clips below one another.
 MatrixF stacked(const std::vector<MatrixF>& clips);
 

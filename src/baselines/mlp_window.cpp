@@ -7,6 +7,7 @@
 #include "mcdbn/device/gemm.hpp"
 #include "mcdbn/device/units.hpp"
 #include "mcdbn/device/update.hpp"
+#include "mcdbn/motion/standardizer.hpp"
 #include "mcdbn/training/minibatch.hpp"
 
 namespace mcdbn {
@@ -18,7 +19,7 @@ constexpr std::uint16_t kStream = 0x4d4c;
 /// The clip with its ends repeated, so that every frame is the middle of a window.
 MatrixF extended(const MatrixF& track) {
   constexpr auto reach = static_cast<Eigen::Index>(MlpWindow::kReach);
-  const MatrixF seen = without_nan(track);
+  const MatrixF seen = at_mean_where_unknown(track);
   MatrixF rows(track.rows() + 2 * reach, track.cols());
   rows.topRows(reach) = seen.row(0).replicate(reach, 1);
   rows.middleRows(reach, track.rows()) = seen;

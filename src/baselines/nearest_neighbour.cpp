@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "clip_pairs.hpp"
+#include "mcdbn/motion/standardizer.hpp"
 
 namespace mcdbn {
 namespace {
@@ -40,14 +41,14 @@ void update(Match& match, const Eigen::Ref<const RowVectorF>& query,
 
 void NearestNeighbour::fit(const std::vector<MatrixF>& tracks, const std::vector<MatrixF>& poses) {
   check_clip_pairs(tracks, poses);
-  tracks_ = without_nan(stacked(tracks));
+  tracks_ = at_mean_where_unknown(stacked(tracks));
   poses_ = stacked(poses);
   half_squares_ = 0.5F * tracks_.rowwise().squaredNorm();
 }
 
 std::vector<Eigen::Index> NearestNeighbour::nearest_rows(const MatrixF& track) const {
   check_track(track, tracks_.cols());
-  const MatrixF queries = without_nan(track);
+  const MatrixF queries = at_mean_where_unknown(track);
   // Bounds the error of ½‖y‖² − x·y in single precision, once for each of the two compared.
   const float longest = std::sqrt(2.0F * half_squares_.maxCoeff());
   const float unit = static_cast<float>(queries.cols() + 2) * std::numeric_limits<float>::epsilon();

@@ -9,6 +9,7 @@
 
 #include "clip_pairs.hpp"
 #include "mcdbn/errors.hpp"
+#include "mcdbn/motion/standardizer.hpp"
 
 namespace mcdbn {
 namespace {
@@ -82,7 +83,7 @@ std::vector<Moments> folds(const std::vector<MatrixF>& tracks, const std::vector
   std::vector<Moments> result(kFolds, Moments(inputs, poses[0].cols()));
   const std::size_t clips = tracks.size();
   for (std::size_t clip = 0; clip < clips; ++clip) {
-    const MatrixF track = without_nan(tracks[clip]);
+    const MatrixF track = at_mean_where_unknown(tracks[clip]);
     if (clips >= kFolds) {
       result[clip * kFolds / clips].add(track, poses[clip], 0, track.rows());
       continue;
@@ -121,7 +122,7 @@ void RidgeWindow::fit(const std::vector<MatrixF>& tracks, const std::vector<Matr
 
 MatrixF RidgeWindow::predict(const MatrixF& track) const {
   check_track(track, coefficients_.size() ? (coefficients_.rows() - 1) / kFrames : 0);
-  const MatrixF input = without_nan(track);
+  const MatrixF input = at_mean_where_unknown(track);
   MatrixF output(input.rows(), coefficients_.cols());
   for (Eigen::Index first = 0; first < input.rows(); first += kBlock) {
     const Eigen::Index count = std::min(kBlock, input.rows() - first);

@@ -122,4 +122,8 @@ Standardizer Standardizer::from_json(const nlohmann::json& json) {
   return result;
 }
 
+MatrixF at_mean_where_unknown(const MatrixF& standardized) {
+  return standardized.array().isNaN().select(0.0F, standardized);
+}
+
 }  // namespace mcdbn

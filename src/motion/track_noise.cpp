@@ -51,6 +51,17 @@ void add_with_all_below(const Branches& branches, int joint, std::vector<int>& j
   for (const int child : branches.children[joint]) add_with_all_below(branches, child, joints);
 }
 
+/// The track's columns of the joint and all below it.
+std::vector<int> columns_from(const Track2d& track, const Skeleton& skeleton,
+                              const Branches& branches, int joint) {
+  std::vector<int> joints, columns;
+  add_with_all_below(branches, joint, joints);
+  for (const int below : joints)
+    if (const int column = track.find(skeleton.joints[below].name); column >= 0)
+      columns.push_back(column);
+  return columns;
+}
+
 }  // namespace
 
 void add_pixel_noise(Track2d& track, double deviation_px, std::uint64_t seed) {
@@ -92,17 +103,14 @@ std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, doub
   std::stable_sort(limbs.begin(), limbs.end(),
                    [&](int a, int b) { return branches.reach[a] > branches.reach[b]; });
   const int shoulder = limbs[std::mt19937_64(seed)() % 2];
-  std::vector<int> hidden;
-  for (const int child : branches.children[shoulder]) add_with_all_below(branches, child, hidden);
   const auto frames = std::min<Eigen::Index>(track.frames(), std::lround(seconds * track.fps));
   const Eigen::Index first = (track.frames() - frames) / 2;
   std::vector<std::string> names;
-  for (const int joint : hidden) {
-    const int column = track.find(skeleton.joints[joint].name);
-    if (column < 0) continue;
-    names.push_back(skeleton.joints[joint].name);
-    for (Eigen::Index frame = first; frame < first + frames; ++frame) hide(track, frame, column);
-  }
+  for (const int child : branches.children[shoulder])
+    for (const int column : columns_from(track, skeleton, branches, child)) {
+      names.push_back(track.joint_names[static_cast<std::size_t>(column)]);
+      for (Eigen::Index frame = first; frame < first + frames; ++frame) hide(track, frame, column);
+    }
   return names;
 }
 
@@ -111,11 +119,7 @@ void hide_limbs(Track2d& track, const Skeleton& skeleton, std::uint64_t seed) {
   const Branches branches(skeleton);
   std::vector<std::vector<int>> limbs;  // as columns of the track
   for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
-    std::vector<int> joints, columns;
-    add_with_all_below(branches, joint, joints);
-    for (const int below : joints)
-      if (const int column = track.find(skeleton.joints[below].name); column >= 0)
-        columns.push_back(column);
+    std::vector<int> columns = columns_from(track, skeleton, branches, joint);
     if (!columns.empty() && 3 * static_cast<int>(columns.size()) <= track.joint_count())
       limbs.push_back(std::move(columns));
   }

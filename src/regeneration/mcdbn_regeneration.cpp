@@ -4,6 +4,7 @@
 
 #include "mcdbn/errors.hpp"
 #include "mcdbn/model/mrbm_chain.hpp"
+#include "mcdbn/motion/standardizer.hpp"
 #include "mcdbn/regeneration/cdbn_decoder.hpp"
 #include "mcdbn/regeneration/track_completion.hpp"
 
@@ -21,11 +22,6 @@ MatrixF extended(const MatrixF& track, Eigen::Index lead, Eigen::Index frames) {
     result.row(lead + last + i) =
         2.0F * track.row(last) - track.row(std::max<Eigen::Index>(last - i, 0));
   return result;
-}
-
-MatrixF without_gaps(const Mcdbn& network, const MatrixF& track) {
-  if (network.fills_gaps) return complete_track(network.track, track);
-  return track.array().isNaN().select(0.0F, track);
 }
 
 /// Each sequence `copies` times in a row. @param code [sequences·frames x dimension]
@@ -51,15 +47,15 @@ Matrix infer_pose_code(const Mcdbn& network, const Sequences& track_code,
   const std::size_t chains = sampled ? options.samples : 1, rows = tracks * chains;
   Device& device = track_code.values.device();
   Matrix code(device, rows * frames, network.pose.code_dimension());
-  MrbmChainOptions chain;
   if (!sampled) {
-    chain.steps = std::max<std::size_t>(network.mean_field_steps, 1);
-    MrbmChain inference(network.mrbm, Modality::track, end - first);
+    const std::size_t count = end - first;
     for (std::size_t i = 0; i < tracks; ++i)
-      inference.run(Rows(track_code.values, i * frames + first + network.look_ahead, end - first),
-                    chain, Rows(code, i * frames + first, end - first));
+      network.mrbm.infer(Modality::track,
+                         Rows(track_code.values, i * frames + first + network.look_ahead, count),
+                         network.mean_field_steps, Rows(code, i * frames + first, count));
     return repeated(code, tracks, options.samples);
   }
+  MrbmChainOptions chain;
   chain.steps = options.sampling.mrbm_gibbs_steps;
   chain.temperature = static_cast<float>(options.drawn_share());
   if (options.sampling.steady) chain.sampling = Sampling::concrete;
@@ -100,8 +96,9 @@ std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>
 
   std::vector<MatrixF> sequences;
   for (const MatrixF& track : tracks)
-    sequences.push_back(extended(without_gaps(network, track), static_cast<Eigen::Index>(lead),
-                                 static_cast<Eigen::Index>(frames)));
+    sequences.push_back(extended(
+        network.fills_gaps ? complete_track(network.track, track) : at_mean_where_unknown(track),
+        static_cast<Eigen::Index>(lead), static_cast<Eigen::Index>(frames)));
   Device& device = network.mrbm.device();
   const Sequences track_code = network.track.up_pass(Sequences::from_host(device, sequences));
   const std::size_t decoded = sequences.size() * options.samples;

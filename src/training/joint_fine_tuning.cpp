@@ -10,7 +10,9 @@
 #include "mcdbn/device/units.hpp"
 #include "mcdbn/errors.hpp"
 #include "mcdbn/motion/clip.hpp"
+#include "mcdbn/motion/standardizer.hpp"
 #include "mcdbn/training/divergence_guard.hpp"
+#include "mcdbn/training/people_count.hpp"
 #include "mcdbn/training/window_loss.hpp"
 #include "mcdbn/training/window_sampler.hpp"
 
@@ -142,9 +144,8 @@ TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files
       views.people.push_back(person);
       const AugmentedView view =
           augmented_view(raw, config.fps, config.camera, config.augment, key);
-      MatrixF track = modalities.encode_track(view.track);
-      track = track.array().isNaN().select(0.0F, track);  // as Mcdbn::fills_gaps says
-      views.tracks.push_back(std::move(track));
+      // Limbs out of sight: as Mcdbn::fills_gaps says.
+      views.tracks.push_back(at_mean_where_unknown(modalities.encode_track(view.track)));
       views.poses.push_back(modalities.encode_pose(view.motion, view.camera.camera_from_world));
     }
   }

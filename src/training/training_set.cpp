@@ -41,19 +41,6 @@ std::size_t TrainingSet::frames() const {
   return sum;
 }
 
-std::size_t PeopleCount::number_of(const Skeleton& skeleton) {
-  std::vector<double> bones;
-  for (const Joint& joint : skeleton.joints) bones.push_back(joint.offset.norm());
-  const auto same = [&](const std::vector<double>& other) {
-    return std::equal(bones.begin(), bones.end(), other.begin(), other.end(),
-                      [](double x, double y) { return std::abs(x - y) <= 1e-3 * std::abs(x); });
-  };
-  const auto found = std::find_if(bones_.begin(), bones_.end(), same);
-  const auto number = static_cast<std::size_t>(found - bones_.begin());
-  if (found == bones_.end()) bones_.push_back(std::move(bones));
-  return number;
-}
-
 TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
                               const TrainingConfig& config, std::vector<std::string>* notices) {
   if (files.empty())

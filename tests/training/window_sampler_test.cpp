@@ -2,8 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <set>
 
+#include "mcdbn/training/people_count.hpp"
 #include "training/small_figure.hpp"
 
 using namespace mcdbn;

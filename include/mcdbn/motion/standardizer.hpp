@@ -35,4 +35,7 @@ class Standardizer {
   std::vector<int> kept_;        ///< columns that vary
 };
 
+/// Standardized values with 0, the training mean, where nothing is known (NaN).
+MatrixF at_mean_where_unknown(const MatrixF& standardized);
+
 }  // namespace mcdbn

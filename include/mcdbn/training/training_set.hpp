@@ -20,16 +20,6 @@ struct TrainingSet {
   std::size_t frames() const;
 };
 
-/// Numbers people in the order in which they come, told by the bones of their skeletons: files of
-/// one capture session share them.
-class PeopleCount {
- public:
-  std::size_t number_of(const Skeleton& skeleton);
-
- private:
-  std::vector<std::vector<double>> bones_;  ///< of each person so far
-};
-
 /// Reads BVH files, resamples each on `phases` shifted grids, projects it through the camera and
 /// learns the features and their scaling. @throws InputError
 TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
