@@ -11,7 +11,7 @@
 #include "mcdbn/evaluation/report_page.hpp"
 #include "mcdbn/motion/clip.hpp"
 #include "mcdbn/regeneration/test_run.hpp"
-#include "mcdbn/training/joint_fine_tuning.hpp"
+#include "mcdbn/training/augmented_views.hpp"
 #include "progress.hpp"
 #include "sampling_options.hpp"
 #include "training_options.hpp"

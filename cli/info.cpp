@@ -10,6 +10,7 @@
 #include "clip_options.hpp"
 #include "commands.hpp"
 #include "mcdbn/errors.hpp"
+#include "mcdbn/model/safetensors.hpp"
 #include "mcdbn/motion/keypoints.hpp"
 
 namespace mcdbn::cli {
@@ -43,6 +44,28 @@ json describe_track(const fs::path& path) {
           {"missing_joint_frames", (track.x_px.array() != track.x_px.array()).count()}};
 }
 
+json describe_model(const fs::path& path) {
+  const Safetensors file = read_safetensors(path);
+  const auto text = file.metadata.find("mcdbn");
+  if (text == file.metadata.end())
+    throw InputError(fmt::format("{}: not a model of mcdbn-cl", path.string()));
+  const json about = json::parse(text->second);
+  const json& config = about.at("config");
+  std::size_t numbers = 0;
+  for (const auto& [name, tensor] : file.tensors) numbers += tensor.values.size();
+  json clips = json::array();
+  for (const json& clip : about.at("training_clips"))
+    clips.push_back(fs::path(clip.at("path").get<std::string>()).filename().string());
+  json description = {
+      {"kind", "trained model"}, {"training_clips", clips}, {"parameters", numbers}};
+  for (const char* name : {"fps", "order", "layers", "hidden", "mrbm-hidden", "camera.azimuth",
+                           "camera.elevation", "seed"})
+    if (config.contains(name)) description[name] = config.at(name);
+  for (const char* name : {"look_ahead", "mean_field_steps", "early_stopping"})
+    if (about.contains(name)) description[name] = about.at(name);
+  return description;
+}
+
 json describe(const fs::path& path) {
   if (!fs::exists(path)) throw InputError(fmt::format("{}: no such file", path.string()));
   std::string extension = path.extension().string();
@@ -50,12 +73,14 @@ json describe(const fs::path& path) {
                          [](unsigned char letter) { return std::tolower(letter); });
   if (extension == ".bvh") return describe_clip(path);
   if (extension == ".csv") return describe_track(path);
-  throw InputError(fmt::format("{}: unknown kind of file; give a .bvh or a .csv", path.string()));
+  if (extension == ".safetensors") return describe_model(path);
+  throw InputError(fmt::format("{}: unknown kind of file; give a .bvh, a .csv or a .safetensors",
+                               path.string()));
 }
 
 void print_for_people(const json& description) {
   for (const auto& [key, value] : description.items()) {
-    if (key == "joints") {
+    if (key == "joints" || key == "training_clips") {
       std::cout << fmt::format("{:<22}{}\n", key, value.size());
       for (const auto& name : value) std::cout << "  " << name.get<std::string>() << '\n';
     } else if (value.is_number_float()) {
@@ -71,8 +96,9 @@ void print_for_people(const json& description) {
 
 void add_info_command(CLI::App& app, CommandContext& context) {
   auto path = std::make_shared<fs::path>();
-  CLI::App* command = app.add_subcommand("info", "Describes a BVH clip or a 2D track");
-  command->add_option("file", *path, "BVH or track CSV")->required()->type_name("FILE");
+  CLI::App* command =
+      app.add_subcommand("info", "Describes a BVH clip, a 2D track or a trained model");
+  command->add_option("file", *path, "BVH, track CSV or model")->required()->type_name("FILE");
   add_json_option(*command, context);
   command->footer("Example:\n  mcdbn-cl info walk.bvh");
   command->callback([&context, path] {

@@ -27,6 +27,7 @@ class MetricsLog {
                                    {"epoch", report.epoch},
                                    {"loss", report.loss},
                                    {"windows_per_s", report.windows_per_s}};
+    if (report.held_out_loss) line["held_out_loss"] = *report.held_out_loss;
     if (report.health) append(line, *report.health);
     stream_ << line.dump() << '\n' << std::flush;
     if (!stream_) throw InputError(fmt::format("{}: cannot be written", path_.string()));
@@ -76,11 +77,15 @@ TrainedRun train_to_folder(const CommandContext& context, Device& device,
                               report.epoch, report.epochs, report.loss, report.windows_per_s),
                   report.overall_progress);
   };
-  Mcdbn network = train_network(device, data, clips, config, observer);
+  auto [network, stopped] = train_network(device, data, clips, config, observer);
+  if (stopped)
+    spdlog::info("{} kept out to stop early: stopped after {} of {} mini-batches",
+                 fmt::join(stopped->held_out, ", "), stopped->steps, config.joint.steps);
   if (config.joint.steps > 0)
     network.sampling = calibrated_sampling(network, data.modalities, data.tracks, data.poses);
-  TrainedRun trained{{std::move(network), data.modalities, data.clips, settings_json(config)},
-                     progress.elapsed_s()};
+  TrainedRun trained{
+      {std::move(network), data.modalities, data.clips, settings_json(config), std::move(stopped)},
+      progress.elapsed_s()};
   const std::filesystem::path file = run / "model.safetensors";
   save_model(file, trained.model);
   spdlog::info("{}: trained in {:.1f} s", file.string(), trained.training_s);

@@ -3,11 +3,13 @@
 //   weights.x · mean |feature − target|²                     over all features
 //   weights.y · mean |place − target's place|²               of all bones' ends, through the
 //   weights.z · mean |step − target's step|²                 kinematics; a step is from frame to frame
+//   weights.w · mean |foot's step − target's|²               of feet, the root's travel included, and
+//                                                            only where the target's foot is planted
 //
 // A window is `frames` rows, of which those from `lead` on count. Rows of `prediction`, `target` and
 // `error` are LD wide; `differences` holds 3 · BONES floats a row, place − target's place in metres.
-// Compile-time: DIMENSION, LD, BONES.
-//   bones      int4 each: parent (−1: the root), block, unused
+// Compile-time: DIMENSION, LD, BONES; FEET, VELOCITY (the first of the root velocity's raw features).
+//   bones      int4 each: parent (−1: the root), block, whether a foot is at its end, unused
 //   levers     float4 each, metres
 //   columns    int4 for each block pair: see column_of
 //   scale      float2 for each raw feature: mean, deviation
@@ -21,6 +23,12 @@
 #endif
 #ifndef BONES
 #define BONES 20
+#endif
+#ifndef FEET
+#define FEET 4
+#endif
+#ifndef VELOCITY
+#define VELOCITY 85
 #endif
 
 #define INLINE static inline __attribute__((always_inline))
@@ -104,10 +112,43 @@ INLINE float3 place_error(global const float* differences, int ld, int bone, int
   return error;
 }
 
-// losses: a row each, three numbers: the row's share of the three means (unweighted).
+// A bone's end relative to the root, in metres.
+INLINE float3 place_of(global const float* row, int bone, global const int4* bones,
+                       global const float4* levers, global const int* columns,
+                       global const float2* scale) {
+  float3 place = 0.0f;
+  for (int i = bone; i >= 0; i = bones[i].x)
+    place += turned(turn_of(row, bones[i].y, columns, scale), levers[i]);
+  return place;
+}
+
+// How far the root goes in one frame, in metres.
+INLINE float3 root_step(global const float* row, float frame_s, global const int* columns,
+                        global const float2* scale) {
+  return frame_s * (float3)(raw_feature(row, VELOCITY, columns, scale),
+                            raw_feature(row, VELOCITY + 1, columns, scale),
+                            raw_feature(row, VELOCITY + 2, columns, scale));
+}
+
+// What a foot's step from the frame before differs by where the target's foot is planted; else 0.
+INLINE float3 planted_difference(global const float* prediction, global const float* target,
+                                 global const float* differences, int ld, int bone, float frame_s,
+                                 float planted_m, global const int4* bones,
+                                 global const float4* levers, global const int* columns,
+                                 global const float2* scale) {
+  const float3 root = root_step(target, frame_s, columns, scale),
+               step = root + place_of(target, bone, bones, levers, columns, scale) -
+                      place_of(target - LD, bone, bones, levers, columns, scale);
+  if (dot(step, step) > planted_m * planted_m) return 0.0f;
+  return root_step(prediction, frame_s, columns, scale) - root + vload3(bone, differences) -
+         vload3(bone, differences - ld);
+}
+
+// losses: a row each, four numbers: the row's share of the four means (unweighted).
 kernel void pose_errors(global const float* prediction, global const float* target,
                         global const float* differences, int difference_ld, int count, int frames,
-                        int lead, float4 weights, global const int4* bones,
+                        int lead, float4 weights, float frame_s, float planted_m,
+                        global const int4* bones,
                         global const float4* levers, global const int* columns,
                         global const float2* scale, global float* error, global float* losses,
                         int losses_ld) {
@@ -119,9 +160,10 @@ kernel void pose_errors(global const float* prediction, global const float* targ
   losses += row * losses_ld;
   const float rows = (float)(count * (frames - lead));
   const float of_features = 1.0f / (rows * DIMENSION), of_places = 1.0f / (rows * 3 * BONES),
-              of_steps = 1.0f / ((float)(count * (frames - lead - 1)) * 3 * BONES);
+              of_steps = 1.0f / ((float)(count * (frames - lead - 1)) * 3 * BONES),
+              of_contacts = 1.0f / ((float)(count * (frames - lead - 1)) * 3 * FEET);
   const bool counts = frame >= lead;
-  float features = 0.0f, places = 0.0f, steps = 0.0f;
+  float features = 0.0f, places = 0.0f, steps = 0.0f, contacts = 0.0f;
   for (int i = 0; i < LD; ++i) {
     const float difference = counts ? prediction[i] - target[i] : 0.0f;
     features += difference * difference;
@@ -140,6 +182,28 @@ kernel void pose_errors(global const float* prediction, global const float* targ
       carried[i] = place_error(differences, difference_ld, i, frame, frames, lead,
                                2.0f * weights.y * of_places, 2.0f * weights.z * of_steps);
     }
+    float3 root_error = 0.0f;
+    for (int i = 0; i < BONES; ++i) {
+      if (!bones[i].z) continue;
+      if (frame > lead) {
+        const float3 here =
+            planted_difference(prediction, target, differences, difference_ld, i, frame_s,
+                               planted_m, bones, levers, columns, scale);
+        contacts += dot(here, here);
+        carried[i] += 2.0f * weights.w * of_contacts * here;
+        root_error += 2.0f * weights.w * of_contacts * frame_s * here;
+      }
+      if (frame + 1 < frames)
+        carried[i] -= 2.0f * weights.w * of_contacts *
+                      planted_difference(prediction + LD, target + LD, differences + difference_ld,
+                                         difference_ld, i, frame_s, planted_m, bones, levers,
+                                         columns, scale);
+    }
+    const float of_root[3] = {root_error.x, root_error.y, root_error.z};
+    for (int k = 0; k < 3; ++k) {
+      const int column = columns[VELOCITY + k];
+      if (column >= 0) error[column] += of_root[k] * scale[VELOCITY + k].y;
+    }
     for (int i = BONES - 1; i >= 0; --i) {
       const int parent = bones[i].x, block = bones[i].y;
       if (parent >= 0) carried[parent] += carried[i];
@@ -152,6 +216,7 @@ kernel void pose_errors(global const float* prediction, global const float* targ
   losses[0] = features * of_features;
   losses[1] = places * of_places;
   losses[2] = steps * of_steps;
+  losses[3] = contacts * of_contacts;
 }
 
 // The same for a modality without kinematics: weights.x · mean |feature − target|².

@@ -3,11 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "mcdbn/errors.hpp"
 
@@ -16,12 +13,6 @@ namespace {
 
 constexpr double kPlantedWithin_mm = 40.0;
 constexpr double kPlantedBelow_mm_s = 400.0;
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return text;
-}
 
 void check(const MatrixD& truth, const MatrixD& regenerated, const std::vector<int>& feet) {
   if (truth.rows() != regenerated.rows() || truth.cols() != regenerated.cols())
@@ -33,18 +24,6 @@ void check(const MatrixD& truth, const MatrixD& regenerated, const std::vector<i
 }
 
 }  // namespace
-
-std::vector<int> foot_joints(const Skeleton& skeleton) {
-  constexpr std::array kParts = {"foot", "toe", "ankle"};
-  std::vector<int> feet;
-  for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
-    const std::string name = lower_case(skeleton.joints[static_cast<std::size_t>(joint)].name);
-    if (std::any_of(kParts.begin(), kParts.end(),
-                    [&](const char* part) { return name.find(part) != std::string::npos; }))
-      feet.push_back(joint);
-  }
-  return feet;
-}
 
 FootSlide foot_slide(const MatrixD& truth, const MatrixD& regenerated, const std::vector<int>& feet,
                      double fps) {

@@ -160,6 +160,11 @@ Model model_from(Device& device, const Safetensors& file, const std::string& pat
               about.at("config")};
   for (const json& clip : about.at("training_clips"))
     model.training_clips.push_back({clip.at("path"), clip.at("fingerprint")});
+  if (about.contains("early_stopping")) {
+    const json& stopped = about.at("early_stopping");
+    model.early_stopping =
+        EarlyStopping{stopped.at("held_out"), stopped.at("steps"), stopped.at("loss")};
+  }
   return model;
 }
 
@@ -187,6 +192,9 @@ void save_model(const std::filesystem::path& path, const Model& model) {
   about["training_clips"] = json::array();
   for (const TrainingClip& clip : model.training_clips)
     about["training_clips"].push_back({{"path", clip.path}, {"fingerprint", clip.fingerprint}});
+  if (const auto& stopped = model.early_stopping)
+    about["early_stopping"] = {
+        {"held_out", stopped->held_out}, {"steps", stopped->steps}, {"loss", stopped->loss}};
   file.metadata["mcdbn"] = about.dump();
   write_safetensors(path, file);
 }

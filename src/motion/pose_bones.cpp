@@ -40,7 +40,7 @@ std::vector<PoseBone> pose_bones(const PoseFeatures& features) {
     turned[j].bone = parent.bone;
     if (lever.norm() < kShortest) continue;
     turned[j].bone = static_cast<int>(bones.size());
-    bones.push_back({parent.bone, parent.block, lever});
+    bones.push_back({parent.bone, parent.block, lever, j});
   }
   return bones;
 }

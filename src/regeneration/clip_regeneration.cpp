@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mcdbn/evaluation/foot_slide.hpp"
+#include "mcdbn/motion/foot_joints.hpp"
 #include "mcdbn/motion/planted_velocity.hpp"
 #include "mcdbn/motion/resample.hpp"
 #include "mcdbn/motion/root_trajectory.hpp"

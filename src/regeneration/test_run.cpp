@@ -11,6 +11,7 @@
 #include "mcdbn/evaluation/bone_length.hpp"
 #include "mcdbn/evaluation/foot_slide.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
+#include "mcdbn/motion/foot_joints.hpp"
 #include "mcdbn/motion/track_smoothing.hpp"
 
 namespace mcdbn {

@@ -122,18 +122,19 @@ void JointNetwork::refresh_copies() {
   mrbm_.refresh_transposed();
 }
 
+void JointNetwork::exchange_averages() {
+  for (TrainedParameter* parameter : parameters()) std::swap(*parameter->value, parameter->average);
+  refresh_copies();
+}
+
 Mcdbn JointNetwork::averaged() {
-  const auto swap_averages = [&] {
-    for (TrainedParameter* parameter : parameters())
-      std::swap(*parameter->value, parameter->average);
-  };
-  swap_averages();
+  exchange_averages();
   Mcdbn result{{}, {}, Mrbm(device(), uncentered(mrbm_.to_host())), look_ahead_, mean_field_steps_};
   for (const Modality modality : {Modality::track, Modality::pose}) {
     for (const Layer& layer : layers(modality))
       result.cdbn(modality).layers.emplace_back(device(), uncentered(layer.crbm.to_host()));
   }
-  swap_averages();
+  exchange_averages();
   result.fills_gaps = false;
   return result;
 }

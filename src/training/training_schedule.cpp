@@ -1,6 +1,8 @@
 #include "mcdbn/training/training_schedule.hpp"
 
+#include "mcdbn/training/augmented_views.hpp"
 #include "mcdbn/training/joint_fine_tuning.hpp"
+#include "mcdbn/training/joint_start.hpp"
 
 namespace mcdbn {
 namespace {
@@ -16,10 +18,10 @@ EpochObserver part_of_run(const EpochObserver& observer, double from, double to)
 
 }  // namespace
 
-Mcdbn train_network(Device& device, const TrainingSet& data,
-                    const std::vector<std::filesystem::path>& files, const TrainingConfig& config,
-                    const EpochObserver& observer) {
-  if (config.joint.steps == 0) return train_greedy(device, data, config, observer);
+TrainedNetwork train_network(Device& device, const TrainingSet& data,
+                             const std::vector<std::filesystem::path>& files,
+                             const TrainingConfig& config, const EpochObserver& observer) {
+  if (config.joint.steps == 0) return {train_greedy(device, data, config, observer), {}};
   const double greedy_share = config.joint.from_greedy ? 0.2 : 0.0;  // of the time, about
   const Mcdbn start =
       config.joint.from_greedy

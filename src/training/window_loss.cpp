@@ -1,7 +1,10 @@
 #include "mcdbn/training/window_loss.hpp"
 
+#include <algorithm>
+
 #include "mcdbn/device/kernel_arguments.hpp"
 #include "mcdbn/device/units.hpp"
+#include "mcdbn/motion/foot_joints.hpp"
 #include "mcdbn/motion/pose_bones.hpp"
 
 namespace mcdbn {
@@ -28,13 +31,18 @@ PoseLoss::PoseLoss(Device& device, const Modalities& modalities, const JointWind
                    const PoseLossWeights& weights)
     : windows_(windows),
       weights_(weights),
-      dimension_(static_cast<std::size_t>(modalities.pose_scale.output_dimension())) {
+      dimension_(static_cast<std::size_t>(modalities.pose_scale.output_dimension())),
+      velocity_feature_(modalities.pose_features.velocity_feature()),
+      frame_s_(1.0 / modalities.fps) {
+  const std::vector<int> feet = foot_joints(modalities.pose_features.skeleton());
   const auto bones = pose_bones(modalities.pose_features);
   bones_ = bones.size();
   std::vector<cl_int4> table;
   std::vector<cl_float4> levers;
   for (const PoseBone& bone : bones) {
-    table.push_back({{bone.parent, bone.block, 0, 0}});
+    const bool foot = std::find(feet.begin(), feet.end(), bone.joint) != feet.end();
+    feet_ += foot ? 1 : 0;
+    table.push_back({{bone.parent, bone.block, foot ? 1 : 0, 0}});
     const Eigen::Vector3f lever = bone.lever_m.cast<float>();
     levers.push_back({{lever.x(), lever.y(), lever.z(), 0.0F}});
   }
@@ -51,8 +59,8 @@ PoseLoss::PoseLoss(Device& device, const Modalities& modalities, const JointWind
   columns_ = constant_table(device, columns);
   scale_ = constant_table(device, scale);
   differences_ = Matrix(device, windows.rows(), std::max<std::size_t>(3 * bones_, 1));
-  losses_ = Matrix(device, windows.rows(), 3);
-  sums_ = Matrix(device, 1, 3);
+  losses_ = Matrix(device, windows.rows(), 4);
+  sums_ = Matrix(device, 1, 4);
 }
 
 void PoseLoss::differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) {
@@ -61,7 +69,9 @@ void PoseLoss::differentiate(const Matrix& prediction, const Matrix& target, Mat
   Device& device = error.device();
   const Defines defines{{"DIMENSION", to_int(dimension_)},
                         {"LD", to_int(padded(dimension_))},
-                        {"BONES", to_int(std::max<std::size_t>(bones_, 1))}};
+                        {"BONES", to_int(std::max<std::size_t>(bones_, 1))},
+                        {"FEET", to_int(std::max<std::size_t>(feet_, 1))},
+                        {"VELOCITY", velocity_feature_}};
   const LaunchSize size{{windows_.rows(), 1}};
   const int frames = to_int(windows_.frames), lead = to_int(windows_.lead);
   launch(device, device.programs().kernel("pose_loss.cl", "place_differences", defines), size,
@@ -69,20 +79,23 @@ void PoseLoss::differentiate(const Matrix& prediction, const Matrix& target, Mat
          frames, lead, bone_table_, levers_, columns_, scale_);
   const cl_float4 weights{{static_cast<float>(weights_.features),
                            static_cast<float>(weights_.places / (kPlace_m * kPlace_m)),
-                           static_cast<float>(weights_.velocities / (kStep_m * kStep_m)), 0.0F}};
+                           static_cast<float>(weights_.velocities / (kStep_m * kStep_m)),
+                           static_cast<float>(weights_.contacts / (kStep_m * kStep_m))}};
   launch(device, device.programs().kernel("pose_loss.cl", "pose_errors", defines), size,
          prediction.buffer(), target.buffer(), differences_.buffer(), to_int(differences_.stride()),
-         to_int(windows_.count), frames, lead, weights, bone_table_, levers_, columns_, scale_,
-         error.buffer(), losses_.buffer(), to_int(losses_.stride()));
+         to_int(windows_.count), frames, lead, weights, static_cast<float>(frame_s_),
+         static_cast<float>(frame_s_ * weights_.planted_below_m_s), bone_table_, levers_, columns_,
+         scale_, error.buffer(), losses_.buffer(), to_int(losses_.stride()));
   column_sum(losses_, 1.0F, 1.0F, sums_);
   ++steps_;
 }
 
-std::vector<double> PoseLoss::read_and_reset() {
-  const MatrixD sums = sums_.to_host().cast<double>() / static_cast<double>(std::max(steps_, 1UL));
+double PoseLoss::read_and_reset() {
+  const MatrixD means = sums_.to_host().cast<double>() / static_cast<double>(std::max(steps_, 1UL));
   sums_.set_zero();
   steps_ = 0;
-  return {sums(0), sums(1) / (kPlace_m * kPlace_m), sums(2) / (kStep_m * kStep_m)};
+  return weights_.features * means(0) + weights_.places * means(1) / (kPlace_m * kPlace_m) +
+         (weights_.velocities * means(2) + weights_.contacts * means(3)) / (kStep_m * kStep_m);
 }
 
 FeatureLoss::FeatureLoss(Device& device, const JointWindows& windows, double weight)

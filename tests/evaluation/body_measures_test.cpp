@@ -7,6 +7,7 @@
 #include "mcdbn/evaluation/bone_length.hpp"
 #include "mcdbn/evaluation/foot_slide.hpp"
 #include "mcdbn/evaluation/sample_spread.hpp"
+#include "mcdbn/motion/foot_joints.hpp"
 
 namespace mcdbn {
 namespace {

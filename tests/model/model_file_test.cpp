@@ -25,7 +25,11 @@ TEST_CASE("a model comes back from its file as it was saved") {
     network.pose.layers.emplace_back(device, pose);
     network.sampling = {.gibbs_steps = 0, .mrbm_gibbs_steps = 3, .steady = true, .scale = 0.75};
     network.fills_gaps = false;
-    save_model(path, {std::move(network), figure.modalities(), {{"a.bvh", "12"}}, {{"seed", 9}}});
+    save_model(path, {std::move(network),
+                      figure.modalities(),
+                      {{"a.bvh", "12"}},
+                      {{"seed", 9}},
+                      EarlyStopping{{"b.bvh", "c.bvh"}, 75, 0.25}});
 
     const Model model = load_model(device, path);
     CHECK(model.network.track.layers[0].to_host().A == track.A);
@@ -43,5 +47,9 @@ TEST_CASE("a model comes back from its file as it was saved") {
     REQUIRE(model.training_clips.size() == 1);
     CHECK(model.training_clips[0].fingerprint == "12");
     CHECK(model.config.at("seed") == 9);
+    REQUIRE(model.early_stopping);
+    CHECK(model.early_stopping->held_out == std::vector<std::string>{"b.bvh", "c.bvh"});
+    CHECK(model.early_stopping->steps == 75);
+    CHECK(model.early_stopping->loss == 0.25);
   });
 }

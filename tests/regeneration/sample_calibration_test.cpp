@@ -5,7 +5,7 @@
 #include "device/every_device.hpp"
 #include "mcdbn/errors.hpp"
 #include "mcdbn/regeneration/mcdbn_regeneration.hpp"
-#include "mcdbn/training/joint_fine_tuning.hpp"
+#include "mcdbn/training/joint_start.hpp"
 #include "training/small_figure.hpp"
 
 using namespace mcdbn;

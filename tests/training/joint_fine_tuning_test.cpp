@@ -1,7 +1,9 @@
 #include "mcdbn/training/joint_fine_tuning.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -9,22 +11,27 @@
 #include "mcdbn/errors.hpp"
 #include "mcdbn/motion/bvh.hpp"
 #include "mcdbn/motion/synthesize.hpp"
+#include "mcdbn/training/augmented_views.hpp"
+#include "mcdbn/training/held_out_person.hpp"
 #include "mcdbn/training/joint_pass.hpp"
+#include "mcdbn/training/joint_start.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
 
 namespace {
 
-/// Two synthesized walks as files, and a configuration small enough for a test.
+/// Two synthesized walks of each person as files, and a configuration small enough for a test.
 class SmallRun {
  public:
-  SmallRun() : folder_(std::filesystem::temp_directory_path() / "mcdbn_joint_test") {
+  explicit SmallRun(int people = 1)
+      : folder_(std::filesystem::temp_directory_path() / "mcdbn_joint_test") {
     std::filesystem::create_directories(folder_);
-    for (int i = 0; i < 2; ++i) {
-      files.push_back(folder_ / ("walk_" + std::to_string(i) + ".bvh"));
-      write_bvh(files.back(), synthesize_clip(i));
-    }
+    for (int person = 0; person < people; ++person)
+      for (int clip = 0; clip < 2; ++clip) {
+        files.push_back(folder_ / fmt::format("walk_{}_{}.bvh", person, clip));
+        write_bvh(files.back(), synthesize_clip(person, clip));
+      }
     config.hidden = 10;
     config.mrbm_hidden = 8;
     config.order = 2;
@@ -47,10 +54,11 @@ class SmallRun {
   std::unique_ptr<TrainingSet> data;
 
  private:
-  static Motion synthesize_clip(int clip) {
+  static Motion synthesize_clip(int person, int clip) {
     SynthesisOptions options;
     options.seconds = 2.0;
     options.seed = 7;
+    options.subject = person + 1;
     options.clip = clip + 1;
     return synthesize(options);
   }
@@ -79,15 +87,66 @@ TEST_CASE("the joint stage lowers its loss, and the same seed gives the same bit
       losses.push_back(report.loss);
     };
     const Mcdbn start = run.start(device);
-    const Mcdbn once = train_joint(device, start, views, run.config, observer);
+    const Mcdbn once = train_joint(device, start, views, run.config, observer).network;
     REQUIRE(losses.size() == 2);
     CHECK(losses[1] < losses[0]);
     CHECK(once.mean_field_steps == run.config.joint.mean_field_steps);
     CHECK(once.look_ahead == run.config.look_ahead);
-    CHECK(same_bits(once, train_joint(device, start, views, run.config)));
+    CHECK(same_bits(once, train_joint(device, start, views, run.config).network));
     TrainingConfig other = run.config;
     other.seed = 2;
-    CHECK_FALSE(same_bits(once, train_joint(device, start, views, other)));
+    CHECK_FALSE(same_bits(once, train_joint(device, start, views, other).network));
+  });
+}
+
+TEST_CASE("one of several people is held out, and nothing is learnt from them") {
+  SmallRun run(4);
+  run.config.joint.steps = 75;
+  const TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
+  const auto person = person_to_hold_out(views);
+  REQUIRE(person);
+  const TrainingSet others = views_without(views, *person);
+  CHECK(others.poses.size() == 12);
+  CHECK(views_of(views, *person).poses.size() == 4);
+  CHECK_FALSE(person_to_hold_out(others));  // three people are too few
+  on_every_device([&](Device& device) {
+    std::vector<double> losses;
+    const auto observer = [&](const EpochReport& report) {
+      REQUIRE(report.held_out_loss);
+      losses.push_back(*report.held_out_loss);
+    };
+    const Mcdbn start = run.start(device);
+    const TrainedNetwork trained = train_joint(device, start, views, run.config, observer);
+    REQUIRE(trained.early_stopping);
+    REQUIRE(losses.size() == 3);
+    CHECK(trained.early_stopping->loss == losses.back());
+    CHECK(trained.early_stopping->steps == 75);
+    CHECK(trained.early_stopping->held_out == clip_names(views_of(views, *person)));
+    // So small a run gets better to its end, which is then what it is without that person.
+    REQUIRE(losses[2] < losses[1]);
+    CHECK(same_bits(trained.network, train_joint(device, start, others, run.config).network));
+
+    run.config.joint.early_stopping = false;
+    CHECK_FALSE(train_joint(device, start, views, run.config).early_stopping);
+    run.config.joint.early_stopping = true;
+  });
+}
+
+TEST_CASE("parameters of before the person held out fared worse are kept") {
+  SmallRun run(4);
+  run.config.joint.steps = 200;
+  TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
+  // Somebody who does the opposite: the more is learnt from others, the worse.
+  const auto person = person_to_hold_out(views);
+  for (std::size_t i = 0; i < views.poses.size(); ++i)
+    if (views.people[i] == person) views.poses[i] *= -1.0F;
+  on_every_device([&](Device& device) {
+    std::size_t reports = 0;
+    const TrainedNetwork trained = train_joint(device, run.start(device), views, run.config,
+                                               [&](const EpochReport&) { ++reports; });
+    REQUIRE(trained.early_stopping);
+    CHECK(trained.early_stopping->steps < 25 * reports);
+    CHECK(25 * reports < run.config.joint.steps);
   });
 }
 

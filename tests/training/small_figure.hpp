@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "mcdbn/model/modalities.hpp"
@@ -21,10 +22,7 @@ class SmallFigure {
   /// Joint places by the motion layer's own decoding, relative to the root, in the camera's axes.
   /// @param pose standardized [frames x dimension]  @return [frames x 3·joints that stand apart]
   MatrixD places_m(const MatrixD& pose) const {
-    const Standardizer& scale = modalities_.pose_scale;
-    MatrixD raw = scale.mean().replicate(pose.rows(), 1);
-    for (int k = 0; k < scale.output_dimension(); ++k)
-      raw.col(scale.kept_columns()[k]) += pose.col(k) * scale.deviation()[scale.kept_columns()[k]];
+    const MatrixD raw = raw_features(pose);
     const PoseFeatures& features = modalities_.pose_features;
     const Skeleton& skeleton = features.skeleton();
     const Motion motion = features.decode(raw, Eigen::Matrix3d::Identity(), skeleton, 30.0,
@@ -39,7 +37,27 @@ class SmallFigure {
     return places;
   }
 
+  /// Of these, the foot's. @return [frames x 3]
+  MatrixD foot_m(const MatrixD& pose) const {
+    const auto names = modalities_.track_features.joint_names();
+    const auto foot = std::find(names.begin(), names.end(), "Foot") - names.begin();
+    return places_m(pose).middleCols(3 * foot, 3);
+  }
+
+  /// In the camera's axes. @return [frames x 3]
+  MatrixD root_velocity_m_s(const MatrixD& pose) const {
+    return modalities_.pose_features.root_features(raw_features(pose)).rightCols(3);
+  }
+
  private:
+  MatrixD raw_features(const MatrixD& pose) const {
+    const Standardizer& scale = modalities_.pose_scale;
+    MatrixD raw = scale.mean().replicate(pose.rows(), 1);
+    for (int k = 0; k < scale.output_dimension(); ++k)
+      raw.col(scale.kept_columns()[k]) += pose.col(k) * scale.deviation()[scale.kept_columns()[k]];
+    return raw;
+  }
+
   static Joint joint(const std::string& name, int parent, Eigen::Vector3d offset, bool turns) {
     Joint result;
     result.name = name;

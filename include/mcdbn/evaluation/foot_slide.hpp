@@ -2,12 +2,9 @@
 
 #include <vector>
 
-#include "mcdbn/motion/skeleton.hpp"
+#include "mcdbn/matrix_types.hpp"
 
 namespace mcdbn {
-
-/// Joints whose name holds Foot, Toe or Ankle, in any case.
-std::vector<int> foot_joints(const Skeleton& skeleton);
 
 /// How fast planted feet move over the ground. A foot joint is planted from one frame to the next
 /// where, in the truth, it is within 40 mm of its lowest height of the clip at both and slower than

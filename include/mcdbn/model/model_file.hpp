@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,20 @@ struct TrainingClip {
 /// @throws InputError if the file cannot be read
 TrainingClip identify_clip(const std::filesystem::path& path);
 
+/// On whom the joint stage was stopped early, and where.
+struct EarlyStopping {
+  std::vector<std::string> held_out;  ///< that person's clips, by file name: not learnt from
+  std::size_t steps = 0;              ///< mini-batches of the parameters that were kept
+  double loss = 0;                    ///< theirs on the person held out
+};
+
 /// Everything that one model file holds.
 struct Model {
   Mcdbn network;
   Modalities modalities;
   std::vector<TrainingClip> training_clips;
   nlohmann::json config;  ///< the effective settings of the run
+  std::optional<EarlyStopping> early_stopping = {};
 };
 
 /// One .safetensors file: tensors `pose.0.W` …, metadata with format version, modalities, skeleton

@@ -13,6 +13,7 @@ struct PoseBone {
   int parent = -1;  ///< index of the bone that it starts from, -1: the root
   int block = 0;    ///< which 6D block turns it
   Eigen::Vector3d lever_m{0, 0, 0};
+  int joint = 0;  ///< at its end
 };
 
 /// The bones of the model's own skeleton below its root, parents first; joints that stand where

@@ -23,6 +23,8 @@ class PoseFeatures {
 
   int dimension() const;
   const Skeleton& skeleton() const { return skeleton_; }  ///< of the first training clip
+  /// Where the root velocity's three features begin; the height stands before them.
+  int velocity_feature() const { return dimension() - 3; }
   int root() const { return root_; }  ///< the moving root: a joint of skeleton()
   /// The joints of skeleton() that have a 6D block, in the blocks' order.
   const std::vector<int>& joints() const { return joints_; }

@@ -51,8 +51,11 @@ struct JointSettings {
   double average = 0.995;   ///< kept of the moving average of parameters, which is the result
   double places = 0.5;      ///< weight of joint places (PoseLossWeights), features have 1
   double velocities = 0.2;  ///< and of their steps from frame to frame
+  double contacts = 0.1;    ///< and of the steps of planted feet
   double reverse = 0.1;     ///< weight of the other direction, 2D from 3D
   std::size_t mean_field_steps = 2;
+  /// Keep one person out (held_out_person.hpp) and stop when that person fares worse.
+  bool early_stopping = true;
 };
 
 /// Everything that shapes a training run: the paper's Table 2 and section V, and what it leaves
@@ -135,8 +138,11 @@ void visit_settings(Config& config, Visit&& visit) {
   visit("joint.average", config.joint.average, "kept of the parameters' moving average");
   visit("joint.places", config.joint.places, "weight of joint places in the loss");
   visit("joint.velocities", config.joint.velocities, "weight of joint velocities in the loss");
+  visit("joint.contacts", config.joint.contacts, "weight of planted feet's steps in the loss");
   visit("joint.reverse", config.joint.reverse, "weight of 2D from 3D");
   visit("joint.mean-field-steps", config.joint.mean_field_steps, "unrolled steps of eq 32 and 33");
+  visit("joint.early-stopping", config.joint.early_stopping,
+        "keep one person out, where there are several, and stop when that person fares worse");
   visit("augment.views", config.augment.views, "augmented views of each clip");
   visit("augment.mirror", config.augment.mirror, "exchange left and right in every other view");
   visit("augment.azimuth", config.augment.azimuth_deg, "camera azimuth varies by so many degrees");

@@ -17,9 +17,10 @@ struct EpochReport {
   std::size_t epoch = 0, epochs = 0;
   double loss = 0;  ///< mean squared reconstruction error of a unit, or cross-entropy of a unit
   double windows_per_s = 0;
-  double stage_progress = 0;          ///< 0 … 1
-  double overall_progress = 0;        ///< 0 … 1, by the stages' own cost
-  std::optional<LayerHealth> health;  ///< at a stage's first and last epoch, and every fifth
+  double stage_progress = 0;            ///< 0 … 1
+  double overall_progress = 0;          ///< 0 … 1, by the stages' own cost
+  std::optional<double> held_out_loss;  ///< of the person held out, joint stage only
+  std::optional<LayerHealth> health;    ///< at a stage's first and last epoch, and every fifth
 };
 using EpochObserver = std::function<void(const EpochReport&)>;
 

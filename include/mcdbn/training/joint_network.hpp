@@ -56,6 +56,8 @@ class JointNetwork {
   /// Adam on all parameters with a gradient of at most `longest_gradient`, then the moving average
   /// keeps `average_kept` of itself.
   void update(const AdamRule& rule, float longest_gradient, float average_kept);
+  /// The moving average of the parameters in their place, to be judged; again: back.
+  void exchange_averages();
   /// The network that the moving average of the parameters makes.
   Mcdbn averaged();
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mcdbn/training/greedy_schedule.hpp"
+#include "mcdbn/training/joint_fine_tuning.hpp"
 
 namespace mcdbn {
 
@@ -8,8 +8,8 @@ namespace mcdbn {
 /// config.joint says.
 /// @param files as make_training_set read them, for the joint stage's views
 /// The observer may throw to stop. @throws DivergenceError, InputError
-Mcdbn train_network(Device& device, const TrainingSet& data,
-                    const std::vector<std::filesystem::path>& files, const TrainingConfig& config,
-                    const EpochObserver& observer = {});
+TrainedNetwork train_network(Device& device, const TrainingSet& data,
+                             const std::vector<std::filesystem::path>& files,
+                             const TrainingConfig& config, const EpochObserver& observer = {});
 
 }  // namespace mcdbn

@@ -12,9 +12,9 @@ namespace mcdbn {
 /// Synchronized clips of both modalities, standardized: [frames x dimension] each.
 struct TrainingSet {
   Modalities modalities;
-  std::vector<MatrixF> tracks;  ///< 2D
-  std::vector<MatrixF> poses;   ///< 3D
-  std::vector<TrainingClip> clips;
+  std::vector<MatrixF> tracks;      ///< 2D
+  std::vector<MatrixF> poses;       ///< 3D
+  std::vector<TrainingClip> clips;  ///< files as they were read; of augmented views, each view's
   /// Who is seen in each of `poses`, counted from 0; empty where nobody asked.
   std::vector<std::size_t> people;
   std::size_t frames() const;

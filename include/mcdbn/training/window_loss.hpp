@@ -13,10 +13,14 @@ struct PoseLossWeights {
   double places = 0.0;    ///< of squared distances of joints from their places, in units of 5 cm
   double velocities =
       0.0;  ///< of squared differences of steps from frame to frame, in units of 1 cm
+  /// The same through the world, the root's travel included, of feet that are planted in truth.
+  double contacts = 0.0;
+  double planted_below_m_s = 0.4;  ///< a foot slower than this is planted, on a 1.7 m body
 };
 
 /// The loss on the 3D modality: features, and joint places and steps through forward kinematics of
-/// the model's own skeleton (pose_loss.cl). The sums stay on the device.
+/// the model's own skeleton, whose feet are known by their names (pose_loss.cl). The sums stay on
+/// the device.
 class PoseLoss {
  public:
   static constexpr double kPlace_m = 0.05, kStep_m = 0.01;
@@ -26,14 +30,15 @@ class PoseLoss {
   /// Writes dL/d prediction, zero before the windows' lead. Both [windows.rows() x dimension] at
   /// least. Enqueues and returns. @throws ShapeError
   void differentiate(const Matrix& prediction, const Matrix& target, Matrix& error);
-  /// Means since the last call: features, places in units of 5 cm, steps in units of 1 cm, all
-  /// squared. Waits for the queue. @return [1 x 3]
-  std::vector<double> read_and_reset();
+  /// The weighted loss, its mean since the last call. Waits for the queue.
+  double read_and_reset();
 
  private:
   JointWindows windows_;
   PoseLossWeights weights_;
-  std::size_t dimension_, bones_ = 0;
+  std::size_t dimension_, bones_ = 0, feet_ = 0;
+  int velocity_feature_ = 0;
+  double frame_s_;
   cl::Buffer bone_table_, levers_, columns_, scale_;
   Matrix differences_, losses_, sums_;
   std::size_t steps_ = 0;

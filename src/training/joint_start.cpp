@@ -1,0 +1,90 @@
+#include "mcdbn/training/joint_start.hpp"
+
+#include <cmath>
+
+#include "mcdbn/training/joint_network.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr std::uint16_t kStream = 195;  // of random numbers
+
+void take_size(MatrixF& weights, const MatrixF& like) {
+  const float norm = weights.norm();
+  if (norm > 0.0F) weights *= like.norm() / norm;
+}
+
+}  // namespace
+
+Mcdbn sized_for_joint_stage(Device& device, const Mcdbn& greedy, const TrainingConfig& config) {
+  const Mcdbn sizes = random_start(device, greedy.track.layers.front().shape().visible,
+                                   greedy.pose.layers.front().shape().visible, config);
+  MrbmParameters mrbm = centered(greedy.mrbm.to_host());
+  const MrbmParameters mrbm_sizes = sizes.mrbm.to_host();
+  for (std::size_t m = 0; m < 2; ++m) take_size(mrbm.W[m], mrbm_sizes.W[m]);
+  Mcdbn network{{}, {}, Mrbm(device, uncentered(mrbm)), greedy.look_ahead, greedy.mean_field_steps};
+  for (const Modality modality : {Modality::track, Modality::pose}) {
+    const Cdbn& from = greedy.cdbn(modality);
+    for (std::size_t i = 0; i < from.layers.size(); ++i) {
+      CrbmParameters layer = centered(from.layers[i].to_host());
+      const CrbmParameters size = sizes.cdbn(modality).layers[i].to_host();
+      take_size(layer.W, size.W);
+      take_size(layer.A, size.A);
+      take_size(layer.B, size.B);
+      network.cdbn(modality).layers.emplace_back(device, uncentered(layer));
+    }
+  }
+  return network;
+}
+
+Mcdbn random_start(Device& device, std::size_t track, std::size_t pose,
+                   const TrainingConfig& config) {
+  // Units about zero have a slope of a quarter: with this weight a unit says again what the one
+  // beneath it says. So a deep stack starts as a shallow one that its upper layers merely pass on:
+  // after 250 mini-batches the loss is a tenth smaller than with all of it drawn at full size.
+  constexpr float kPassOn = 4.0F;
+  // The mean field hears this modality again in every step.
+  constexpr float kPassOnAgain = 2.0F;
+  std::uint32_t next = 0;
+  // Deviations that keep a unit's input near one size, whatever its inputs' number.
+  const auto layer = [&](std::size_t visible, VisibleKind kind) {
+    const CrbmShape shape{visible, config.hidden, config.order, kind};
+    CrbmParameters drawn = CrbmParameters::random(shape, 1.0, {config.seed, next++, kStream, 0});
+    const bool lowest = kind == VisibleKind::gaussian;
+    const double up = (lowest ? 0.8 : 1.0) / std::sqrt(static_cast<double>(visible));
+    const double history =
+        1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(config.order, 1) * visible));
+    drawn.W *= static_cast<float>(up);
+    drawn.B *= static_cast<float>((lowest ? 0.6 : 0.7) * history);
+    drawn.A *= static_cast<float>((lowest ? 0.09 : 0.9) * history);
+    if (!lowest) drawn.W.diagonal().array() += kPassOn;
+    return drawn;
+  };
+  MrbmParameters mrbm = MrbmParameters::random(config.hidden, config.hidden, config.mrbm_hidden,
+                                               1.0, {config.seed, next++, kStream, 0});
+  const double shared = 1.0 / std::sqrt(static_cast<double>(config.hidden));
+  mrbm.W[0] *= static_cast<float>(shared);
+  mrbm.W[1] *= static_cast<float>(2.0 / 3.0 * shared);
+  mrbm.W[0].diagonal().array() += kPassOn;
+  mrbm.W[1].diagonal().array() += kPassOnAgain;
+  // The mean field starts with all units of the absent modality at the same value: that must not
+  // push the shared units anywhere.
+  for (MatrixF& W : mrbm.W) W.rowwise() -= RowVectorF(W.colwise().mean());
+  Mcdbn network{
+      {}, {}, Mrbm(device, uncentered(mrbm)), config.look_ahead, config.joint.mean_field_steps};
+  for (const Modality modality : {Modality::track, Modality::pose}) {
+    for (std::size_t i = 0; i < config.layers; ++i) {
+      CrbmParameters drawn =
+          i == 0 ? layer(modality == Modality::track ? track : pose, VisibleKind::gaussian)
+                 : layer(config.hidden, VisibleKind::binary);
+      // The down-pass of the lowest 3D layer sums over hidden units, not over features.
+      if (i == 0 && modality == Modality::pose)
+        drawn.W *= static_cast<float>(
+            1.5 / 0.8 * std::sqrt(static_cast<double>(pose) / static_cast<double>(config.hidden)));
+      network.cdbn(modality).layers.emplace_back(device, uncentered(drawn));
+    }
+  }
+  return network;
+}
+
+}  // namespace mcdbn
