@@ -74,8 +74,9 @@ void TrainingOptions::add_to(CLI::App& command) {
       ->capture_default_str();
   command
       .add_option("--stages", stages_,
-                  "greedy: layer by layer, as the paper does; joint: the whole network by "
-                  "back-propagation (default, but for --preset paper); both: one after the other")
+                  "greedy: layer by layer, as the paper does, and with two layers of order 5 and 300 "
+                  "units unless told otherwise; joint: the whole network by back-propagation "
+                  "(default, but for --preset paper); both: one after the other")
       ->check(CLI::IsMember({"greedy", "joint", "both"}));
   command.add_option("--config", file_, "TOML file of settings; flags override it")
       ->type_name("FILE");
@@ -103,7 +104,9 @@ void TrainingOptions::add_to(CLI::App& command) {
 }
 
 TrainingConfig TrainingOptions::resolve() const {
-  TrainingConfig config = preset_ == "paper" ? TrainingConfig::paper() : TrainingConfig{};
+  TrainingConfig config = preset_ == "paper"    ? TrainingConfig::paper()
+                          : stages_ == "greedy" ? TrainingConfig::greedy()
+                                                : TrainingConfig{};
   if (!file_.empty()) apply_file(config, file_);
   for (const auto& flag : flags_) flag(config);
   apply_stages(config);

@@ -1,12 +1,15 @@
 #include "mcdbn/regeneration/sample_calibration.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "mcdbn/errors.hpp"
 #include "mcdbn/regeneration/mcdbn_regeneration.hpp"
 
 namespace mcdbn {
 namespace {
+
+constexpr double kMost_s = 600.0;
 
 /// Joints about the root at rest, file units. @return for each clip [frames x 3·joints]
 std::vector<MatrixD> places(const Modalities& modalities, const std::vector<MatrixF>& poses) {
@@ -31,13 +34,25 @@ double distance(const std::vector<MatrixD>& many, const std::vector<MatrixD>& si
   return sum / static_cast<double>(copies);
 }
 
+/// Every so many clips, so that memory does not grow with the corpus: ten minutes say enough.
+std::vector<MatrixF> ten_minutes(const std::vector<MatrixF>& clips, double fps) {
+  double frames = 0;
+  for (const MatrixF& clip : clips) frames += static_cast<double>(clip.rows());
+  const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil(frames / (kMost_s * fps))));
+  std::vector<MatrixF> some;
+  for (std::size_t i = 0; i < clips.size(); i += every) some.push_back(clips[i]);
+  return some;
+}
+
 }  // namespace
 
 SamplingRule calibrated_sampling(const Mcdbn& network, const Modalities& modalities,
-                                 const std::vector<MatrixF>& tracks,
-                                 const std::vector<MatrixF>& poses) {
-  if (tracks.size() != poses.size())
+                                 const std::vector<MatrixF>& all_tracks,
+                                 const std::vector<MatrixF>& all_poses) {
+  if (all_tracks.size() != all_poses.size())
     throw ShapeError("calibration: as many tracks as poses are wanted");
+  const std::vector<MatrixF> tracks = ten_minutes(all_tracks, modalities.fps),
+                             poses = ten_minutes(all_poses, modalities.fps);
   constexpr std::size_t kSamples = 4, kHalvings = 6;
   RegenerationOptions options;
   const std::vector<MatrixD> answers = places(modalities, regenerate(network, tracks, options));

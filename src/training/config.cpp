@@ -6,8 +6,17 @@
 
 namespace mcdbn {
 
-TrainingConfig TrainingConfig::paper() {
+TrainingConfig TrainingConfig::greedy() {
   TrainingConfig config;
+  config.order = 5;
+  config.layers = 2;
+  config.hidden = config.mrbm_hidden = 300;
+  config.joint.steps = 0;
+  return config;
+}
+
+TrainingConfig TrainingConfig::paper() {
+  TrainingConfig config = greedy();
   const CdSettings table2{.gibbs_steps = 5,
                           .rate = 0.1,
                           .rate_A = 0.1,
@@ -20,11 +29,9 @@ TrainingConfig TrainingConfig::paper() {
   config.binary = table2;
   config.mrbm.rate = 0.1;
   config.mrbm.initial_deviation = 1.0;
-  config.hidden = 300;
   config.mrbm_hidden = 150;
   config.look_ahead = 0;
   config.least_batches = 1;
-  config.joint.steps = 0;
   return config;
 }
 

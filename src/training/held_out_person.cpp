@@ -7,8 +7,6 @@
 namespace mcdbn {
 namespace {
 
-constexpr std::size_t kFewestPeople = 4;
-
 TrainingSet selected(const TrainingSet& views, std::size_t person, bool that_person) {
   TrainingSet result{views.modalities, {}, {}, {}, {}};
   for (std::size_t i = 0; i < views.poses.size(); ++i) {
@@ -23,7 +21,7 @@ TrainingSet selected(const TrainingSet& views, std::size_t person, bool that_per
 
 }  // namespace
 
-std::optional<std::size_t> person_to_hold_out(const TrainingSet& views) {
+std::optional<std::size_t> person_to_hold_out(const TrainingSet& views, std::size_t fewest_people) {
   struct Amount {
     std::set<std::string> clips;
     Eigen::Index frames = 0;
@@ -33,7 +31,7 @@ std::optional<std::size_t> person_to_hold_out(const TrainingSet& views) {
     people[views.people[i]].clips.insert(views.clips[i].path);
     people[views.people[i]].frames += views.poses[i].rows();
   }
-  if (people.size() < kFewestPeople) return {};
+  if (fewest_people == 0 || people.size() < std::max<std::size_t>(fewest_people, 2)) return {};
   // Fewest frames first; one with a single clip only where nobody has more.
   const auto missed_less = [](const auto& x, const auto& y) {
     const bool x_single = x.second.clips.size() < 2, y_single = y.second.clips.size() < 2;

@@ -217,7 +217,7 @@ TrainedNetwork train_joint(Device& device, const Mcdbn& start, const TrainingSet
   const JointWindows windows = joint_windows(start, settings);
   std::optional<TrainingSet> others, stranger;
   std::optional<HeldOutWindows> held_out;
-  if (const auto person = settings.early_stopping ? person_to_hold_out(views) : std::nullopt) {
+  if (const auto person = person_to_hold_out(views, settings.hold_out_among)) {
     others = views_without(views, *person);
     stranger = views_of(views, *person);
     held_out.emplace(device, *stranger, windows, config);

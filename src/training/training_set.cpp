@@ -33,6 +33,27 @@ std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair
   return blocks;
 }
 
+/// Views as the joint stage will see them, for the scaling: what hardly moves in the clips may move
+/// in their views (the left arm of somebody who waves with the right one, seen in a mirror), and
+/// what counts for fifty deviations there hides everything else.
+void add_views(const std::vector<std::filesystem::path>& files, const TrainingConfig& config,
+               const PoseFeatures& pose_features, const TrackFeatures& track_features,
+               std::vector<Pair>& pairs) {
+  constexpr std::uint16_t kStream = 196;  // of random numbers
+  constexpr std::size_t kViews = 4;       // of each clip: with and without mirror
+  AugmentationSettings all_in_sight = config.augment;
+  all_in_sight.missing = 0;
+  RandomKey key{config.seed, 0, kStream, 0};
+  for (const auto& file : files) {
+    const Motion raw = load_clip(file, {.fps = 0, .keep_first_frame = config.keep_first_frame});
+    for (std::size_t i = 0; i < std::min(kViews, config.augment.views); ++i, ++key.step) {
+      const AugmentedView view = augmented_view(raw, config.fps, config.camera, all_in_sight, key);
+      pairs.push_back({track_features.encode(view.track),
+                       pose_features.encode(view.motion, view.camera.camera_from_world)});
+    }
+  }
+}
+
 }  // namespace
 
 std::size_t TrainingSet::frames() const {
@@ -64,6 +85,8 @@ TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
     pairs.push_back({track_features.encode(project_motion(motion, camera)),
                      pose_features.encode(motion, camera.camera_from_world)});
   }
+  const std::size_t clips = pairs.size();
+  if (config.joint.steps > 0) add_views(files, config, pose_features, track_features, pairs);
   TrainingSet set{{std::move(pose_features), std::move(track_features),
                    Standardizer::fit(members(pairs, &Pair::pose)),
                    Standardizer::fit(members(pairs, &Pair::track)), config.fps, config.camera},
@@ -71,6 +94,7 @@ TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
                   {},
                   std::move(recorded),
                   {}};
+  pairs.resize(clips);
   for (const Pair& pair : pairs) {
     set.tracks.push_back(set.modalities.track_scale.apply(pair.track));
     set.poses.push_back(set.modalities.pose_scale.apply(pair.pose));

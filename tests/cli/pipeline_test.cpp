@@ -125,7 +125,8 @@ TEST_CASE("train --stages leaves stages out") {
   };
   CHECK(stages("--stages greedy") ==
         std::set<std::string>{"pose.0", "pose.1", "track.0", "track.1", "mrbm"});
-  CHECK(stages("--stages both") ==
+  CHECK(stages("--stages both") == std::set<std::string>{"pose.0", "track.0", "mrbm", "joint"});
+  CHECK(stages("--stages both --layers 2") ==
         std::set<std::string>{"pose.0", "pose.1", "track.0", "track.1", "mrbm", "joint"});
 }
 

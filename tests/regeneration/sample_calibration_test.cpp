@@ -17,6 +17,7 @@ namespace {
 struct Setting {
   Setting() {
     config.order = 2;
+    config.layers = 2;
     config.hidden = config.mrbm_hidden = 24;
     config.look_ahead = 1;
     for (const Eigen::Index frames : {40, 23}) {

@@ -117,7 +117,8 @@ class Scripts(unittest.TestCase):
     def test_plot_metrics(self):
         run = self.folder / "run"
         self.assertEqual(self.run_cli("train", self.folder / "walk", "-o", run, "--quiet",
-                                      "--stages", "both", *TINY.split()).returncode, 0)
+                                      "--stages", "both", "--layers", 2, *TINY.split()).returncode,
+                         0)
         stages = {}
         for line in (run / "metrics.jsonl").read_text().splitlines():
             entry = json.loads(line)
@@ -158,6 +159,25 @@ class Scripts(unittest.TestCase):
         self.assertNotIn(selection["validation"], selection["training"])
         self.assertEqual(
             self.run_program(SCRIPTS / "reproduce_paper", out / "walking/run").returncode, 3)
+
+    def test_leave_one_out(self):
+        def leave_one_out(*options):
+            return self.run_program(SCRIPTS / "leave_one_out", self.folder / "walk", "-o",
+                                    self.folder / "runs", "--cli", self.cli, "--train", TINY,
+                                    *options)
+        everybody = leave_one_out("--person", r"_(s\d+)_")
+        self.assertEqual(everybody.returncode, 0, everybody.stderr)
+        table = [line.split(" | ") for line in everybody.stdout.splitlines()[-3:]]
+        self.assertEqual([row[0] for row in table], ["| s01", "| s02", "| mean"])
+        error_mm = [float(row[2].split(" / ")[1]) for row in table]
+        self.assertAlmostEqual(error_mm[2], sum(error_mm[:2]) / 2, delta=0.11)
+        model = self.folder / "runs/s01/model.safetensors"
+        about = json.loads(self.run_cli("info", model, "--json").stdout)
+        self.assertEqual(about["training_clips"], ["walk_s02_01.bvh", "walk_s02_02.bvh"])
+        made = model.stat().st_mtime_ns
+        self.assertEqual(leave_one_out("--person", r"_(s\d+)_").stdout, everybody.stdout)
+        self.assertEqual(model.stat().st_mtime_ns, made)
+        self.assertEqual(leave_one_out("--person", "^(walk)").returncode, 3)
 
 
 if __name__ == "__main__":

@@ -7,10 +7,10 @@
 
 namespace mcdbn {
 
-/// The person of a set of four people or more who is missed least: of those with several clips (of
-/// all, if nobody has) the one with the fewest frames. Nothing for fewer people.
+/// The person who is missed least: of those with several clips (of all, if nobody has) the one with
+/// the fewest frames. Nobody of fewer than `fewest_people`, or if that is 0.
 /// @param views with `people` and `clips` for each of `poses`
-std::optional<std::size_t> person_to_hold_out(const TrainingSet& views);
+std::optional<std::size_t> person_to_hold_out(const TrainingSet& views, std::size_t fewest_people);
 
 /// The views of that person alone, or of everybody else.
 TrainingSet views_of(const TrainingSet& views, std::size_t person);
