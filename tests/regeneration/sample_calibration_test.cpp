@@ -77,7 +77,7 @@ TEST_CASE("samples stray further where the network's answers are further from th
       return rule.scale;
     };
     CHECK(scale_for(0.0F) < 0.05);
-    const double near = scale_for(0.05F), far = scale_for(0.1F);
+    const double near = scale_for(0.1F), far = scale_for(0.2F);
     CHECK(near > 0.05);
     CHECK(far > 1.5 * near);
     CHECK(far < 2.0);
