@@ -73,10 +73,11 @@ void TrainingOptions::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
   command
-      .add_option("--stages", stages_,
-                  "greedy: layer by layer, as the paper does, and with two layers of order 5 and 300 "
-                  "units unless told otherwise; joint: the whole network by back-propagation "
-                  "(default, but for --preset paper); both: one after the other")
+      .add_option(
+          "--stages", stages_,
+          "greedy: layer by layer, as the paper does, and with two layers of order 5 and 300 "
+          "units unless told otherwise; joint: the whole network by back-propagation "
+          "(default, but for --preset paper); both: one after the other")
       ->check(CLI::IsMember({"greedy", "joint", "both"}));
   command.add_option("--config", file_, "TOML file of settings; flags override it")
       ->type_name("FILE");
