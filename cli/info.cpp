@@ -10,7 +10,7 @@
 #include "clip_options.hpp"
 #include "commands.hpp"
 #include "mcdbn/errors.hpp"
-#include "mcdbn/model/safetensors.hpp"
+#include "mcdbn/model/model_file.hpp"
 #include "mcdbn/motion/keypoints.hpp"
 
 namespace mcdbn::cli {
@@ -44,28 +44,6 @@ json describe_track(const fs::path& path) {
           {"missing_joint_frames", (track.x_px.array() != track.x_px.array()).count()}};
 }
 
-json describe_model(const fs::path& path) {
-  const Safetensors file = read_safetensors(path);
-  const auto text = file.metadata.find("mcdbn");
-  if (text == file.metadata.end())
-    throw InputError(fmt::format("{}: not a model of mcdbn-cl", path.string()));
-  const json about = json::parse(text->second);
-  const json& config = about.at("config");
-  std::size_t numbers = 0;
-  for (const auto& [name, tensor] : file.tensors) numbers += tensor.values.size();
-  json clips = json::array();
-  for (const json& clip : about.at("training_clips"))
-    clips.push_back(fs::path(clip.at("path").get<std::string>()).filename().string());
-  json description = {
-      {"kind", "trained model"}, {"training_clips", clips}, {"parameters", numbers}};
-  for (const char* name : {"fps", "order", "layers", "hidden", "mrbm-hidden", "camera.azimuth",
-                           "camera.elevation", "seed"})
-    if (config.contains(name)) description[name] = config.at(name);
-  for (const char* name : {"look_ahead", "mean_field_steps", "early_stopping"})
-    if (about.contains(name)) description[name] = about.at(name);
-  return description;
-}
-
 json describe(const fs::path& path) {
   if (!fs::exists(path)) throw InputError(fmt::format("{}: no such file", path.string()));
   std::string extension = path.extension().string();
@@ -73,7 +51,11 @@ json describe(const fs::path& path) {
                          [](unsigned char letter) { return std::tolower(letter); });
   if (extension == ".bvh") return describe_clip(path);
   if (extension == ".csv") return describe_track(path);
-  if (extension == ".safetensors") return describe_model(path);
+  if (extension == ".safetensors") {
+    json description = describe_model(path);
+    description["kind"] = "trained model";
+    return description;
+  }
   throw InputError(fmt::format("{}: unknown kind of file; give a .bvh, a .csv or a .safetensors",
                                path.string()));
 }

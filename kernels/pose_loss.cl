@@ -148,10 +148,9 @@ INLINE float3 planted_difference(global const float* prediction, global const fl
 kernel void pose_errors(global const float* prediction, global const float* target,
                         global const float* differences, int difference_ld, int count, int frames,
                         int lead, float4 weights, float frame_s, float planted_m,
-                        global const int4* bones,
-                        global const float4* levers, global const int* columns,
-                        global const float2* scale, global float* error, global float* losses,
-                        int losses_ld) {
+                        global const int4* bones, global const float4* levers,
+                        global const int* columns, global const float2* scale, global float* error,
+                        global float* losses, int losses_ld) {
   const int row = get_global_id(0), frame = row % frames;
   prediction += row * LD;
   target += row * LD;

@@ -141,14 +141,29 @@ SamplingRule sampling_from(const json& about) {
           entry.at("scale")};
 }
 
-Model model_from(Device& device, const Safetensors& file, const std::string& path) {
+json parsed_description(const Safetensors& file, const std::string& path) {
   const auto text = file.metadata.find("mcdbn");
   if (text == file.metadata.end()) throw InputError(path + ": not a model of mcdbn-cl");
-  const json about = json::parse(text->second);
+  json about = json::parse(text->second);
   if (about.at("format_version") != kFormatVersion)
     throw InputError(
         fmt::format("{}: model format {}, this program reads {}; train the model again", path,
                     about.at("format_version").dump(), kFormatVersion));
+  return about;
+}
+
+/// What `read` makes of a description, whose errors say which file is damaged.
+template <typename Read>
+auto reading_description(const std::filesystem::path& path, Read&& read) {
+  try {
+    return read();
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: damaged model description: {}", path.string(), error.what()));
+  }
+}
+
+Model model_from(Device& device, const Safetensors& file, const std::string& path) {
+  const json about = parsed_description(file, path);
   Cdbn track = get_cdbn(device, file, path, "track", about.at("track"));
   Cdbn pose = get_cdbn(device, file, path, "pose", about.at("pose"));
   Mrbm mrbm = get_mrbm(device, file, path, {track.code_dimension(), pose.code_dimension()},
@@ -201,11 +216,28 @@ void save_model(const std::filesystem::path& path, const Model& model) {
 
 Model load_model(Device& device, const std::filesystem::path& path) {
   const Safetensors file = read_safetensors(path);
-  try {
-    return model_from(device, file, path.string());
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(fmt::format("{}: damaged model description: {}", path.string(), error.what()));
-  }
+  return reading_description(path, [&] { return model_from(device, file, path.string()); });
+}
+
+nlohmann::json describe_model(const std::filesystem::path& path) {
+  const Safetensors file = read_safetensors(path);
+  return reading_description(path, [&] {
+    const json about = parsed_description(file, path.string());
+    const json& config = about.at("config");
+    std::size_t numbers = 0;
+    for (const auto& [name, tensor] : file.tensors) numbers += tensor.values.size();
+    json clips = json::array();
+    for (const json& clip : about.at("training_clips"))
+      clips.push_back(
+          std::filesystem::path(clip.at("path").get<std::string>()).filename().string());
+    json description = {{"training_clips", clips}, {"parameters", numbers}};
+    for (const char* name : {"fps", "order", "layers", "hidden", "mrbm-hidden", "camera.azimuth",
+                             "camera.elevation", "seed"})
+      if (config.contains(name)) description[name] = config.at(name);
+    for (const char* name : {"look_ahead", "mean_field_steps", "early_stopping"})
+      if (about.contains(name)) description[name] = about.at(name);
+    return description;
+  });
 }
 
 }  // namespace mcdbn

@@ -156,10 +156,6 @@ class JointTrainer {
   IndexBuffer index_;
 };
 
-}  // namespace
-
-namespace {
-
 /// The last parameters that did about as well as any on the person held out. About, as nobody is
 /// like everybody: stopping at the very best for one CMU walker, 250 of 1500 mini-batches at a loss
 /// 2 % below the later ones, cost other strangers 3 mm.

@@ -33,25 +33,19 @@ std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair
   return blocks;
 }
 
+constexpr std::uint16_t kStream = 196;  // of random numbers
+
 /// Views as the joint stage will see them, for the scaling: what hardly moves in the clips may move
 /// in their views (the left arm of somebody who waves with the right one, seen in a mirror), and
 /// what counts for fifty deviations there hides everything else.
-void add_views(const std::vector<std::filesystem::path>& files, const TrainingConfig& config,
-               const PoseFeatures& pose_features, const TrackFeatures& track_features,
-               std::vector<Pair>& pairs) {
-  constexpr std::uint16_t kStream = 196;  // of random numbers
-  constexpr std::size_t kViews = 4;       // of each clip: with and without mirror
+void add_views(const Motion& raw, const TrainingConfig& config, RandomKey& key,
+               std::vector<AugmentedView>& views) {
+  if (config.joint.steps == 0) return;
+  constexpr std::size_t kViews = 4;  // with and without mirror
   AugmentationSettings all_in_sight = config.augment;
   all_in_sight.missing = 0;
-  RandomKey key{config.seed, 0, kStream, 0};
-  for (const auto& file : files) {
-    const Motion raw = load_clip(file, {.fps = 0, .keep_first_frame = config.keep_first_frame});
-    for (std::size_t i = 0; i < std::min(kViews, config.augment.views); ++i, ++key.step) {
-      const AugmentedView view = augmented_view(raw, config.fps, config.camera, all_in_sight, key);
-      pairs.push_back({track_features.encode(view.track),
-                       pose_features.encode(view.motion, view.camera.camera_from_world)});
-    }
-  }
+  for (std::size_t i = 0; i < std::min(kViews, config.augment.views); ++i, ++key.step)
+    views.push_back(augmented_view(raw, config.fps, config.camera, all_in_sight, key));
 }
 
 }  // namespace
@@ -68,10 +62,13 @@ TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
     throw InputError("no training clips; name BVH files or folders that hold some");
   std::vector<TrainingClip> recorded;
   std::vector<Motion> motions;
+  std::vector<AugmentedView> views;
+  RandomKey key{config.seed, 0, kStream, 0};
   for (const auto& file : files) {
     const Motion raw =
         load_clip(file, {.fps = 0, .keep_first_frame = config.keep_first_frame}, notices);
     for (Motion& motion : resampled_phases(raw, config)) motions.push_back(std::move(motion));
+    add_views(raw, config, key, views);
     recorded.push_back(identify_clip(file));
   }
   std::vector<const Motion*> all;
@@ -86,7 +83,9 @@ TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
                      pose_features.encode(motion, camera.camera_from_world)});
   }
   const std::size_t clips = pairs.size();
-  if (config.joint.steps > 0) add_views(files, config, pose_features, track_features, pairs);
+  for (const AugmentedView& view : views)
+    pairs.push_back({track_features.encode(view.track),
+                     pose_features.encode(view.motion, view.camera.camera_from_world)});
   TrainingSet set{{std::move(pose_features), std::move(track_features),
                    Standardizer::fit(members(pairs, &Pair::pose)),
                    Standardizer::fit(members(pairs, &Pair::track)), config.fps, config.camera},

@@ -41,5 +41,8 @@ struct Model {
 void save_model(const std::filesystem::path& path, const Model& model);
 /// @throws InputError
 Model load_model(Device& device, const std::filesystem::path& path);
+/// The file's own account of itself, for people: sizes, main settings, training clips, early
+/// stopping. Needs no device. @throws InputError
+nlohmann::json describe_model(const std::filesystem::path& path);
 
 }  // namespace mcdbn
