@@ -194,9 +194,10 @@ void add_treatment(std::vector<Verdict>& list, const EvaluationReport& report) {
                                  "{}.",
                                  fmt::join(damage, ", "))});
   if (report.fit == "track")
-    list.push_back({Kind::note,
-                    "Every method's answer, the simpler ones' too, was fitted to the 2D track: "
-                    "--fit none shows what each says by itself."});
+    list.push_back(
+        {Kind::note,
+         fmt::format("Every method's answer, the simpler ones' too, was fitted to the 2D "
+                     "track: --fit none shows what each says by itself.")});
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ TEST_CASE("bad files are refused with file, line and advice") {
   CHECK(parse_bvh(replaced(kSmall, "7.5", "1e-999"), "").channels(1, 6) == 0);
   starts("HIERARCHY\nROOT a\n{\n}\nMOTION\nFrames: 9\nFrame Time: 1\n", "clip.bvh:5: no joint has");
   starts("HIERARCHY\nMOTION\nFrames: 1\nFrame Time: 1\n1\n", "clip.bvh:2: a hierarchy without");
-  starts(replaced(kSmall, "Hips", std::string(100000, 'a') + "\nx"), "clip.bvh:3: 'x' where '{'");
+  starts(replaced(kSmall, "Hips", fmt::format("{:a>100000}\nx", "")), "clip.bvh:3: 'x' where '{'");
 }
 
 TEST_CASE("10 MB of nesting is refused, not recursed into") {
