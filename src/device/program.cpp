@@ -39,6 +39,13 @@ std::string options_of(const Defines& defines) {
   return options;
 }
 
+/// PoCL keeps what it compiles, and asked for a binary it compiles every kernel of the program once
+/// more, for no work-group size in particular: half of all the time that a first start took.
+bool driver_keeps_programs(const cl::Device& device) {
+  const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
+  return platform.getInfo<CL_PLATFORM_NAME>() == "Portable Computing Language";
+}
+
 }  // namespace
 
 std::string kernel_source(const std::string& file) {
@@ -57,6 +64,7 @@ std::string kernel_source(const std::string& file) {
 
 ProgramCache::ProgramCache(cl::Context context, cl::Device device)
     : context_(std::move(context)), device_(std::move(device)) {
+  keeps_binaries_ = !driver_keeps_programs(device_);
   device_key_ = device_.getInfo<CL_DEVICE_NAME>() + '|' + device_.getInfo<CL_DEVICE_VENDOR>() +
                 '|' + device_.getInfo<CL_DRIVER_VERSION>() + '|' +
                 device_.getInfo<CL_DEVICE_VERSION>();
@@ -87,6 +95,7 @@ cl::Program& ProgramCache::program(const std::string& file, const Defines& defin
 }
 
 cl::Program ProgramCache::build(const std::string& source, const std::string& options) {
+  if (!keeps_binaries_) return built_from_source(source, options);
   const std::string key = device_key_ + '\n' + options + '\n' + source;
   if (const auto binary = read_cache_entry("program", key)) {
     try {
@@ -97,6 +106,14 @@ cl::Program ProgramCache::build(const std::string& source, const std::string& op
       // stale or corrupt: built anew below, which overwrites it
     }
   }
+  cl::Program program = built_from_source(source, options);
+  const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+  if (!binaries.empty() && !binaries[0].empty())
+    write_cache_entry("program", key, std::string(binaries[0].begin(), binaries[0].end()));
+  return program;
+}
+
+cl::Program ProgramCache::built_from_source(const std::string& source, const std::string& options) {
   cl::Program program(context_, source);
   try {
     program.build(options.c_str());
@@ -104,9 +121,6 @@ cl::Program ProgramCache::build(const std::string& source, const std::string& op
     throw DeviceError(fmt::format("building kernels with {}:\n{}", options,
                                   program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_)));
   }
-  const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
-  if (!binaries.empty() && !binaries[0].empty())
-    write_cache_entry("program", key, std::string(binaries[0].begin(), binaries[0].end()));
   return program;
 }
 

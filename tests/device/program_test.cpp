@@ -69,6 +69,10 @@ TEST_CASE("small: a program is cached as a binary, and a damaged entry is rebuil
     const fs::path entries = folder / "mcdbn-cl";
     CHECK(works_afresh(open.info()));
     const auto files = files_in(entries);
+    if (open.info().platform_name == "Portable Computing Language") {
+      CHECK(files.empty());  // left to its own cache
+      return;
+    }
     REQUIRE(files.size() == 1);
     const fs::path file = files.front();
     const std::string good = read_text_file(file);

@@ -15,8 +15,9 @@ std::string kernel_source(const std::string& file);
 using Defines = std::map<std::string, int>;
 
 /// Programs built for one device, kept in memory and as binaries in the user's cache folder
-/// ($XDG_CACHE_HOME/mcdbn-cl or ~/.cache/mcdbn-cl), keyed by device, driver, source and options.
-/// A binary that does not load is rebuilt silently; an unwritable folder only costs time.
+/// ($XDG_CACHE_HOME/mcdbn-cl or ~/.cache/mcdbn-cl), keyed by device, driver, source and options;
+/// PoCL's are left to its own cache. A binary that does not load is rebuilt silently; an unwritable
+/// folder only costs time.
 class ProgramCache {
  public:
   ProgramCache(cl::Context context, cl::Device device);
@@ -27,10 +28,12 @@ class ProgramCache {
  private:
   cl::Program& program(const std::string& file, const Defines& defines);
   cl::Program build(const std::string& source, const std::string& options);
+  cl::Program built_from_source(const std::string& source, const std::string& options);
 
   cl::Context context_;
   cl::Device device_;
   std::string device_key_;
+  bool keeps_binaries_;
   std::map<std::string, cl::Program> programs_;
   std::map<std::string, cl::Kernel> kernels_;
 };
