@@ -3,6 +3,8 @@
 #include <clblast.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "mcdbn/device/kernel_arguments.hpp"
 #include "mcdbn/device/units.hpp"
 
@@ -13,6 +15,14 @@ namespace {
 int tile_rows_for(const Device& device, std::size_t rows) {
   const int largest = device.info().is_gpu ? 4 : 10;
   return std::min<int>(largest, to_int(std::max<std::size_t>(rows, 1)));
+}
+
+/// One work-item a tile; on a CPU one a group, as a tile is work enough for a core.
+LaunchSize tiles_of(const Rows& c, int vec, int tile_rows) {
+  LaunchSize size{{ceil_divide(c.columns, static_cast<std::size_t>(vec)),
+                   ceil_divide(c.count, static_cast<std::size_t>(tile_rows))}};
+  if (!c.matrix->device().info().is_gpu) size.local = {1, 1};
+  return size;
 }
 
 void require_operands(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& options) {
@@ -51,9 +61,7 @@ void gemm_own(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& op
   const Matrix& bias = options.bias ? *options.bias : *c.matrix;
   const Rows& factor = options.factor ? *options.factor : c;
   const Rows& sample = options.sample ? *options.sample : c;
-  const LaunchSize size{{ceil_divide(c.columns, static_cast<std::size_t>(vec)),
-                         ceil_divide(c.count, static_cast<std::size_t>(tile_rows))}};
-  launch(device, kernel, size, a.matrix->buffer(), a.offset(), a.stride(),
+  launch(device, kernel, tiles_of(c, vec, tile_rows), a.matrix->buffer(), a.offset(), a.stride(),
          a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first), a.shift,
          b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(), c.stride(),
          to_int(c.count), to_int(c.columns), to_int(b.count), options.alpha, options.beta,
@@ -90,6 +98,32 @@ void gemm_clblast(const Rows& a, const Rows& b, const Rows& c, float alpha, floa
   device.count_launch();
 }
 
+/// Rows of A and B summed in one go on a CPU: their columns stay in its caches while the tiles of C
+/// read them again and again, which doubles the speed of sums over thousands of rows.
+constexpr std::size_t kSummedRows = 128;
+
+Rows rows_from(Rows rows, std::size_t first, std::size_t count) {
+  rows.count = count;
+  if (rows.index)
+    rows.index_first += first;
+  else
+    rows.first += first * rows.step;
+  return rows;
+}
+
+void add_transposed_a(const Rows& a, const Rows& b, const Rows& c, float alpha, float beta) {
+  Device& device = c.matrix->device();
+  const int vec = vector_width(device);
+  const int tile_rows = device.info().is_gpu ? 4 : 16;  // divides the column padding: no row test
+  cl::Kernel& kernel = device.programs().kernel(
+      "gemm.cl", "gemm_transposed_a",
+      {{"VEC", vec}, {"TILE_ROWS", tile_rows}, {"A_ROWS", a.index ? 1 : 0}});
+  launch(device, kernel, tiles_of(c, vec, tile_rows), a.matrix->buffer(), a.offset(), a.stride(),
+         a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first), a.shift,
+         b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(), c.stride(),
+         to_int(c.count), to_int(c.columns), to_int(b.count), alpha, beta);
+}
+
 bool goes_to_clblast(const Rows& c, std::size_t k, GemmBackend backend) {
   if (k == 0 || backend == GemmBackend::own) return false;
   if (backend == GemmBackend::clblast) return true;
@@ -123,18 +157,13 @@ void gemm_transposed_a(const Rows& a, const Rows& b, const Rows& c, float alpha,
     gemm_clblast(a, b, c, alpha, beta, clblast::Transpose::kYes);
     return;
   }
-  Device& device = c.matrix->device();
-  const int vec = vector_width(device);
-  const int tile_rows = device.info().is_gpu ? 4 : 16;  // divides the column padding: no row test
-  cl::Kernel& kernel = device.programs().kernel(
-      "gemm.cl", "gemm_transposed_a",
-      {{"VEC", vec}, {"TILE_ROWS", tile_rows}, {"A_ROWS", a.index ? 1 : 0}});
-  const LaunchSize size{{ceil_divide(c.columns, static_cast<std::size_t>(vec)),
-                         ceil_divide(c.count, static_cast<std::size_t>(tile_rows))}};
-  launch(device, kernel, size, a.matrix->buffer(), a.offset(), a.stride(),
-         a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first), a.shift,
-         b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(), c.stride(),
-         to_int(c.count), to_int(c.columns), to_int(b.count), alpha, beta);
+  const bool is_gpu = c.matrix->device().info().is_gpu;
+  const std::size_t piece = is_gpu ? b.count : kSummedRows;
+  for (std::size_t first = 0; first == 0 || first < b.count; first += piece) {
+    const std::size_t count = std::min(piece, b.count - first);
+    add_transposed_a(rows_from(a, first, count), rows_from(b, first, count), c, alpha,
+                     first == 0 ? beta : 1.0F);
+  }
 }
 
 }  // namespace mcdbn

@@ -18,7 +18,7 @@ struct History {
   std::size_t visible, hidden, frames, windows, order;
 };
 const std::vector<History> kSmallHistories = {
-    {1, 1, 2, 1, 1}, {3, 5, 9, 3, 2}, {17, 7, 11, 5, 3}, {16, 33, 8, 13, 5}};
+    {1, 1, 2, 1, 1}, {3, 5, 9, 3, 2}, {17, 7, 11, 5, 3}, {16, 33, 8, 13, 5}, {3, 5, 40, 290, 2}};
 const std::vector<History> kModelHistories = {{96, 300, 400, 100, 5}, {190, 300, 400, 100, 5}};
 
 class Windows {

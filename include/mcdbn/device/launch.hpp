@@ -10,8 +10,14 @@ namespace mcdbn {
 
 struct LaunchSize {
   std::array<std::size_t, 2> global{1, 1};
-  std::array<std::size_t, 2> local{0, 0};  ///< zeros: the driver chooses
+  std::array<std::size_t, 2> local{0,
+                                   0};  ///< zeros: chosen by local_size_for, or by a GPU's driver
 };
+
+/// Work-groups on a CPU, for work-items of a few instructions: up to 64 items, in powers of two
+/// that divide the range. Left to itself PoCL compiles a kernel anew for every size of the range,
+/// each other length of clip, and may make one group, which one core runs, of it all.
+std::array<std::size_t, 2> local_size_for(const std::array<std::size_t, 2>& global);
 
 /// Enqueues one kernel with its arguments set in order; returns at once.
 /// @throws DeviceError naming the kernel
@@ -21,8 +27,9 @@ void launch(Device& device, cl::Kernel& kernel, const LaunchSize& size,
   try {
     cl_uint index = 0;
     (kernel.setArg(index++, arguments), ...);
-    const cl::NDRange local =
-        size.local[0] == 0 ? cl::NullRange : cl::NDRange(size.local[0], size.local[1]);
+    const bool driver_chooses = size.local[0] == 0 && device.info().is_gpu;
+    const auto group = size.local[0] == 0 ? local_size_for(size.global) : size.local;
+    const cl::NDRange local = driver_chooses ? cl::NullRange : cl::NDRange(group[0], group[1]);
     device.queue().enqueueNDRangeKernel(kernel, cl::NullRange,
                                         cl::NDRange(size.global[0], size.global[1]), local);
     device.count_launch();
