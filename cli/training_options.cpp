@@ -94,8 +94,9 @@ void TrainingOptions::add_to(CLI::App& command) {
     };
     CLI::Option* option = nullptr;
     if constexpr (std::is_same_v<Member, bool>) {
+      const std::string flag = flag_of(name);
       option = command.add_flag_function(
-          flag_of(name), [set](std::int64_t count) { set(count > 0); }, help);
+          flag + ",!--no" + flag.substr(1), [set](std::int64_t count) { set(count > 0); }, help);
     } else {
       option = command.add_option_function<Member>(flag_of(name), set, help);
       option->default_str(fmt::format("{}", member))->run_callback_for_default(false);

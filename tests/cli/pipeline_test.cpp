@@ -141,9 +141,14 @@ TEST_CASE("the same seed trains the same model, from the recorded config too") {
               .exit_code == 0);
   CHECK(mcdbn::read_text_file(pipeline.folder("again") / "model.safetensors") == model);
   REQUIRE(train(pipeline.training_clips(), pipeline.folder("other"),
-                std::string(kTiny) + " --quiet --seed 2")
+                std::string(kTiny) + " --quiet --seed 2 --no-augment-mirror")
               .exit_code == 0);
   CHECK(mcdbn::read_text_file(pipeline.folder("other") / "model.safetensors") != model);
+  const auto recorded = [&](const char* run) {
+    return mcdbn::read_text_file(pipeline.folder(run) / "config.toml");
+  };
+  CHECK(recorded("again").find("mirror = true") != std::string::npos);
+  CHECK(recorded("other").find("mirror = false") != std::string::npos);
 }
 
 TEST_CASE("regenerate gives every input frame an output frame on the model's skeleton") {
