@@ -159,11 +159,13 @@ void gemm_transposed_a(const Rows& a, const Rows& b, const Rows& c, float alpha,
   }
   const bool is_gpu = c.matrix->device().info().is_gpu;
   const std::size_t piece = is_gpu ? b.count : kSummedRows;
-  for (std::size_t first = 0; first == 0 || first < b.count; first += piece) {
+  std::size_t first = 0;
+  do {
     const std::size_t count = std::min(piece, b.count - first);
     add_transposed_a(rows_from(a, first, count), rows_from(b, first, count), c, alpha,
                      first == 0 ? beta : 1.0F);
-  }
+    first += piece;
+  } while (first < b.count);
 }
 
 }  // namespace mcdbn

@@ -10,8 +10,8 @@ namespace mcdbn {
 
 struct LaunchSize {
   std::array<std::size_t, 2> global{1, 1};
-  std::array<std::size_t, 2> local{0,
-                                   0};  ///< zeros: chosen by local_size_for, or by a GPU's driver
+  /// Zeros: a GPU's driver chooses, on a CPU local_size_for.
+  std::array<std::size_t, 2> local{0, 0};
 };
 
 /// Work-groups on a CPU, for work-items of a few instructions: up to 64 items, in powers of two
