@@ -27,9 +27,9 @@ void launch(Device& device, cl::Kernel& kernel, const LaunchSize& size,
   try {
     cl_uint index = 0;
     (kernel.setArg(index++, arguments), ...);
-    const bool driver_chooses = size.local[0] == 0 && device.info().is_gpu;
-    const auto group = size.local[0] == 0 ? local_size_for(size.global) : size.local;
-    const cl::NDRange local = driver_chooses ? cl::NullRange : cl::NDRange(group[0], group[1]);
+    auto group = size.local;
+    if (group[0] == 0 && !device.info().is_gpu) group = local_size_for(size.global);
+    const cl::NDRange local = group[0] == 0 ? cl::NullRange : cl::NDRange(group[0], group[1]);
     device.queue().enqueueNDRangeKernel(kernel, cl::NullRange,
                                         cl::NDRange(size.global[0], size.global[1]), local);
     device.count_launch();
