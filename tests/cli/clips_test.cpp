@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mcdbn/motion/keypoints.hpp"
+#include "mcdbn/text_file.hpp"
 #include "motion/scratch_folder.hpp"
 #include "run_cli.hpp"
 
@@ -130,4 +131,16 @@ TEST_CASE("info describes clips and tracks") {
   CHECK(track.at("missing_joint_frames") == 0);
 
   CHECK(run_cli("info '" + folder.write("notes.txt", "hello").string() + "'").exit_code == 3);
+}
+
+TEST_CASE("render draws a contact sheet") {
+  const ScratchFolder folder;
+  const fs::path clip = folder.write("clip.bvh", small_bvh(40));
+  const fs::path picture = folder / "sheet.png";
+  REQUIRE(run_cli(fmt::format("render '{}' -o '{}'", clip.string(), picture.string())).exit_code ==
+          0);
+  CHECK(mcdbn::read_text_file(picture).starts_with("\x89PNG"));
+  CHECK(run_cli(fmt::format("render '{}' -o '{}'", clip.string(), (folder / "a.xyz").string()))
+            .exit_code != 0);
+  CHECK(!fs::exists(folder / "a.xyz"));
 }
