@@ -77,7 +77,7 @@ void TrainingOptions::add_to(CLI::App& command) {
           "--stages", stages_,
           "greedy: layer by layer, as the paper does, and with two layers of order 5 and 300 "
           "units unless told otherwise; joint: the whole network by back-propagation "
-          "(default, but for --preset paper); both: one after the other")
+          "(default, but for --preset paper); both: some epochs of the one before the other")
       ->check(CLI::IsMember({"greedy", "joint", "both"}));
   command.add_option("--config", file_, "TOML file of settings; flags override it")
       ->type_name("FILE");
@@ -106,13 +106,17 @@ void TrainingOptions::add_to(CLI::App& command) {
 }
 
 TrainingConfig TrainingOptions::resolve() const {
-  TrainingConfig config = preset_ == "paper"    ? TrainingConfig::paper()
-                          : stages_ == "greedy" ? TrainingConfig::greedy()
-                                                : TrainingConfig{};
+  const bool paper = preset_ == "paper";
+  TrainingConfig config = applied_to(paper ? TrainingConfig::paper() : TrainingConfig{});
+  if (config.joint.steps == 0 && !paper) config = applied_to(TrainingConfig::greedy());
+  config.validate();
+  return config;
+}
+
+TrainingConfig TrainingOptions::applied_to(TrainingConfig config) const {
   if (!file_.empty()) apply_file(config, file_);
   for (const auto& flag : flags_) flag(config);
   apply_stages(config);
-  config.validate();
   return config;
 }
 

@@ -20,6 +20,8 @@ class TrainingOptions {
   TrainingConfig resolve() const;
 
  private:
+  /// The file's settings, the flags' and --stages', over the given ones.
+  TrainingConfig applied_to(TrainingConfig config) const;
   void apply_stages(TrainingConfig& config) const;
 
   std::string preset_ = "default", stages_;

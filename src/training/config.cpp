@@ -11,6 +11,10 @@ TrainingConfig TrainingConfig::greedy() {
   config.order = 5;
   config.layers = 2;
   config.hidden = config.mrbm_hidden = 300;
+  config.gaussian.epochs = 100;
+  config.binary.epochs = 50;
+  config.mrbm.rate = 1e-3;
+  config.mrbm.epochs = 30;
   config.joint.steps = 0;
   return config;
 }
@@ -24,7 +28,8 @@ TrainingConfig TrainingConfig::paper() {
                           .momentum = 0.9,
                           .momentum_from_epoch = 0,
                           .weight_decay = 0.0,
-                          .initial_deviation = 1.0};
+                          .initial_deviation = 1.0,
+                          .epochs = 100};
   config.gaussian = table2;
   config.binary = table2;
   config.mrbm.rate = 0.1;

@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "mcdbn/device/units.hpp"
 #include "mcdbn/errors.hpp"
 #include "mcdbn/training/contrastive_divergence.hpp"
 #include "mcdbn/training/divergence_guard.hpp"
@@ -157,18 +158,28 @@ struct TrainedCdbn {
   Sequences code;
 };
 
+CrbmParameters small_weights(const CrbmShape& shape, const TrainingConfig& config,
+                             std::uint16_t stream) {
+  return CrbmParameters::random(shape, settings_for(shape, config).initial_deviation,
+                                key_of(config, stream, 0, kWeightPhase));
+}
+
+/// @param start weights to start from; nothing: small random ones
 TrainedCdbn train_cdbn(Device& device, const std::vector<MatrixF>& clips,
-                       const TrainingConfig& config, std::uint16_t first_stream,
+                       const TrainingConfig& config, const Cdbn* start, std::uint16_t first_stream,
                        const std::string& name, OverallProgress& progress) {
   TrainedCdbn trained;
   trained.code = Sequences::from_host(device, clips);
   std::uint16_t stream = first_stream;
   for (const CrbmShape& shape : layer_shapes(trained.code.values.columns(), config)) {
     const CdSettings& settings = settings_for(shape, config);
-    const std::string stage = fmt::format("{}.{}", name, trained.cdbn.layers.size());
-    trained.cdbn.layers.push_back(train_crbm(device, trained.code, shape, settings, config,
-                                             stream++, progress.stage(crbm_cost(shape, settings)),
-                                             stage));
+    const std::size_t layer = trained.cdbn.layers.size();
+    trained.cdbn.layers.push_back(
+        train_crbm(device, trained.code,
+                   start ? start->layers.at(layer).to_host() : small_weights(shape, config, stream),
+                   settings, config, stream, progress.stage(crbm_cost(shape, settings)),
+                   fmt::format("{}.{}", name, layer)));
+    ++stream;
     trained.code = up_pass(trained.cdbn.layers.back(), trained.code);
   }
   return trained;
@@ -177,6 +188,16 @@ TrainedCdbn train_cdbn(Device& device, const std::vector<MatrixF>& clips,
 MatrixF logit(const MatrixF& p) {
   const auto safe = p.array().max(1e-4F).min(1.0F - 1e-4F);
   return (safe / (1.0F - safe)).log().matrix();
+}
+
+MrbmParameters small_weights(const Sequences& track, const Sequences& pose,
+                             const TrainingConfig& config) {
+  MrbmParameters initial = MrbmParameters::random(track.values.columns(), pose.values.columns(),
+                                                  config.mrbm_hidden, config.mrbm.initial_deviation,
+                                                  key_of(config, kMrbmStream, 0, kWeightPhase));
+  // So that the mean field starts near the codes' own means rather than at one half.
+  initial.a = {logit(mean_of(track)), logit(mean_of(pose))};
+  return initial;
 }
 
 /// Rows t such that both the 3D code of t and the 2D code of t + look_ahead exist.
@@ -193,25 +214,24 @@ std::pair<MatrixF, MatrixF> some_pairs(const Sequences& track, const Sequences& 
                                        std::size_t look_ahead) {
   constexpr std::size_t kMost = 100;
   const auto rows = paired_rows(pose, look_ahead);
-  const MatrixF all_track = track.values.to_host(), all_pose = pose.values.to_host();
-  const std::size_t count = std::min(kMost, rows.size());
-  MatrixF some_track(count, all_track.cols()), some_pose(count, all_pose.cols());
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto row = static_cast<Eigen::Index>(rows[i * rows.size() / count]);
-    some_track.row(static_cast<Eigen::Index>(i)) =
-        all_track.row(row + static_cast<Eigen::Index>(look_ahead));
-    some_pose.row(static_cast<Eigen::Index>(i)) = all_pose.row(row);
-  }
-  return {some_track, some_pose};
+  std::vector<std::int32_t> some(std::min(kMost, rows.size()));
+  for (std::size_t i = 0; i < some.size(); ++i) some[i] = rows[i * rows.size() / some.size()];
+  Device& device = pose.values.device();
+  const IndexBuffer index(device, some);
+  const auto gathered = [&](const Matrix& values, int shift) {
+    Matrix out(device, some.size(), values.columns());
+    gather(Rows::indexed(values, index, 0, some.size(), shift), out);
+    return out.to_host();
+  };
+  return {gathered(track.values, static_cast<int>(look_ahead)), gathered(pose.values, 0)};
 }
 
 }  // namespace
 
-Crbm train_crbm(Device& device, const Sequences& visible, const CrbmShape& shape,
+Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
                 const CdSettings& settings, const TrainingConfig& config, std::uint16_t stream,
                 const EpochObserver& observer, const std::string& stage) {
-  CrbmParameters initial = CrbmParameters::random(shape, settings.initial_deviation,
-                                                  key_of(config, stream, 0, kWeightPhase));
+  const CrbmShape shape = initial.shape;
   initial.visible_mean = mean_of(visible);
   Crbm crbm(device, initial);
   MinibatchSchedule schedule(device, visible.window_rows(shape.order), config.batch,
@@ -238,13 +258,9 @@ Crbm train_crbm(Device& device, const Sequences& visible, const CrbmShape& shape
 }
 
 Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
-                const TrainingConfig& config, std::uint16_t stream, const EpochObserver& observer) {
+                const MrbmParameters& initial, const TrainingConfig& config, std::uint16_t stream,
+                const EpochObserver& observer) {
   const MultiPredictionSettings& settings = config.mrbm;
-  MrbmParameters initial =
-      MrbmParameters::random(track.values.columns(), pose.values.columns(), config.mrbm_hidden,
-                             settings.initial_deviation, key_of(config, stream, 0, kWeightPhase));
-  // So that the mean field starts near the codes' own means rather than at one half.
-  initial.a = {logit(mean_of(track)), logit(mean_of(pose))};
   Mrbm mrbm(device, initial);
   MinibatchSchedule schedule(device, paired_rows(pose, config.look_ahead), config.batch,
                              config.least_batches);
@@ -272,17 +288,22 @@ Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
 }
 
 Mcdbn train_greedy(Device& device, const TrainingSet& data, const TrainingConfig& config,
-                   const EpochObserver& observer) {
+                   const EpochObserver& observer, const Mcdbn* start) {
   config.validate();
-  double total = mrbm_cost(config.hidden, config.hidden, config);
+  const double last_cost = mrbm_cost(config.hidden, config.hidden, config);
+  double total = last_cost;
   for (const Eigen::Index dimension : {data.poses.front().cols(), data.tracks.front().cols()})
     for (const CrbmShape& shape : layer_shapes(static_cast<std::size_t>(dimension), config))
       total += crbm_cost(shape, settings_for(shape, config));
   OverallProgress progress(observer, total);
-  TrainedCdbn pose = train_cdbn(device, data.poses, config, kPoseStream, "pose", progress);
-  TrainedCdbn track = train_cdbn(device, data.tracks, config, kTrackStream, "track", progress);
-  Mrbm mrbm = train_mrbm(device, track.code, pose.code, config, kMrbmStream,
-                         progress.stage(mrbm_cost(config.hidden, config.hidden, config)));
+  TrainedCdbn pose = train_cdbn(device, data.poses, config, start ? &start->pose : nullptr,
+                                kPoseStream, "pose", progress);
+  TrainedCdbn track = train_cdbn(device, data.tracks, config, start ? &start->track : nullptr,
+                                 kTrackStream, "track", progress);
+  Mrbm mrbm =
+      train_mrbm(device, track.code, pose.code,
+                 start ? start->mrbm.to_host() : small_weights(track.code, pose.code, config),
+                 config, kMrbmStream, progress.stage(last_cost));
   return {std::move(track.cdbn), std::move(pose.cdbn), std::move(mrbm), config.look_ahead,
           config.mrbm.mean_field_steps};
 }

@@ -9,33 +9,7 @@ namespace {
 
 constexpr std::uint16_t kStream = 195;  // of random numbers
 
-void take_size(MatrixF& weights, const MatrixF& like) {
-  const float norm = weights.norm();
-  if (norm > 0.0F) weights *= like.norm() / norm;
-}
-
 }  // namespace
-
-Mcdbn sized_for_joint_stage(Device& device, const Mcdbn& greedy, const TrainingConfig& config) {
-  const Mcdbn sizes = random_start(device, greedy.track.layers.front().shape().visible,
-                                   greedy.pose.layers.front().shape().visible, config);
-  MrbmParameters mrbm = centered(greedy.mrbm.to_host());
-  const MrbmParameters mrbm_sizes = sizes.mrbm.to_host();
-  for (std::size_t m = 0; m < 2; ++m) take_size(mrbm.W[m], mrbm_sizes.W[m]);
-  Mcdbn network{{}, {}, Mrbm(device, uncentered(mrbm)), greedy.look_ahead, greedy.mean_field_steps};
-  for (const Modality modality : {Modality::track, Modality::pose}) {
-    const Cdbn& from = greedy.cdbn(modality);
-    for (std::size_t i = 0; i < from.layers.size(); ++i) {
-      CrbmParameters layer = centered(from.layers[i].to_host());
-      const CrbmParameters size = sizes.cdbn(modality).layers[i].to_host();
-      take_size(layer.W, size.W);
-      take_size(layer.A, size.A);
-      take_size(layer.B, size.B);
-      network.cdbn(modality).layers.emplace_back(device, uncentered(layer));
-    }
-  }
-  return network;
-}
 
 Mcdbn random_start(Device& device, std::size_t track, std::size_t pose,
                    const TrainingConfig& config) {

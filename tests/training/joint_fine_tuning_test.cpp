@@ -164,19 +164,29 @@ TEST_CASE("an observer stops the joint stage, and windows need their histories")
   });
 }
 
-TEST_CASE("greedy weights keep their direction when they are sized for the joint stage") {
-  const SmallRun run;
+TEST_CASE("greedy stages before the joint one go on from its own starting weights") {
+  SmallRun run;
+  run.config.gaussian.rate = run.config.gaussian.rate_A = run.config.gaussian.rate_B = 1e-9;
+  run.config.binary = run.config.gaussian;
+  run.config.mrbm.rate = 1e-9;
+  const TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
   on_every_device([&](Device& device) {
-    TrainingConfig other = run.config;
-    other.seed = 5;
-    Mcdbn greedy = random_start(device, static_cast<std::size_t>(run.data->tracks.front().cols()),
-                                static_cast<std::size_t>(run.data->poses.front().cols()), other);
-    const Mcdbn sized = sized_for_joint_stage(device, greedy, run.config), size = run.start(device);
-    for (std::size_t i = 0; i < greedy.pose.layers.size(); ++i) {
-      const MatrixF from = greedy.pose.layers[i].W.to_host(), to = sized.pose.layers[i].W.to_host();
-      CHECK(to.norm() == doctest::Approx(size.pose.layers[i].W.to_host().norm()).epsilon(1e-4));
-      CHECK((from.array() * to.array()).sum() ==
-            doctest::Approx(from.norm() * to.norm()).epsilon(1e-4));
+    const Mcdbn start = run.start(device);
+    const Mcdbn still = train_greedy(device, views, run.config, {}, &start);
+    const auto difference = [](const Matrix& a, const Matrix& b) {
+      return (a.to_host() - b.to_host()).cwiseAbs().maxCoeff();
+    };
+    for (const Modality modality : {Modality::track, Modality::pose}) {
+      for (std::size_t i = 0; i < run.config.layers; ++i) {
+        const Crbm &from = start.cdbn(modality).layers[i], &to = still.cdbn(modality).layers[i];
+        CHECK(difference(from.W, to.W) < 1e-5);
+        CHECK(difference(from.B, to.B) < 1e-5);
+        CHECK(difference(from.a, to.a) < 1e-5);
+      }
     }
+    CHECK(difference(start.mrbm.W[0], still.mrbm.W[0]) < 1e-5);
+    CHECK(difference(start.mrbm.a[1], still.mrbm.a[1]) < 1e-5);
+    const Mcdbn alone = train_greedy(device, views, run.config);
+    CHECK(difference(start.pose.layers[0].W, alone.pose.layers[0].W) > 0.1);
   });
 }

@@ -25,19 +25,22 @@ struct EpochReport {
 using EpochObserver = std::function<void(const EpochReport&)>;
 
 /// Algorithm 1: the 3D CDBN layer by layer, the 2D CDBN, then the MRBM on their codes.
-/// The observer may throw to stop. @throws DivergenceError saying what to lower
+/// The observer may throw to stop.
+/// @param start weights to start from; nothing: small random ones, as the settings' deviations say
+/// @throws DivergenceError saying what to lower
 Mcdbn train_greedy(Device& device, const TrainingSet& data, const TrainingConfig& config,
-                   const EpochObserver& observer = {});
+                   const EpochObserver& observer = {}, const Mcdbn* start = nullptr);
 
 /// One layer of Algorithm 1: CD-k on every window of `visible` for settings.epochs epochs.
+/// @param initial its visible_mean is taken from `visible`
 /// @param stream separates this layer's random numbers from those of the others
-Crbm train_crbm(Device& device, const Sequences& visible, const CrbmShape& shape,
+Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
                 const CdSettings& settings, const TrainingConfig& config, std::uint16_t stream,
                 const EpochObserver& observer = {}, const std::string& stage = "crbm");
 
 /// The MRBM by multi-prediction on codes whose rows belong to the same frames.
 Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
-                const TrainingConfig& config, std::uint16_t stream,
+                const MrbmParameters& initial, const TrainingConfig& config, std::uint16_t stream,
                 const EpochObserver& observer = {});
 
 }  // namespace mcdbn

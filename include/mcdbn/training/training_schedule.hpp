@@ -4,9 +4,9 @@
 
 namespace mcdbn {
 
-/// The greedy stages (Algorithm 1), the joint one, or the joint one after the greedy ones, as
-/// config.joint says.
-/// @param files as make_training_set read them, for the joint stage's views
+/// The greedy stages (Algorithm 1) on the clips as they are, or on augmented views of them and then
+/// the joint stage, or that one alone, as config.joint says.
+/// @param files as make_training_set read them, for the views
 /// The observer may throw to stop. @throws DivergenceError, InputError
 TrainedNetwork train_network(Device& device, const TrainingSet& data,
                              const std::vector<std::filesystem::path>& files,

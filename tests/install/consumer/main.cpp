@@ -20,8 +20,9 @@ int main() {
       last_loss = report.loss;
     };
     const mcdbn::Crbm crbm =
-        mcdbn::train_crbm(device, mcdbn::Sequences::from_host(device, {frames}), shape, settings,
-                          mcdbn::TrainingConfig{}, /*stream=*/0, watch);
+        mcdbn::train_crbm(device, mcdbn::Sequences::from_host(device, {frames}),
+                          mcdbn::CrbmParameters::random(shape, settings.initial_deviation, {}),
+                          settings, mcdbn::TrainingConfig{}, /*stream=*/0, watch);
 
     const mcdbn::CrbmParameters learned = crbm.to_host();
     std::cout << "error " << first_loss << " -> " << last_loss << ", W\n" << learned.W << '\n';
