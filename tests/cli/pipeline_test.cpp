@@ -1,93 +1,17 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
 
 #include "mcdbn/motion/bvh.hpp"
 #include "mcdbn/motion/camera.hpp"
 #include "mcdbn/motion/keypoints.hpp"
 #include "mcdbn/text_file.hpp"
-#include "motion/scratch_folder.hpp"
-#include "run_cli.hpp"
+#include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-namespace {
-
-constexpr const char* kTiny =
-    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2 "
-    "--joint-steps 3 --joint-windows 4 --augment-views 2";
-
-std::set<std::string> stages_of(const fs::path& run) {
-  std::set<std::string> stages;
-  std::istringstream lines(mcdbn::read_text_file(run / "metrics.jsonl"));
-  for (std::string line; std::getline(lines, line);) {
-    const json metrics = json::parse(line);
-    CHECK(metrics.at("loss").is_number());
-    stages.insert(metrics.at("stage"));
-  }
-  return stages;
-}
-
-CliResult synthesize(const fs::path& folder) {
-  return run_cli(
-      fmt::format("synthesize --action walk --clips 4 --subjects 2 --seconds 3 --seed 5 -o '{}'",
-                  folder.string()));
-}
-
-/// The synthesized clips of one subject, each in quotes.
-std::string clips_of(const fs::path& folder, int subject) {
-  std::string files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename().string().find(fmt::format("_s{:02}_", subject)) !=
-        std::string::npos)
-      files += fmt::format(" '{}'", entry.path().string());
-  }
-  REQUIRE(!files.empty());
-  return files;
-}
-
-CliResult train(const std::string& clips, const fs::path& run, const std::string& options,
-                const std::string& environment = "") {
-  return run_cli(fmt::format("train {} -o '{}' {}", clips, run.string(), options), environment);
-}
-
-/// The whole job at a size that takes seconds, done once for all tests below.
-class TinyPipeline {
- public:
-  static const TinyPipeline& instance() {
-    static const TinyPipeline pipeline;
-    return pipeline;
-  }
-  fs::path motion() const { return folder_ / "motion"; }
-  fs::path model() const { return folder_ / "run/model.safetensors"; }
-  fs::path folder(const std::string& name) const { return folder_ / name; }
-  std::string training_clips() const { return clips_of(motion(), 1); }
-  std::string test_clips() const { return clips_of(motion(), 2); }
-
- private:
-  TinyPipeline() {
-    REQUIRE(synthesize(motion()).exit_code == 0);
-    const CliResult trained = train(training_clips(), folder_ / "run", kTiny);
-    CAPTURE(trained.standard_error);
-    REQUIRE(trained.exit_code == 0);
-    REQUIRE(trained.standard_output.empty());
-  }
-  ScratchFolder folder_;
-};
-
-bool have_device() {
-  static const bool have = run_cli("devices").exit_code == 0;
-  if (!have) MESSAGE("SKIPPED: no OpenCL device here");
-  return have;
-}
-
-}  // namespace
 
 TEST_CASE("synthesize writes the same clips for the same seed") {
   const ScratchFolder folder;
@@ -104,59 +28,6 @@ TEST_CASE("synthesize writes the same clips for the same seed") {
       run_cli(fmt::format("synthesize --action fly -o '{}'", (folder / "no").string())).exit_code ==
       2);
   CHECK(!fs::exists(folder / "no"));
-}
-
-TEST_CASE("train writes a run folder") {
-  if (!have_device()) return;
-  const fs::path run = TinyPipeline::instance().folder("run");
-  CHECK(fs::exists(run / "model.safetensors"));
-  CHECK(fs::exists(run / "config.toml"));
-  CHECK(stages_of(run) == std::set<std::string>{"joint"});
-}
-
-TEST_CASE("train --stages leaves stages out") {
-  if (!have_device()) return;
-  const TinyPipeline& pipeline = TinyPipeline::instance();
-  const auto stages = [&](const std::string& options) {
-    const fs::path run = pipeline.folder("stages");
-    REQUIRE(train(pipeline.training_clips(), run, std::string(kTiny) + " --quiet " + options)
-                .exit_code == 0);
-    return stages_of(run);
-  };
-  CHECK(stages("--stages greedy") ==
-        std::set<std::string>{"pose.0", "pose.1", "track.0", "track.1", "mrbm"});
-  CHECK(stages("--stages both") == std::set<std::string>{"pose.0", "track.0", "mrbm", "joint"});
-  CHECK(stages("--stages both --layers 2") ==
-        std::set<std::string>{"pose.0", "pose.1", "track.0", "track.1", "mrbm", "joint"});
-}
-
-TEST_CASE("the same seed trains the same model, from the recorded config too") {
-  if (!have_device()) return;
-  const TinyPipeline& pipeline = TinyPipeline::instance();
-  const std::string model = mcdbn::read_text_file(pipeline.model());
-  const fs::path config = pipeline.folder("run") / "config.toml";
-
-  REQUIRE(train(pipeline.training_clips(), pipeline.folder("again"),
-                fmt::format("--quiet --config '{}'", config.string()))
-              .exit_code == 0);
-  CHECK(mcdbn::read_text_file(pipeline.folder("again") / "model.safetensors") == model);
-  REQUIRE(train(pipeline.training_clips(), pipeline.folder("other"),
-                std::string(kTiny) + " --quiet --seed 2")
-              .exit_code == 0);
-  CHECK(mcdbn::read_text_file(pipeline.folder("other") / "model.safetensors") != model);
-}
-
-TEST_CASE("a setting that is on is switched off by --no-NAME") {
-  if (!have_device()) return;
-  const TinyPipeline& pipeline = TinyPipeline::instance();
-  REQUIRE(train(pipeline.training_clips(), pipeline.folder("unmirrored"),
-                std::string(kTiny) + " --quiet --no-augment-mirror")
-              .exit_code == 0);
-  const auto recorded = [&](const char* run) {
-    return mcdbn::read_text_file(pipeline.folder(run) / "config.toml");
-  };
-  CHECK(recorded("run").find("mirror = true") != std::string::npos);
-  CHECK(recorded("unmirrored").find("mirror = false") != std::string::npos);
 }
 
 TEST_CASE("regenerate gives every input frame an output frame on the model's skeleton") {
@@ -327,75 +198,4 @@ TEST_CASE("evaluate --report writes the tables, by action, training clips marked
   CHECK(all.at("training_clips") == 2);
   CHECK(mcdbn::read_text_file(report / "table_3.csv").find("motion,2,pcc_flat,8,") !=
         std::string::npos);
-}
-
-TEST_CASE("Python's safetensors opens a model file") {
-  if (!have_device()) return;
-  const fs::path python = MCDBN_PYTHON;
-  if (!fs::exists(python)) {
-    MESSAGE("SKIPPED Python's safetensors: scripts/install_dependencies --test installs it");
-    return;
-  }
-  const std::string script = fmt::format(
-      "from safetensors.numpy import load_file\n"
-      "import numpy\n"
-      "tensors = load_file('{}')\n"
-      "assert tensors and all(t.dtype == numpy.float32 and numpy.isfinite(t).all()\n"
-      "                       for t in tensors.values())\n"
-      "print(sum(t.size for t in tensors.values()))\n",
-      TinyPipeline::instance().model().string());
-  const ScratchFolder folder;
-  const fs::path file = folder.write("open_model.py", script);
-  const CliResult result = run_program(python, fmt::format("'{}'", file.string()));
-  CAPTURE(result.standard_error);
-  REQUIRE(result.exit_code == 0);
-  CHECK(std::stol(result.standard_output) > 0);
-}
-
-TEST_CASE("the paper's own settings trip the divergence guard, which says what to lower") {
-  if (!have_device()) return;
-  const TinyPipeline& pipeline = TinyPipeline::instance();
-  const fs::path run = pipeline.folder("paper");
-  const CliResult result = train(pipeline.training_clips(), run, "--preset paper --quiet");
-  CHECK(result.exit_code == 1);
-  CHECK(result.standard_error.find("lower") != std::string::npos);
-  CHECK(!fs::exists(run / "model.safetensors"));
-}
-
-TEST_CASE("an unknown setting is exit code 2 and names its line") {
-  const ScratchFolder folder;
-  const fs::path config = folder.write("bad.toml", "order = 3\nhiden = 20\n");
-  const CliResult result =
-      train("absent.bvh", folder / "run", fmt::format("--config '{}'", config.string()));
-  CHECK(result.exit_code == 2);
-  CHECK(result.standard_error.find(config.string() + ":2: ") != std::string::npos);
-  CHECK(!fs::exists(folder / "run"));
-}
-
-TEST_CASE("a platform or device that is not there is exit code 4 with the list") {
-  if (!have_device()) return;
-  const TinyPipeline& pipeline = TinyPipeline::instance();
-  const fs::path run = pipeline.folder("nowhere");
-  const std::string name = json::parse(run_cli("devices --json").standard_output)
-                               .at("devices")
-                               .at(0)
-                               .at("name")
-                               .get<std::string>();
-  for (const CliResult& result :
-       {train(pipeline.training_clips(), run, "--platform no-such-platform"),
-        train(pipeline.training_clips(), run, "", "MCDBN_DEVICE=no-such-device")}) {
-    CHECK(result.exit_code == 4);
-    CHECK(result.standard_error.find(name) != std::string::npos);
-  }
-  CHECK(!fs::exists(run));
-}
-
-TEST_CASE("an interrupt is exit code 130 and leaves no model") {
-  if (!have_device()) return;
-  const TinyPipeline& pipeline = TinyPipeline::instance();
-  const fs::path run = pipeline.folder("interrupted");
-  const CliResult result = train(pipeline.training_clips(), run, "--joint-steps 1000000",
-                                 "timeout --preserve-status --signal=INT 5");
-  CHECK(result.exit_code == 130);
-  CHECK(!fs::exists(run / "model.safetensors"));
 }

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "motion/scratch_folder.hpp"
+#include "run_cli.hpp"
+
+namespace mcdbn::test {
+
+/// Settings with which the greedy stages take no time.
+extern const std::string kTinyGreedy;
+/// Settings with which training takes no time.
+extern const std::string kTiny;
+
+CliResult synthesize(const std::filesystem::path& folder);
+
+/// @param clips each in quotes  @param environment what stands before the command
+CliResult train(const std::string& clips, const std::filesystem::path& run,
+                const std::string& options, const std::string& environment = "");
+
+/// The whole job at a size that takes seconds, done once for all tests.
+class TinyPipeline {
+ public:
+  static const TinyPipeline& instance();
+  std::filesystem::path motion() const { return folder_ / "motion"; }
+  std::filesystem::path model() const { return folder_ / "run/model.safetensors"; }
+  std::filesystem::path folder(const std::string& name) const { return folder_ / name; }
+  std::string training_clips() const;  ///< each in quotes
+  std::string test_clips() const;
+
+ private:
+  TinyPipeline();
+  ScratchFolder folder_;
+};
+
+/// Says so where there is none.
+bool have_device();
+
+}  // namespace mcdbn::test

@@ -1,0 +1,154 @@
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "mcdbn/text_file.hpp"
+#include "tiny_pipeline.hpp"
+
+using namespace mcdbn::test;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::set<std::string> stages_of(const fs::path& run) {
+  std::set<std::string> stages;
+  std::istringstream lines(mcdbn::read_text_file(run / "metrics.jsonl"));
+  for (std::string line; std::getline(lines, line);) {
+    const json metrics = json::parse(line);
+    CHECK(metrics.at("loss").is_number());
+    stages.insert(metrics.at("stage"));
+  }
+  return stages;
+}
+
+}  // namespace
+
+TEST_CASE("train writes a run folder") {
+  if (!have_device()) return;
+  const fs::path run = TinyPipeline::instance().folder("run");
+  CHECK(fs::exists(run / "model.safetensors"));
+  CHECK(fs::exists(run / "config.toml"));
+  CHECK(stages_of(run) == std::set<std::string>{"joint"});
+}
+
+TEST_CASE("train --stages leaves stages out") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const auto stages = [&](const std::string& options, const std::string& size) {
+    const fs::path run = pipeline.folder("stages");
+    const std::string all = size + " --quiet " + options;
+    REQUIRE(train(pipeline.training_clips(), run, all).exit_code == 0);
+    return stages_of(run);
+  };
+  const std::set<std::string> greedy{"pose.0", "pose.1", "track.0", "track.1", "mrbm"};
+  CHECK(stages("--stages greedy", kTiny) == greedy);
+  CHECK(stages("--joint-steps 0", kTinyGreedy) == greedy);
+  CHECK(stages("--stages both", kTiny) ==
+        std::set<std::string>{"pose.0", "track.0", "mrbm", "joint"});
+  std::set<std::string> all = greedy;
+  all.insert("joint");
+  CHECK(stages("--stages both --layers 2", kTiny) == all);
+}
+
+TEST_CASE("the same seed trains the same model, from the recorded config too") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const std::string model = mcdbn::read_text_file(pipeline.model());
+  const fs::path config = pipeline.folder("run") / "config.toml";
+
+  REQUIRE(train(pipeline.training_clips(), pipeline.folder("again"),
+                fmt::format("--quiet --config '{}'", config.string()))
+              .exit_code == 0);
+  CHECK(mcdbn::read_text_file(pipeline.folder("again") / "model.safetensors") == model);
+  REQUIRE(train(pipeline.training_clips(), pipeline.folder("other"), kTiny + " --quiet --seed 2")
+              .exit_code == 0);
+  CHECK(mcdbn::read_text_file(pipeline.folder("other") / "model.safetensors") != model);
+}
+
+TEST_CASE("a setting that is on is switched off by --no-NAME") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  REQUIRE(train(pipeline.training_clips(), pipeline.folder("unmirrored"),
+                kTiny + " --quiet --no-augment-mirror")
+              .exit_code == 0);
+  const auto recorded = [&](const char* run) {
+    return mcdbn::read_text_file(pipeline.folder(run) / "config.toml");
+  };
+  CHECK(recorded("run").find("mirror = true") != std::string::npos);
+  CHECK(recorded("unmirrored").find("mirror = false") != std::string::npos);
+}
+
+TEST_CASE("Python's safetensors opens a model file") {
+  if (!have_device()) return;
+  const fs::path python = MCDBN_PYTHON;
+  if (!fs::exists(python)) {
+    MESSAGE("SKIPPED Python's safetensors: scripts/install_dependencies --test installs it");
+    return;
+  }
+  const std::string script = fmt::format(
+      "from safetensors.numpy import load_file\n"
+      "import numpy\n"
+      "tensors = load_file('{}')\n"
+      "assert tensors and all(t.dtype == numpy.float32 and numpy.isfinite(t).all()\n"
+      "                       for t in tensors.values())\n"
+      "print(sum(t.size for t in tensors.values()))\n",
+      TinyPipeline::instance().model().string());
+  const ScratchFolder folder;
+  const fs::path file = folder.write("open_model.py", script);
+  const CliResult result = run_program(python, fmt::format("'{}'", file.string()));
+  CAPTURE(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  CHECK(std::stol(result.standard_output) > 0);
+}
+
+TEST_CASE("the paper's own settings trip the divergence guard, which says what to lower") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const fs::path run = pipeline.folder("paper");
+  const CliResult result = train(pipeline.training_clips(), run, "--preset paper --quiet");
+  CHECK(result.exit_code == 1);
+  CHECK(result.standard_error.find("lower") != std::string::npos);
+  CHECK(!fs::exists(run / "model.safetensors"));
+}
+
+TEST_CASE("an unknown setting is exit code 2 and names its line") {
+  const ScratchFolder folder;
+  const fs::path config = folder.write("bad.toml", "order = 3\nhiden = 20\n");
+  const CliResult result =
+      train("absent.bvh", folder / "run", fmt::format("--config '{}'", config.string()));
+  CHECK(result.exit_code == 2);
+  CHECK(result.standard_error.find(config.string() + ":2: ") != std::string::npos);
+  CHECK(!fs::exists(folder / "run"));
+}
+
+TEST_CASE("a platform or device that is not there is exit code 4 with the list") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const fs::path run = pipeline.folder("nowhere");
+  const std::string name = json::parse(run_cli("devices --json").standard_output)
+                               .at("devices")
+                               .at(0)
+                               .at("name")
+                               .get<std::string>();
+  for (const CliResult& result :
+       {train(pipeline.training_clips(), run, "--platform no-such-platform"),
+        train(pipeline.training_clips(), run, "", "MCDBN_DEVICE=no-such-device")}) {
+    CHECK(result.exit_code == 4);
+    CHECK(result.standard_error.find(name) != std::string::npos);
+  }
+  CHECK(!fs::exists(run));
+}
+
+TEST_CASE("an interrupt is exit code 130 and leaves no model") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const fs::path run = pipeline.folder("interrupted");
+  const CliResult result = train(pipeline.training_clips(), run, "--joint-steps 1000000",
+                                 "timeout --preserve-status --signal=INT 5");
+  CHECK(result.exit_code == 130);
+  CHECK(!fs::exists(run / "model.safetensors"));
+}
