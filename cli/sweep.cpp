@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <sstream>
 
@@ -68,7 +69,7 @@ double inference_s(const Model& model, const std::vector<ClipResult>& results) {
 class Sweep {
  public:
   Sweep(const CommandContext& context, const SweepFile& file, const std::vector<fs::path>& clips,
-        const TrainingConfig& base, fs::path run)
+        const TrainingOptions& base, fs::path run)
       : context_(context),
         device_(Device::open({context.platform, context.device})),
         test_(find_clips(file.test)),
@@ -79,13 +80,14 @@ class Sweep {
 
   /// @return the record, also of a configuration that failed, or was done before
   ordered_json run(const SweepConfiguration& configuration) {
-    TrainingConfig config = base_;
     ordered_json record = {{"name", name_of(configuration)}, {"configuration", ordered_json()}};
     for (const SweepSetting& setting : configuration)
       record["configuration"][setting.name] = setting.value;
     try {
-      for (const SweepSetting& setting : configuration)
-        assign_setting(config, setting.name, setting.value, setting.where);
+      const TrainingConfig config = base_.resolve([&](TrainingConfig& changed) {
+        for (const SweepSetting& setting : configuration)
+          assign_setting(changed, setting.name, setting.value, setting.where);
+      });
       record["settings"] = settings_json(config);
       if (const ordered_json* done = log_.find(record["settings"])) return *done;
       config.validate();
@@ -112,9 +114,10 @@ class Sweep {
       throw InputError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
   }
 
-  /// An epoch of everything first, so that no configuration is charged for compiling.
+  /// An epoch or mini-batch of everything first: no configuration is charged for compiling.
   void build_kernels(TrainingConfig config, const fs::path& folder) {
     config.gaussian.epochs = config.binary.epochs = config.mrbm.epochs = 1;
+    config.joint.steps = std::min<std::size_t>(config.joint.steps, 1);
     CommandContext silent = context_;
     silent.quiet = true;
     train_to_folder(silent, device_, clips_, config, folder, interrupt_);
@@ -154,7 +157,7 @@ class Sweep {
   InterruptGuard interrupt_;
   std::vector<fs::path> test_;
   const std::vector<fs::path>& clips_;
-  TrainingConfig base_;
+  const TrainingOptions& base_;
   fs::path run_;
   SweepLog log_;
 };
@@ -172,7 +175,7 @@ void print_record(const ordered_json& record) {
 }  // namespace
 
 void run_sweep(const CommandContext& context, const SweepFile& file,
-               const std::vector<fs::path>& clips, const TrainingConfig& base,
+               const std::vector<fs::path>& clips, const TrainingOptions& base,
                const fs::path& run) {
   Sweep sweep(context, file, clips, base, run);
   std::vector<ordered_json> records;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "mcdbn/training/config.hpp"
+#include "training_options.hpp"
 
 namespace mcdbn::cli {
 
@@ -32,10 +32,10 @@ SweepFile read_sweep_file(const std::filesystem::path& path);
 /// gets a folder in `run`, and a line in sweep.jsonl: its settings, training and inference time,
 /// PCC and MPJPE; or why it failed, whereupon the next one is tried. Configurations that have a
 /// line already, with the same settings, are not run again.
-/// @param base settings that the sweep does not vary
+/// @param base where settings come from that the sweep does not vary
 /// @throws Interrupted; InputError if the test clips cannot be used
 void run_sweep(const CommandContext& context, const SweepFile& sweep,
-               const std::vector<std::filesystem::path>& clips, const TrainingConfig& base,
+               const std::vector<std::filesystem::path>& clips, const TrainingOptions& base,
                const std::filesystem::path& run);
 
 }  // namespace mcdbn::cli

@@ -20,9 +20,10 @@ struct TrainOptions {
 
 void run_train(const CommandContext& context, const TrainOptions& options) {
   const TrainingConfig config = options.settings.resolve();
+  config.validate();
   const auto files = find_clips(options.data);
   if (!options.sweep.empty()) {
-    run_sweep(context, read_sweep_file(options.sweep), files, config, options.run);
+    run_sweep(context, read_sweep_file(options.sweep), files, options.settings, options.run);
     return;
   }
   Device device = Device::open({context.platform, context.device});

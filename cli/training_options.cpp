@@ -55,11 +55,12 @@ void apply_table(TrainingConfig& config, const toml::table& table, const std::st
   }
 }
 
-void apply_file(TrainingConfig& config, const std::filesystem::path& file) {
+toml::table read_table(const std::filesystem::path& file) {
+  if (file.empty()) return {};
   if (!std::filesystem::is_regular_file(file))
     throw ConfigError(fmt::format("{}: no such file; --config wants a TOML file", file.string()));
   try {
-    apply_table(config, toml::parse_file(file.string()), "", file);
+    return toml::parse_file(file.string());
   } catch (const toml::parse_error& error) {
     throw ConfigError(fmt::format("{}: {}", place(file, error.source()), error.description()));
   }
@@ -76,8 +77,9 @@ void TrainingOptions::add_to(CLI::App& command) {
       .add_option(
           "--stages", stages_,
           "greedy: layer by layer, as the paper does, and with two layers of order 5 and 300 "
-          "units unless told otherwise; joint: the whole network by back-propagation "
-          "(default, but for --preset paper); both: some epochs of the one before the other")
+          "units unless told otherwise; joint: the whole network by back-propagation, from random "
+          "weights; both: some epochs of the one before the other (default, but for --preset "
+          "paper)")
       ->check(CLI::IsMember({"greedy", "joint", "both"}));
   command.add_option("--config", file_, "TOML file of settings; flags override it")
       ->type_name("FILE");
@@ -105,19 +107,18 @@ void TrainingOptions::add_to(CLI::App& command) {
   });
 }
 
-TrainingConfig TrainingOptions::resolve() const {
-  const bool paper = preset_ == "paper";
-  TrainingConfig config = applied_to(paper ? TrainingConfig::paper() : TrainingConfig{});
-  if (config.joint.steps == 0 && !paper) config = applied_to(TrainingConfig::greedy());
-  config.validate();
-  return config;
-}
-
-TrainingConfig TrainingOptions::applied_to(TrainingConfig config) const {
-  if (!file_.empty()) apply_file(config, file_);
-  for (const auto& flag : flags_) flag(config);
-  apply_stages(config);
-  return config;
+TrainingConfig TrainingOptions::resolve(const Change& sweep_change) const {
+  const toml::table table = read_table(file_);
+  const auto applied_to = [&](TrainingConfig config) {
+    apply_table(config, table, "", file_);
+    for (const Change& flag : flags_) flag(config);
+    apply_stages(config);
+    if (sweep_change) sweep_change(config);
+    return config;
+  };
+  if (preset_ == "paper") return applied_to(TrainingConfig::paper());
+  const TrainingConfig config = applied_to({});
+  return config.joint.steps > 0 ? config : applied_to(TrainingConfig::greedy());
 }
 
 void TrainingOptions::apply_stages(TrainingConfig& config) const {

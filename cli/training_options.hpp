@@ -11,22 +11,25 @@
 
 namespace mcdbn::cli {
 
-/// Where a training run's settings come from: a preset, then a TOML file, then flags.
+/// Where a training run's settings come from: a preset, then a TOML file, then flags, then what a
+/// sweep varies.
 class TrainingOptions {
  public:
+  using Change = std::function<void(TrainingConfig&)>;
+
   /// --preset, --config and a flag for every setting of TrainingConfig.
   void add_to(CLI::App& command);
-  /// @throws ConfigError, InputError
-  TrainingConfig resolve() const;
+  /// @param sweep_change the last word
+  /// @return settings whose values may yet be out of range (TrainingConfig::validate)
+  /// @throws ConfigError
+  TrainingConfig resolve(const Change& sweep_change = {}) const;
 
  private:
-  /// The file's settings, the flags' and --stages', over the given ones.
-  TrainingConfig applied_to(TrainingConfig config) const;
   void apply_stages(TrainingConfig& config) const;
 
   std::string preset_ = "default", stages_;
   std::filesystem::path file_;
-  std::vector<std::function<void(TrainingConfig&)>> flags_;
+  std::vector<Change> flags_;
 };
 
 /// Sets the setting of that name, with dots between the parts of it.

@@ -32,7 +32,7 @@ TEST_CASE("train writes a run folder") {
   const fs::path run = TinyPipeline::instance().folder("run");
   CHECK(fs::exists(run / "model.safetensors"));
   CHECK(fs::exists(run / "config.toml"));
-  CHECK(stages_of(run) == std::set<std::string>{"joint"});
+  CHECK(stages_of(run) == std::set<std::string>{"pose.0", "track.0", "mrbm", "joint"});
 }
 
 TEST_CASE("train --stages leaves stages out") {
@@ -47,8 +47,7 @@ TEST_CASE("train --stages leaves stages out") {
   const std::set<std::string> greedy{"pose.0", "pose.1", "track.0", "track.1", "mrbm"};
   CHECK(stages("--stages greedy", kTiny) == greedy);
   CHECK(stages("--joint-steps 0", kTinyGreedy) == greedy);
-  CHECK(stages("--stages both", kTiny) ==
-        std::set<std::string>{"pose.0", "track.0", "mrbm", "joint"});
+  CHECK(stages("--stages joint", kTiny) == std::set<std::string>{"joint"});
   std::set<std::string> all = greedy;
   all.insert("joint");
   CHECK(stages("--stages both --layers 2", kTiny) == all);
@@ -147,8 +146,9 @@ TEST_CASE("an interrupt is exit code 130 and leaves no model") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const fs::path run = pipeline.folder("interrupted");
-  const CliResult result = train(pipeline.training_clips(), run, "--joint-steps 1000000",
-                                 "timeout --preserve-status --signal=INT 5");
+  const CliResult result =
+      train(pipeline.training_clips(), run, "--stages joint --joint-steps 1000000",
+            "timeout --preserve-status --signal=INT 5");
   CHECK(result.exit_code == 130);
   CHECK(!fs::exists(run / "model.safetensors"));
 }

@@ -25,6 +25,8 @@ order = [2, 3]
 hidden = [8, 0]
 [[configuration]]
 gaussian.rate = 50.0
+[[configuration]]
+joint.steps = 0
 """
 
 
@@ -56,7 +58,7 @@ class Scripts(unittest.TestCase):
         (self.folder / "sweep.toml").write_text(text)
         return self.run_cli("train", self.folder / "walk/walk_s01_01.bvh", "-o",
                             self.folder / "sweep", "--sweep", self.folder / "sweep.toml",
-                            "--quiet", "--stages", "both", *TINY.split())
+                            "--quiet", *TINY.split())
 
     def records(self):
         lines = (self.folder / "sweep/sweep.jsonl").read_text().splitlines()
@@ -74,8 +76,12 @@ class Scripts(unittest.TestCase):
         records = self.records()
         self.assertEqual({name: record["status"] for name, record in records.items()}, {
             "hidden=8,order=2": "ok", "hidden=8,order=3": "ok", "hidden=0,order=2": "failed",
-            "hidden=0,order=3": "failed", "gaussian.rate=50.0": "failed"})
+            "hidden=0,order=3": "failed", "gaussian.rate=50.0": "failed",
+            "joint.steps=0": "ok"})
         self.assertIn("lower --gaussian-rate", records["gaussian.rate=50.0"]["error"])
+        layers = {name: record["settings"].get("layers") for name, record in records.items()}
+        self.assertEqual(layers["joint.steps=0"], 2, "the architecture of --stages greedy")
+        self.assertEqual(layers["hidden=8,order=2"], 1)
         scored = records["hidden=8,order=2"]
         self.assertEqual(scored["settings"]["order"], 2)
         self.assertGreater(scored["training_s"], 0)
@@ -86,7 +92,7 @@ class Scripts(unittest.TestCase):
         if self.has_matplotlib():
             plot = self.run_program(SCRIPTS / "plot_sweep.py", self.folder / "sweep")
             self.assertEqual(plot.returncode, 0, plot.stderr)
-            self.assertIn("2 configurations, 3 failed", plot.stderr)
+            self.assertIn("3 configurations, 3 failed", plot.stderr)
             self.assertTrue(is_png(self.folder / "sweep/sweep.png"))
 
     def test_sweep_goes_on_where_it_stopped(self):
@@ -117,8 +123,7 @@ class Scripts(unittest.TestCase):
     def test_plot_metrics(self):
         run = self.folder / "run"
         self.assertEqual(self.run_cli("train", self.folder / "walk", "-o", run, "--quiet",
-                                      "--stages", "both", "--layers", 2, *TINY.split()).returncode,
-                         0)
+                                      "--layers", 2, *TINY.split()).returncode, 0)
         stages = {}
         for line in (run / "metrics.jsonl").read_text().splitlines():
             entry = json.loads(line)
