@@ -7,6 +7,7 @@ there is no Chromium, no Selenium or no OpenCL device.
 """
 
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -122,6 +123,18 @@ class ReportPage(unittest.TestCase):
         for canvas in ("scene", "input", "strip"):
             self.assertGreater(self.picture(canvas)[0], 300, canvas)
         self.shoot("light")
+
+    def test_cards_say_who_is_ahead_by_the_figures_they_show(self):
+        cards = self.all(".card:has(em)")
+        self.assertEqual(len(cards), 4)
+        for card in cards:
+            figure, comparison = (card.find_element(By.TAG_NAME, tag).text for tag in ("b", "em"))
+            word, theirs = re.fullmatch("(beats|behind|level with) .*: (.*)", comparison).groups()
+            lead = float(re.match("[-.0-9]+", figure)[0]) - float(theirs)
+            if "PCC" not in figure:
+                lead = -lead
+            said = "level with" if lead == 0 else "beats" if lead > 0 else "behind"
+            self.assertEqual(word, said, f"{figure} {comparison}")
 
     def test_play_advances_and_pauses(self):
         play = self.find("#play")

@@ -15,9 +15,9 @@ function showAbout() {
   byId("omission").textContent = report.omission;
 }
 
-function card(title, value, unit, comparison, isGood) {
+function card(title, value, unit, comparison, verdict) {
   const box = element("div", {class: "card"}, element("span", {}, title), element("b", {}, value, element("small", {}, unit)));
-  if (comparison) box.append(element("em", {class: isGood ? "good" : "bad"}, comparison));
+  if (comparison) box.append(element("em", {class: verdict}, comparison));
   return box;
 }
 
@@ -27,9 +27,10 @@ function showCards() {
   const add = (title, figure, digits, unit, sign) => {
     if (answer[figure] === null) return;
     const rival = best(figure, sign);
+    const own = answer[figure].toFixed(digits), theirs = rival?.[1][figure].toFixed(digits);
     const wins = rival && sign * (answer[figure] - rival[1][figure]) < 0;
-    byId("cards").append(card(title, answer[figure].toFixed(digits), unit,
-      rival && `${wins ? "beats" : "behind"} ${NAMES[rival[0]] ?? rival[0]}: ${rival[1][figure].toFixed(digits)}`, wins));
+    const [verdict, word] = own === theirs ? ["note", "level with"] : wins ? ["good", "beats"] : ["bad", "behind"];
+    byId("cards").append(card(title, own, unit, rival && `${word} ${NAMES[rival[0]] ?? rival[0]}: ${theirs}`, verdict));
   };
   add("Mean joint error (MPJPE)", "mpjpe_mm", 1, "mm", 1);
   add("Correlation per channel", "pcc_channel", 3, "PCC", -1);
