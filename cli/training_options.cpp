@@ -78,7 +78,7 @@ void TrainingOptions::add_to(CLI::App& command) {
           "--stages", stages_,
           "greedy: layer by layer, as the paper does, and with two layers of order 5 and 300 "
           "units unless told otherwise; joint: the whole network by back-propagation, from random "
-          "weights, where --joint-dropout 0.2 helps; both: some epochs of the one before the other "
+          "weights; both: some epochs of the one before the other "
           "(default, but for --preset paper)")
       ->check(CLI::IsMember({"greedy", "joint", "both"}));
   command.add_option("--config", file_, "TOML file of settings; flags override it")

@@ -35,7 +35,7 @@ struct MultiPredictionSettings {
 struct JointSettings {
   std::size_t steps = 3000;  ///< mini-batches; 0 leaves the stage out
   /// The greedy stages come first, on the same augmented views and from weights of the size that
-  /// the joint stage wants. From there it needs no drop-out, which it does from random weights.
+  /// the joint stage wants.
   bool from_greedy = true;
   std::size_t windows = 48;  ///< in a mini-batch
   /// Windows are drawn from people as their frames to this power: 1 draws every frame alike, 0
