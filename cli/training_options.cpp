@@ -4,6 +4,7 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 
 #include "mcdbn/errors.hpp"
@@ -56,7 +57,6 @@ void apply_table(TrainingConfig& config, const toml::table& table, const std::st
 }
 
 toml::table read_table(const std::filesystem::path& file) {
-  if (file.empty()) return {};
   if (!std::filesystem::is_regular_file(file))
     throw ConfigError(fmt::format("{}: no such file; --config wants a TOML file", file.string()));
   try {
@@ -81,7 +81,15 @@ void TrainingOptions::add_to(CLI::App& command) {
           "weights; both: some epochs of the one before the other "
           "(default, but for --preset paper)")
       ->check(CLI::IsMember({"greedy", "joint", "both"}));
-  command.add_option("--config", file_, "TOML file of settings; flags override it")
+  command
+      .add_option_function<std::filesystem::path>(
+          "--config",
+          [this](const std::filesystem::path& file) {
+            file_ = [table = read_table(file), file](TrainingConfig& config) {
+              apply_table(config, table, "", file);
+            };
+          },
+          "TOML file of settings; flags override it")
       ->type_name("FILE");
   TrainingConfig defaults;
   visit_settings(defaults, [&](const std::string& name, auto& member, const char* help) {
@@ -108,9 +116,8 @@ void TrainingOptions::add_to(CLI::App& command) {
 }
 
 TrainingConfig TrainingOptions::resolve(const Change& sweep_change) const {
-  const toml::table table = read_table(file_);
   const auto applied_to = [&](TrainingConfig config) {
-    apply_table(config, table, "", file_);
+    if (file_) file_(config);
     for (const Change& flag : flags_) flag(config);
     apply_stages(config);
     if (sweep_change) sweep_change(config);

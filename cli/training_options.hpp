@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -28,7 +27,7 @@ class TrainingOptions {
   void apply_stages(TrainingConfig& config) const;
 
   std::string preset_ = "default", stages_;
-  std::filesystem::path file_;
+  Change file_;  ///< --config, read once
   std::vector<Change> flags_;
 };
 

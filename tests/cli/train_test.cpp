@@ -47,6 +47,8 @@ TEST_CASE("train --stages leaves stages out") {
   const std::set<std::string> greedy{"pose.0", "pose.1", "track.0", "track.1", "mrbm"};
   CHECK(stages("--stages greedy", kTiny) == greedy);
   CHECK(stages("--joint-steps 0", kTinyGreedy) == greedy);
+  CHECK(stages("--stages both", kTiny) ==
+        std::set<std::string>{"pose.0", "track.0", "mrbm", "joint"});
   CHECK(stages("--stages joint", kTiny) == std::set<std::string>{"joint"});
   std::set<std::string> all = greedy;
   all.insert("joint");
