@@ -74,7 +74,7 @@ double own_deviation(const FramePrior& prior, std::size_t turn) {
   return own * prior.turn_deviation_rad;
 }
 
-/// The correction as independent numbers of variance 1.
+/// A correction, less the one expected, as independent numbers of variance 1.
 Eigen::VectorXd whitened(const FramePrior& prior, const Eigen::VectorXd& correction) {
   Eigen::VectorXd result = correction;
   for (std::size_t turn = 0; turn < prior.parents.size(); ++turn) {
@@ -114,7 +114,11 @@ void whiten(const FramePrior& prior, MatrixD& jacobian) {
 class Equations {
  public:
   Equations(const std::vector<Sight>& sights, const FramePrior& prior)
-      : sights_(sights), prior_(prior), miss_(2 * static_cast<Eigen::Index>(sights.size())) {}
+      : sights_(sights), prior_(prior), miss_(2 * static_cast<Eigen::Index>(sights.size())) {
+    expected_ = prior.expected.size() > 0 ? prior.expected : Eigen::VectorXd::Zero(parameters());
+  }
+
+  const Eigen::VectorXd& expected() const { return expected_; }
 
   Eigen::Index parameters() const {
     return 3 * static_cast<Eigen::Index>(prior_.parents.size()) + 3;
@@ -123,7 +127,7 @@ class Equations {
   /// Half of −log of prior and likelihood, up to a constant.
   double cost(const Eigen::VectorXd& correction, double scale) {
     look(Turns(correction));
-    double sum = whitened(prior_, correction).squaredNorm();
+    double sum = whitened(prior_, correction - expected_).squaredNorm();
     for (std::size_t k = 0; k < sights_.size(); ++k) {
       const double square = miss_squared(k) / scale;
       sum += kCauchy * kCauchy * scale * std::log1p(square / (kCauchy * kCauchy));
@@ -170,12 +174,12 @@ class Equations {
         turns.add_jacobian(sights_[k], position, jacobian.middleRows<2>(row));
       }
     }
-    const Eigen::VectorXd wanted = miss_ + jacobian * correction;
+    const Eigen::VectorXd wanted = miss_ + jacobian * (correction - expected_);
     whiten(prior_, jacobian);
     Eigen::MatrixXd system = jacobian * jacobian.transpose();
     system.diagonal() += variance_;
     system_.compute(system);
-    return coloured(prior_, jacobian.transpose() * system_.solve(wanted));
+    return expected_ + coloured(prior_, jacobian.transpose() * system_.solve(wanted));
   }
 
   double step_size(const Eigen::VectorXd& step) const {
@@ -201,7 +205,7 @@ class Equations {
 
   const std::vector<Sight>& sights_;
   const FramePrior& prior_;
-  Eigen::VectorXd miss_, variance_;
+  Eigen::VectorXd expected_, miss_, variance_;
   Eigen::LLT<Eigen::MatrixXd> system_;
 };
 
@@ -230,7 +234,7 @@ Eigen::Matrix<double, 2, Eigen::Dynamic> ray_jacobian(const Sight& sight,
 
 FrameFit fit_frame(const std::vector<Sight>& sights, const FramePrior& prior) {
   Equations equations(sights, prior);
-  FrameFit fit{Eigen::VectorXd::Zero(equations.parameters()), {}};
+  FrameFit fit{equations.expected(), {}};
   if (sights.empty() || !(prior.place.z() > 0)) return fit;
   // All joints first: how well they can be met tells what is out of the ordinary.
   fit.correction = equations.solve(fit.correction, 1, false);

@@ -26,6 +26,7 @@ struct FramePrior {
   double turn_deviation_rad = 0;  ///< of each orientation's turn about each axis
   double likeness = 0;            ///< correlation of a turn with its parent's
   double place_deviation = 1;     ///< of the place, in its units
+  Eigen::VectorXd expected;       ///< mean of the correction; empty: zero
 };
 
 /// Rotation by the vector's length about it.
@@ -48,7 +49,7 @@ struct FrameFit {
 
 /// The most likely correction: Gauss-Newton on rays and prior together, halving steps that make it
 /// worse. Cauchy's weights let go of joints that nothing likely explains; joints behind the camera
-/// do not count. Zero if nothing is seen, or if the root is behind the camera.
+/// do not count. What is expected if nothing is seen, or if the root is behind the camera.
 FrameFit fit_frame(const std::vector<Sight>& sights, const FramePrior& prior);
 
 /// How many of the fit's misses its correction does not use up: the trace of how much of a change

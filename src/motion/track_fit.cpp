@@ -25,6 +25,9 @@ constexpr int kNoiseRounds = 4;
 constexpr double kFirstNoise_px = 4;
 /// No estimator of 2D joints is better than this, so no clip is left unsmoothed.
 constexpr double kLeastNoise_px = 0.25;
+/// How far around a frame its neighbours are asked, and how often, until they agree.
+constexpr double kNeighbours_s = 1.0 / 15;
+constexpr int kNeighbourRounds = 4;
 constexpr int kOrientation = 6;  ///< numbers of one orientation
 
 /// One frame of the answer and what the track says of it.
@@ -140,21 +143,29 @@ double misfit(const std::vector<Frame>& frames, FramePrior prior, double start, 
   return std::max(least, noise);
 }
 
+/// Mean of the rows around row `t`, weighted by a Gaussian of that deviation.
+/// @param itself whether row `t` counts
+RowVectorD mean_around(const MatrixD& values, Eigen::Index t, double deviation_frames,
+                       bool itself) {
+  const auto reach = static_cast<Eigen::Index>(std::ceil(3 * deviation_frames));
+  const Eigen::Index last = std::min(values.rows() - 1, t + reach);
+  RowVectorD sum = RowVectorD::Zero(values.cols());
+  double total = 0;
+  for (Eigen::Index k = std::max<Eigen::Index>(0, t - reach); k <= last; ++k) {
+    if (k == t && !itself) continue;
+    const double away = static_cast<double>(k - t) / deviation_frames;
+    const double weight = std::exp(-0.5 * away * away);
+    sum += weight * values.row(k);
+    total += weight;
+  }
+  return sum / total;
+}
+
 /// @return [rows x columns], Gaussian of that deviation over the rows
 MatrixD smoothed(const MatrixD& values, double deviation_frames) {
-  const auto reach = static_cast<Eigen::Index>(std::ceil(3 * deviation_frames));
   MatrixD result(values.rows(), values.cols());
   for (Eigen::Index t = 0; t < values.rows(); ++t) {
-    RowVectorD sum = RowVectorD::Zero(values.cols());
-    double total = 0;
-    const Eigen::Index last = std::min(values.rows() - 1, t + reach);
-    for (Eigen::Index k = std::max<Eigen::Index>(0, t - reach); k <= last; ++k) {
-      const double away = static_cast<double>(k - t) / deviation_frames;
-      const double weight = std::exp(-0.5 * away * away);
-      sum += weight * values.row(k);
-      total += weight;
-    }
-    result.row(t) = sum / total;
+    result.row(t) = mean_around(values, t, deviation_frames, true);
   }
   return result;
 }
@@ -188,16 +199,37 @@ MatrixD turned(MatrixD features, const MatrixD& turns) {
   return features;
 }
 
-/// The turns of every frame, each for itself. @return [frames x 3·orientations] radians
-MatrixD solve(const std::vector<Frame>& frames, FramePrior prior, double noise) {
-  MatrixD turns(static_cast<Eigen::Index>(frames.size()),
-                3 * static_cast<Eigen::Index>(prior.parents.size()));
-  for (std::size_t t = 0; t < frames.size(); ++t) {
-    prior.place = frames[t].place;
-    const FrameFit fit = fit_frame(usable(frames[t], noise), prior);
-    turns.row(static_cast<Eigen::Index>(t)) = fit.correction.head(turns.cols()).transpose();
+/// The prior of a frame whose neighbours' mean correction is known: what both say together.
+/// @param change deviation from the neighbours', as a share of the prior's own
+FramePrior beside(const RowVectorD& neighbours, double change, FramePrior prior) {
+  const double both = 1 + change * change;
+  const double share = change / std::sqrt(both);
+  prior.expected = neighbours.transpose() / both;
+  prior.turn_deviation_rad *= share;
+  prior.place_deviation *= share;
+  return prior;
+}
+
+/// The turns of every frame: first each for itself, then as its neighbours make them likely. A bone
+/// that leans towards the camera looks like one that leans away from it as much; where a frame took
+/// it for the wrong one its neighbours tell.
+/// @return [frames x 3·orientations] radians
+MatrixD solve(const std::vector<Frame>& frames, FramePrior prior, double noise, double change,
+              double neighbours_frames) {
+  const auto count = static_cast<Eigen::Index>(frames.size());
+  const Eigen::Index turns = 3 * static_cast<Eigen::Index>(prior.parents.size());
+  MatrixD corrections(count, turns + 3);
+  const auto fit = [&](Eigen::Index t, FramePrior with) {
+    with.place = frames[t].place;
+    corrections.row(t) = fit_frame(usable(frames[t], noise), with).correction.transpose();
+  };
+  for (Eigen::Index t = 0; t < count; ++t) fit(t, prior);
+  for (int round = 0; round < kNeighbourRounds && count > 1; ++round) {
+    for (Eigen::Index t = 0; t < count; ++t) {
+      fit(t, beside(mean_around(corrections, t, neighbours_frames, false), change, prior));
+    }
   }
-  return turns;
+  return corrections.leftCols(turns);
 }
 
 void check_shapes(const PoseFeatures& pose_features, const MatrixD& features, const Motion& answer,
@@ -243,7 +275,7 @@ MatrixD fit_to_track(const PoseFeatures& pose_features, const MatrixD& features,
                                  fit.proportions_m * units / std::max(depth, 1e-9)});
   const double noise = misfit(frames, prior, std::max(least, kFirstNoise_px / focal_px), least);
 
-  MatrixD turns = solve(frames, prior, noise);
+  MatrixD turns = solve(frames, prior, noise, fit.change, kNeighbours_s / frame_time_s);
   const double noise_m = track_noise * depth / units;
   if (noise_m > 0) {
     turns = smoothed(turns, best_width_frames(noise_m, fit.bend_m_s2, frame_time_s));

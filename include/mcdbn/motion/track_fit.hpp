@@ -10,7 +10,8 @@ namespace mcdbn {
 
 /// How far an answer may be bent to meet the track.
 struct TrackFit {
-  double turn_deg = 12;         ///< standard deviation of an orientation about each axis
+  double turn_deg = 15;         ///< standard deviation of an orientation about each axis
+  double change = 0.45;         ///< of a turn from those of the frames around it, as a share of it
   double likeness = 0.6;        ///< correlation of a joint's turn with its parent's
   double place_m = 0.1;         ///< standard deviation of the root's place, on a 1.7 m body
   double least_noise_px = 0.5;  ///< what the track is off by, however well it can be met
@@ -20,12 +21,13 @@ struct TrackFit {
   /// How fast the answer's error changes (RMS of its acceleration, on a 1.7 m body): with the
   /// track's noise it says over how many frames to smooth.
   double bend_m_s2 = 0.7;
-  double fade_s = 0.15;  ///< how long a joint's correction outlives the joint's last sight
+  double fade_s = 0.1;  ///< how long a joint's correction outlives the joint's last sight
 };
 
 /// Moves an answer so that its joints lie where the track shows them. The answer is the prior:
 /// every orientation is turned about the camera's axes, and the root shifted, as is most likely
-/// given the track (Gauss-Newton per frame; joints that nothing likely explains are let go of).
+/// given the track and the frames around (Gauss-Newton per frame, in rounds; joints that nothing
+/// likely explains are let go of).
 /// How much the track counts is told from the clip: from how well it can be met at all, so that the
 /// track of a body of other proportions, or of joints put elsewhere, is not taken at its word. The
 /// turns are smoothed over time as much as the track's noise asks for, and fade where joints go
