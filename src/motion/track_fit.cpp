@@ -271,9 +271,11 @@ MatrixD fit_to_track(const PoseFeatures& pose_features, const MatrixD& features,
   prior.turn_deviation_rad = fit.turn_deg * std::numbers::pi / 180;
   prior.likeness = fit.likeness;
   prior.place_deviation = fit.place_m * units;
-  const double least = std::max({track_noise, fit.least_noise_px / focal_px,
-                                 fit.proportions_m * units / std::max(depth, 1e-9)});
-  const double noise = misfit(frames, prior, std::max(least, kFirstNoise_px / focal_px), least);
+  const double least = std::max(track_noise, fit.proportions_m * units / std::max(depth, 1e-9));
+  // What a bone's length on the image is off by is taken for depth, most where the bone hardly
+  // leans: noise there does not average out.
+  const double noise =
+      fit.caution * misfit(frames, prior, std::max(least, kFirstNoise_px / focal_px), least);
 
   MatrixD turns = solve(frames, prior, noise, fit.change, kNeighbours_s / frame_time_s);
   const double noise_m = track_noise * depth / units;

@@ -10,11 +10,11 @@ namespace mcdbn {
 
 /// How far an answer may be bent to meet the track.
 struct TrackFit {
-  double turn_deg = 15;         ///< standard deviation of an orientation about each axis
-  double change = 0.45;         ///< of a turn from those of the frames around it, as a share of it
-  double likeness = 0.6;        ///< correlation of a joint's turn with its parent's
-  double place_m = 0.1;         ///< standard deviation of the root's place, on a 1.7 m body
-  double least_noise_px = 0.5;  ///< what the track is off by, however well it can be met
+  double turn_deg = 25;   ///< standard deviation of an orientation about each axis
+  double change = 0.4;    ///< of a turn from those of the frames around it, as a share of it
+  double likeness = 0.5;  ///< correlation of a joint's turn with its parent's
+  double place_m = 0.1;   ///< standard deviation of the root's place, on a 1.7 m body
+  double caution = 2;     ///< how many times the track's noise it is taken to be off by
   /// How far, at least, joints are from where a body of the skeleton's proportions has them, on a
   /// 1.7 m body: for a skeleton that is not the person's own.
   double proportions_m = 0;
