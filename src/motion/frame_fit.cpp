@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "mcdbn/matrix_types.hpp"
-#include "track_rays.hpp"
+#include "robust_residuals.hpp"
 
 namespace mcdbn {
 namespace {
@@ -14,7 +14,6 @@ namespace {
 constexpr int kRounds = 10, kHalvings = 5;
 /// A step of this share of the prior's deviations, RMS, is not worth another round.
 constexpr double kSmallStep = 0.02;
-constexpr double kCauchy = 2.385;
 /// Nearer than this share of the root's depth a joint cannot be.
 constexpr double kNearest = 0.1;
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mcdbn/errors.hpp"
+#include "robust_residuals.hpp"
 #include "track_rays.hpp"
 
 namespace mcdbn {
@@ -26,8 +27,6 @@ constexpr double kFastest_m_s = 50.0;
 /// No estimator of 2D joints is better than this, so no frame is trusted without limit.
 constexpr double kLeastNoise_px = 0.25;
 constexpr int kRounds = 12;
-/// Cauchy's weight keeps 95 % of least squares' precision where the noise is normal.
-constexpr double kCauchy = 2.385;
 constexpr int kFewestJoints = 3;
 
 /// One joint as one frame sees it.

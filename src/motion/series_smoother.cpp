@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "robust_residuals.hpp"
+
 namespace mcdbn {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 constexpr int kRounds = 3;
-/// Cauchy's weight keeps 95 % of least squares' precision where the noise is normal.
-constexpr double kCauchy = 2.385;
 /// A variance that says nothing of any number of pixels or of rays.
 constexpr double kAnything = 1e8;
 

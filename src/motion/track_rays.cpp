@@ -1,7 +1,5 @@
 #include "track_rays.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <opencv2/calib3d.hpp>
 
 namespace mcdbn {
@@ -55,14 +53,6 @@ TrackRays track_rays(const std::vector<std::string>& joint_names, const Track2d&
     }
   }
   return result;
-}
-
-double robust_deviation(std::vector<double> residuals) {
-  if (residuals.empty()) return 0;
-  for (double& residual : residuals) residual = std::abs(residual);
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  return 1.4826 * *middle;
 }
 
 }  // namespace mcdbn

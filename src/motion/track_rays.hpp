@@ -23,8 +23,4 @@ struct TrackRays {
 TrackRays track_rays(const std::vector<std::string>& joint_names, const Track2d& track,
                      const Camera& camera);
 
-/// Standard deviation of the bulk of the residuals, whatever the signs: 1.4826 times their middle
-/// size, as of the normal distribution. 0 for none.
-double robust_deviation(std::vector<double> residuals);
-
 }  // namespace mcdbn

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "robust_residuals.hpp"
 #include "series_smoother.hpp"
-#include "track_rays.hpp"
 
 namespace mcdbn {
 namespace {
