@@ -114,4 +114,8 @@ std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>
   return result;
 }
 
+MatrixF single_answer(const Mcdbn& network, const MatrixF& track) {
+  return regenerate(network, {track}).front();
+}
+
 }  // namespace mcdbn

@@ -96,11 +96,22 @@ class Progress {
   const TestRunOptions& options_;
 };
 
+ClipPlacement placement_of(const EncodedClip& truth, const TestRunOptions& options) {
+  return {truth.camera, truth.motion.skeleton, options.fit};
+}
+
+/// What a method sees of the clip; what it does not it is left to fill in itself.
+MatrixF seen_features(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
+                      const std::function<MatrixF(const MatrixF&)>& answer) {
+  return fill_gaps(model.modalities, truth.track_features, truth.track,
+                   placement_of(truth, options), answer);
+}
+
 Regeneration answer(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
                     const MatrixF& pose) {
   Regeneration result;
-  result.motion = motion_from_features(model.modalities, pose, truth.track,
-                                       {truth.camera, truth.motion.skeleton, options.fit});
+  result.motion =
+      motion_from_features(model.modalities, pose, truth.track, placement_of(truth, options));
   result.score = score_clip(truth, result.motion, model.modalities.root_name());
   return result;
 }
@@ -115,7 +126,11 @@ void regenerate_clips(const Model& model, const TestRunOptions& options, const P
     progress.show("regenerating", Progress::kRegeneration, first, results.size());
     const std::size_t last = std::min(results.size(), first + at_once);
     std::vector<MatrixF> tracks;
-    for (std::size_t i = first; i < last; ++i) tracks.push_back(results[i].truth.track_features);
+    for (std::size_t i = first; i < last; ++i) {
+      tracks.push_back(seen_features(model, options, results[i].truth, [&](const MatrixF& track) {
+        return single_answer(model.network, track);
+      }));
+    }
     RegenerationOptions regeneration = options.regeneration;
     regeneration.seed += first;  // other random numbers for other clips
     const auto poses = regenerate(model.network, tracks, regeneration);
@@ -152,9 +167,11 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
       baselines[i]->fit(options.view_tracks, options.view_poses);
     else
       baselines[i]->fit(tracks, poses);
-    for (ClipResult& result : results)
-      result.others[name] =
-          answer(model, options, result.truth, baselines[i]->predict(result.truth.track_features));
+    for (ClipResult& result : results) {
+      const auto predict = [&](const MatrixF& track) { return baselines[i]->predict(track); };
+      result.others[name] = answer(model, options, result.truth,
+                                   predict(seen_features(model, options, result.truth, predict)));
+    }
   }
 }
 

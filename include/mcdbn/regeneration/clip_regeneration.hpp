@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,16 @@ struct ClipPlacement {
 /// @param pose standardized 3D [frames x dimension]  @return the clip at the model's rate
 Motion motion_from_features(const Modalities& modalities, const MatrixF& pose, const Track2d& track,
                             const ClipPlacement& placement);
+
+/// The features of a track of which parts are out of sight for long, with what an answer to the
+/// rest shows there in place of NaN; the answer to that fills them anew, in rounds.
+/// @param features standardized 2D of `track` [frames x dimension], NaN where joints are missing
+/// @param answer standardized 3D [frames x dimension] to such features, its own guess for NaN
+/// @return the same where nothing is missing
+/// @throws InputError if next to nothing of the person is seen, as root_trajectory does
+MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const Track2d& track,
+                  const ClipPlacement& placement,
+                  const std::function<MatrixF(const MatrixF&)>& answer);
 
 /// 3D motion from a 2D track, `samples` times. The track is brought to the model's rate and the
 /// motion back to the track's: as many frames as the track has.

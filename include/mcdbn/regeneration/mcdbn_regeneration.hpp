@@ -34,4 +34,7 @@ struct RegenerationOptions {
 std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>& tracks,
                                 const RegenerationOptions& options = {});
 
+/// The mean-field answer to one track: regenerate at temperature 0.
+MatrixF single_answer(const Mcdbn& network, const MatrixF& track);
+
 }  // namespace mcdbn
