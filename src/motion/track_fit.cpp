@@ -277,7 +277,8 @@ MatrixD fit_to_track(const PoseFeatures& pose_features, const MatrixD& features,
   const double noise =
       fit.caution * misfit(frames, prior, std::max(least, kFirstNoise_px / focal_px), least);
 
-  MatrixD turns = solve(frames, prior, noise, fit.change, kNeighbours_s / frame_time_s);
+  const double neighbours = std::max(0.5, kNeighbours_s / frame_time_s);
+  MatrixD turns = solve(frames, prior, noise, fit.change, neighbours);
   const double noise_m = track_noise * depth / units;
   if (noise_m > 0) {
     turns = smoothed(turns, best_width_frames(noise_m, fit.bend_m_s2, frame_time_s));
