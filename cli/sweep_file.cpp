@@ -1,7 +1,7 @@
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include "mcdbn/errors.hpp"
+#include "settings_file.hpp"
 #include "sweep.hpp"
 
 namespace mcdbn::cli {
@@ -9,19 +9,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string place(const fs::path& file, const toml::source_region& source) {
-  return fmt::format("{}:{}", file.string(), source.begin.line);
-}
-
 [[noreturn]] void reject(const fs::path& file, const toml::node& node, const std::string& what) {
-  throw ConfigError(fmt::format("{}: {}", place(file, node.source()), what));
+  throw ConfigError(fmt::format("{}: {}", place_of(file, node), what));
 }
 
-nlohmann::json scalar_of(const fs::path& file, const toml::node& node) {
-  if (const auto* boolean = node.as_boolean()) return boolean->get();
-  if (const auto* integer = node.as_integer()) return integer->get();
-  if (const auto* number = node.as_floating_point()) return number->get();
-  reject(file, node, "a setting is a number or true or false");
+nlohmann::json setting_of(const fs::path& file, const toml::node& node) {
+  nlohmann::json value = scalar_of(node);
+  if (value.is_null()) reject(file, node, "a setting is a number or true or false");
+  return value;
 }
 
 /// The choices for each setting of a table, `a.b` for nested ones; one choice where there is no
@@ -35,14 +30,14 @@ std::vector<std::vector<SweepSetting>> choices_of(const fs::path& file, const to
       for (auto& choices : choices_of(file, *inner, name + ".")) all.push_back(std::move(choices));
       continue;
     }
-    const std::string where = place(file, node.source());
+    const std::string where = place_of(file, node);
     std::vector<SweepSetting> choices;
     if (const toml::array* list = node.as_array()) {
       for (const toml::node& value : *list)
-        choices.push_back({name, scalar_of(file, value), where});
+        choices.push_back({name, setting_of(file, value), where});
       if (choices.empty()) reject(file, node, fmt::format("'{}' has no value to try", name));
     } else {
-      choices.push_back({name, scalar_of(file, node), where});
+      choices.push_back({name, setting_of(file, node), where});
     }
     all.push_back(std::move(choices));
   }
@@ -106,13 +101,7 @@ SweepFile sweep_of(const fs::path& file, const toml::table& table) {
 }  // namespace
 
 SweepFile read_sweep_file(const fs::path& path) {
-  if (!fs::is_regular_file(path))
-    throw ConfigError(fmt::format("{}: no such file; --sweep wants a TOML file", path.string()));
-  try {
-    return sweep_of(path, toml::parse_file(path.string()));
-  } catch (const toml::parse_error& error) {
-    throw ConfigError(fmt::format("{}: {}", place(path, error.source()), error.description()));
-  }
+  return sweep_of(path, read_settings_file(path, "--sweep"));
 }
 
 }  // namespace mcdbn::cli

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
 
 #include "mcdbn/errors.hpp"
+#include "settings_file.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -25,18 +25,6 @@ nlohmann::json& nested(nlohmann::json& root, const std::string& name) {
   return root[nlohmann::json::json_pointer(pointer)];
 }
 
-std::string place(const std::filesystem::path& file, const toml::source_region& source) {
-  return fmt::format("{}:{}", file.string(), source.begin.line);
-}
-
-/// Null for what no setting can be.
-nlohmann::json scalar_of(const toml::node& node) {
-  if (const auto* boolean = node.as_boolean()) return boolean->get();
-  if (const auto* integer = node.as_integer()) return integer->get();
-  if (const auto* number = node.as_floating_point()) return number->get();
-  return nullptr;
-}
-
 template <typename Member>
 bool fits(const nlohmann::json& value) {
   if constexpr (std::is_same_v<Member, bool>) return value.is_boolean();
@@ -52,17 +40,7 @@ void apply_table(TrainingConfig& config, const toml::table& table, const std::st
     if (const toml::table* inner = node.as_table())
       apply_table(config, *inner, name + ".", file);
     else
-      assign_setting(config, name, scalar_of(node), place(file, node.source()));
-  }
-}
-
-toml::table read_table(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file))
-    throw ConfigError(fmt::format("{}: no such file; --config wants a TOML file", file.string()));
-  try {
-    return toml::parse_file(file.string());
-  } catch (const toml::parse_error& error) {
-    throw ConfigError(fmt::format("{}: {}", place(file, error.source()), error.description()));
+      assign_setting(config, name, scalar_of(node), place_of(file, node));
   }
 }
 
@@ -85,7 +63,7 @@ void TrainingOptions::add_to(CLI::App& command) {
       .add_option_function<std::filesystem::path>(
           "--config",
           [this](const std::filesystem::path& file) {
-            file_ = [table = read_table(file), file](TrainingConfig& config) {
+            file_ = [table = read_settings_file(file, "--config"), file](TrainingConfig& config) {
               apply_table(config, table, "", file);
             };
           },
