@@ -5,13 +5,6 @@
 #include "mcdbn/errors.hpp"
 
 namespace mcdbn::cli {
-namespace {
-
-std::string place(const std::filesystem::path& file, const toml::source_region& source) {
-  return fmt::format("{}:{}", file.string(), source.begin.line);
-}
-
-}  // namespace
 
 toml::table read_settings_file(const std::filesystem::path& file, const std::string& option) {
   if (!std::filesystem::is_regular_file(file))
@@ -19,12 +12,12 @@ toml::table read_settings_file(const std::filesystem::path& file, const std::str
   try {
     return toml::parse_file(file.string());
   } catch (const toml::parse_error& error) {
-    throw ConfigError(fmt::format("{}: {}", place(file, error.source()), error.description()));
+    throw ConfigError(fmt::format("{}: {}", place_of(file, error.source()), error.description()));
   }
 }
 
-std::string place_of(const std::filesystem::path& file, const toml::node& node) {
-  return place(file, node.source());
+std::string place_of(const std::filesystem::path& file, const toml::source_region& source) {
+  return fmt::format("{}:{}", file.string(), source.begin.line);
 }
 
 nlohmann::json scalar_of(const toml::node& node) {

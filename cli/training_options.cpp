@@ -40,7 +40,7 @@ void apply_table(TrainingConfig& config, const toml::table& table, const std::st
     if (const toml::table* inner = node.as_table())
       apply_table(config, *inner, name + ".", file);
     else
-      assign_setting(config, name, scalar_of(node), place_of(file, node));
+      assign_setting(config, name, scalar_of(node), place_of(file, node.source()));
   }
 }
 

@@ -219,9 +219,11 @@ MatrixD solve(const std::vector<Frame>& frames, FramePrior prior, double noise, 
   const auto count = static_cast<Eigen::Index>(frames.size());
   const Eigen::Index turns = 3 * static_cast<Eigen::Index>(prior.parents.size());
   MatrixD corrections(count, turns + 3);
+  std::vector<std::vector<Sight>> sights;
+  for (const Frame& frame : frames) sights.push_back(usable(frame, noise));
   const auto fit = [&](Eigen::Index t, FramePrior with) {
     with.place = frames[t].place;
-    corrections.row(t) = fit_frame(usable(frames[t], noise), with).correction.transpose();
+    corrections.row(t) = fit_frame(sights[t], with).correction.transpose();
   };
   for (Eigen::Index t = 0; t < count; ++t) fit(t, prior);
   for (int round = 0; round < kNeighbourRounds && count > 1; ++round) {

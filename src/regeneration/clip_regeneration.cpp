@@ -91,9 +91,17 @@ Motion decoded(const Modalities& modalities, const Placed& placed, const Skeleto
                                          modalities.fps, placed.root);
 }
 
+/// The placement's fit, which allows for other proportions where the skeleton is not the person's.
+std::optional<TrackFit> fit_of(const ClipPlacement& placement) {
+  std::optional<TrackFit> fit = placement.fit;
+  if (fit && !placement.skeleton) fit->proportions_m = std::max(fit->proportions_m, kProportions_m);
+  return fit;
+}
+
 /// Puts an answer where the track shows it, and with a fit its joints too.
 Placed place(const Modalities& modalities, const MatrixF& pose, const Track2d& track,
-             const std::optional<TrackFit>& fit, const Skeleton& skeleton, const Camera& camera) {
+             const ClipPlacement& placement, const Camera& camera) {
+  const Skeleton& skeleton = skeleton_of(modalities, placement);
   Placed placed{modalities.pose_scale.invert(pose), MatrixD()};
   const MatrixD root_features = modalities.pose_features.root_features(placed.features);
   const MatrixD velocity =
@@ -105,6 +113,7 @@ Placed place(const Modalities& modalities, const MatrixF& pose, const Track2d& t
                         modalities.root_name());
   };
   placed.root = root_trajectory(relative_positions(), names, track, camera, velocity);
+  const std::optional<TrackFit> fit = fit_of(placement);
   if (!fit) return placed;
   placed.features =
       fit_to_track(modalities.pose_features, placed.features,
@@ -116,13 +125,6 @@ Placed place(const Modalities& modalities, const MatrixF& pose, const Track2d& t
                        skeleton.find(modalities.root_name()), foot_joints(skeleton), velocity);
   placed.root = root_trajectory(positions, names, track, camera, planted, kPlantedError_m_s2);
   return placed;
-}
-
-/// The placement's fit, which allows for other proportions where the skeleton is not the person's.
-std::optional<TrackFit> fit_of(const ClipPlacement& placement) {
-  std::optional<TrackFit> fit = placement.fit;
-  if (fit && !placement.skeleton) fit->proportions_m = std::max(fit->proportions_m, kProportions_m);
-  return fit;
 }
 
 Motion with_frames(Motion motion, Eigen::Index frames) {
@@ -140,7 +142,7 @@ Motion motion_from_features(const Modalities& modalities, const MatrixF& pose, c
                             const ClipPlacement& placement) {
   const Skeleton& skeleton = skeleton_of(modalities, placement);
   const Camera camera = camera_of(modalities, track, placement);
-  Placed placed = place(modalities, pose, track, fit_of(placement), skeleton, camera);
+  Placed placed = place(modalities, pose, track, placement, camera);
   if (!placement.camera) {
     const double height = modalities.pose_features.root_features(placed.features).col(0).mean();
     put_at_origin(placed.root, file_units_per_metre(skeleton) * height);
@@ -156,8 +158,7 @@ MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const T
   const Camera camera = camera_of(modalities, track, placement);
   MatrixF filled = features;
   for (int round = 0; round < kGapRounds; ++round) {
-    const Placed placed =
-        place(modalities, answer(filled), track, fit_of(placement), skeleton, camera);
+    const Placed placed = place(modalities, answer(filled), track, placement, camera);
     Track2d shown = project_motion(decoded(modalities, placed, skeleton, camera), camera);
     shown.width_px = track.width_px;
     shown.height_px = track.height_px;

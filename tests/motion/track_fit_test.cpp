@@ -212,9 +212,8 @@ TEST_CASE("track fit: an arm's correction fades where the arm is hidden, and not
   Track2d hidden = scene.track;
   REQUIRE(!hide_arm(hidden, scene.truth.skeleton, 1.2, 1).empty());
   const MatrixD change = scene.fit() - scene.features, faded = scene.fit(hidden) - scene.features;
-  // Over the frames that it is remembered, not at once.
-  CHECK(largest_step(faded) <
-        change.rowwise().norm().maxCoeff() / (TrackFit{}.fade_s * scene.truth.fps()));
+  // Over some frames, not at once: those that it is remembered, and its neighbours.
+  CHECK(largest_step(faded) < change.rowwise().norm().maxCoeff() / 4.5);
   // In the middle of the gap it is gone: 1.2 s are 6 memories to either side.
   const auto names = scene.pose_features.feature_names();
   const Skeleton& skeleton = scene.pose_features.skeleton();
