@@ -32,6 +32,13 @@ Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& turn) {
          (angle - std::sin(angle)) / (angle * angle * angle) * cross * cross;
 }
 
+/// d ray / d position.
+Eigen::Matrix<double, 2, 3> projection(const Eigen::Vector3d& position) {
+  Eigen::Matrix<double, 2, 3> result;
+  result << 1, 0, -position.x() / position.z(), 0, 1, -position.y() / position.z();
+  return result / position.z();
+}
+
 /// Turns as matrices, made once for all joints.
 class Turns {
  public:
@@ -43,23 +50,22 @@ class Turns {
     shift_ = correction.tail<3>();
   }
 
-  Eigen::Vector3d position(const Sight& sight, const Eigen::Vector3d& place) const {
+  Eigen::Vector3d position(const std::vector<Lever>& levers, const Eigen::Vector3d& place) const {
     Eigen::Vector3d position = place + shift_;
-    for (const Lever& lever : sight.levers) position += rotation_[lever.turn] * lever.bone;
+    for (const Lever& lever : levers) position += rotation_[lever.turn] * lever.bone;
     return position;
   }
 
-  /// @param rows [2 x parameters] zero on entry
-  template <typename Rows>
-  void add_jacobian(const Sight& sight, const Eigen::Vector3d& position, Rows&& rows) const {
-    Eigen::Matrix<double, 2, 3> projection;
-    projection << 1, 0, -position.x() / position.z(), 0, 1, -position.y() / position.z();
-    projection /= position.z();
-    for (const Lever& lever : sight.levers) {
+  /// Of what is made of a joint's position by `of_position` [rows x 3].
+  /// @param rows [rows x parameters] zero on entry
+  template <typename Matrix, typename Rows>
+  void add_jacobian(const std::vector<Lever>& levers, const Matrix& of_position,
+                    Rows&& rows) const {
+    for (const Lever& lever : levers) {
       rows.template middleCols<3>(3 * lever.turn) -=
-          projection * cross_matrix(rotation_[lever.turn] * lever.bone) * jacobian_[lever.turn];
+          of_position * cross_matrix(rotation_[lever.turn] * lever.bone) * jacobian_[lever.turn];
     }
-    rows.template rightCols<3>() = projection;
+    rows.template rightCols<3>() = of_position;
   }
 
  private:
@@ -113,7 +119,7 @@ void whiten(const FramePrior& prior, MatrixD& jacobian) {
 class Equations {
  public:
   Equations(const std::vector<Sight>& sights, const FramePrior& prior)
-      : sights_(sights), prior_(prior), miss_(2 * static_cast<Eigen::Index>(sights.size())) {
+      : sights_(sights), prior_(prior), miss_(held_row(prior.held.size())) {
     expected_ = prior.expected.size() > 0 ? prior.expected : Eigen::VectorXd::Zero(parameters());
   }
 
@@ -131,14 +137,17 @@ class Equations {
       const double square = miss_squared(k) / scale;
       sum += kCauchy * kCauchy * scale * std::log1p(square / (kCauchy * kCauchy));
     }
+    for (std::size_t k = 0; k < prior_.held.size(); ++k) {
+      sum += miss_[held_row(k)] * miss_[held_row(k)] / prior_.held[k].variance;
+    }
     return sum;
   }
 
-  /// By coordinate, in its own deviation.
+  /// By coordinate of the rays, in its own deviation.
   std::vector<double> misses(const Eigen::VectorXd& correction) {
     look(Turns(correction));
     std::vector<double> misses;
-    for (Eigen::Index row = 0; row < miss_.size(); ++row) {
+    for (Eigen::Index row = 0; row < held_row(0); ++row) {
       misses.push_back(miss_[row] / std::sqrt(sights_[row / 2].variance));
     }
     return misses;
@@ -168,10 +177,16 @@ class Equations {
       const auto row = 2 * static_cast<Eigen::Index>(k);
       const double weight = robust ? 1 / (1 + miss_squared(k) / (kCauchy * kCauchy * scale)) : 1.0;
       variance_.segment<2>(row).setConstant(sights_[k].variance / weight);
-      const Eigen::Vector3d position = turns.position(sights_[k], prior_.place);
+      const Eigen::Vector3d position = turns.position(sights_[k].levers, prior_.place);
       if (before_camera(position)) {
-        turns.add_jacobian(sights_[k], position, jacobian.middleRows<2>(row));
+        turns.add_jacobian(sights_[k].levers, projection(position), jacobian.middleRows<2>(row));
       }
+    }
+    for (std::size_t k = 0; k < prior_.held.size(); ++k) {
+      const HeldDepth& joint = prior_.held[k];
+      variance_[held_row(k)] = joint.variance;
+      turns.add_jacobian(joint.levers, Eigen::RowVector3d(0, 0, 1),
+                         jacobian.middleRows<1>(held_row(k)));
     }
     const Eigen::VectorXd wanted = miss_ + jacobian * (correction - expected_);
     whiten(prior_, jacobian);
@@ -192,9 +207,17 @@ class Equations {
   double miss_squared(std::size_t k) const {
     return miss_.segment<2>(2 * static_cast<Eigen::Index>(k)).squaredNorm() / sights_[k].variance;
   }
+  /// The equation of a held depth: they follow those of the rays.
+  Eigen::Index held_row(std::size_t k) const {
+    return static_cast<Eigen::Index>(2 * sights_.size() + k);
+  }
   void look(const Turns& turns) {
+    for (std::size_t k = 0; k < prior_.held.size(); ++k) {
+      const HeldDepth& joint = prior_.held[k];
+      miss_[held_row(k)] = joint.depth - turns.position(joint.levers, prior_.place).z();
+    }
     for (std::size_t k = 0; k < sights_.size(); ++k) {
-      const Eigen::Vector3d position = turns.position(sights_[k], prior_.place);
+      const Eigen::Vector3d position = turns.position(sights_[k].levers, prior_.place);
       miss_.segment<2>(2 * static_cast<Eigen::Index>(k)) =
           before_camera(position)
               ? Eigen::Vector2d(sights_[k].ray - position.head<2>() / position.z())
@@ -216,9 +239,9 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& turn_rad) {
   return Eigen::AngleAxisd(angle, turn_rad / angle).toRotationMatrix();
 }
 
-Eigen::Vector3d corrected_position(const Sight& sight, const Eigen::Vector3d& place,
+Eigen::Vector3d corrected_position(const std::vector<Lever>& levers, const Eigen::Vector3d& place,
                                    const Eigen::VectorXd& correction) {
-  return Turns(correction).position(sight, place);
+  return Turns(correction).position(levers, place);
 }
 
 Eigen::Matrix<double, 2, Eigen::Dynamic> ray_jacobian(const Sight& sight,
@@ -227,7 +250,7 @@ Eigen::Matrix<double, 2, Eigen::Dynamic> ray_jacobian(const Sight& sight,
   const Turns turns(correction);
   Eigen::Matrix<double, 2, Eigen::Dynamic> rows =
       Eigen::Matrix<double, 2, Eigen::Dynamic>::Zero(2, correction.size());
-  turns.add_jacobian(sight, turns.position(sight, place), rows);
+  turns.add_jacobian(sight.levers, projection(turns.position(sight.levers, place)), rows);
   return rows;
 }
 

@@ -18,6 +18,13 @@ struct Sight {
   double variance = 0;
 };
 
+/// How far from the camera a joint is known to be, along the camera's axis.
+struct HeldDepth {
+  std::vector<Lever> levers;  ///< root to joint
+  double depth = 0;
+  double variance = 0;
+};
+
 /// A frame before its track is looked at.
 struct FramePrior {
   Eigen::Vector3d place{0, 0, 0};  ///< of the root, camera axes
@@ -27,6 +34,7 @@ struct FramePrior {
   double likeness = 0;            ///< correlation of a turn with its parent's
   double place_deviation = 1;     ///< of the place, in its units
   Eigen::VectorXd expected;       ///< mean of the correction; empty: zero
+  std::vector<HeldDepth> held;    ///< what is known besides the rays
 };
 
 /// Rotation by the vector's length about it.
@@ -34,7 +42,7 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& turn_rad);
 
 /// Where the joint is when the orientations are turned and the root is moved.
 /// @param correction three numbers a turn (radians), then the root's shift
-Eigen::Vector3d corrected_position(const Sight& sight, const Eigen::Vector3d& place,
+Eigen::Vector3d corrected_position(const std::vector<Lever>& levers, const Eigen::Vector3d& place,
                                    const Eigen::VectorXd& correction);
 
 /// d ray / d correction of a joint. @return [2 x correction.size()]
@@ -47,9 +55,10 @@ struct FrameFit {
   std::vector<double> misses;  ///< what the rays are still off by, in their deviations; two a sight
 };
 
-/// The most likely correction: Gauss-Newton on rays and prior together, halving steps that make it
-/// worse. Cauchy's weights let go of joints that nothing likely explains; joints behind the camera
-/// do not count. What is expected if nothing is seen, or if the root is behind the camera.
+/// The most likely correction: Gauss-Newton on rays, held depths and prior together, halving steps
+/// that make it worse. Cauchy's weights let go of joints that nothing likely explains; joints
+/// behind the camera do not count. What is expected if nothing is seen, or if the root is behind
+/// the camera.
 FrameFit fit_frame(const std::vector<Sight>& sights, const FramePrior& prior);
 
 /// How many of the fit's misses its correction does not use up: the trace of how much of a change

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,8 +11,11 @@
 #include "frame_fit.hpp"
 #include "mcdbn/errors.hpp"
 #include "mcdbn/motion/body_size.hpp"
+#include "mcdbn/motion/foot_joints.hpp"
 #include "mcdbn/motion/track_smoothing.hpp"
+#include "rows_around.hpp"
 #include "series_smoother.hpp"
+#include "standing_foot.hpp"
 #include "track_rays.hpp"
 #include "turned_bones.hpp"
 
@@ -25,15 +29,29 @@ constexpr int kNoiseRounds = 4;
 constexpr double kFirstNoise_px = 4;
 /// No estimator of 2D joints is better than this, so no clip is left unsmoothed.
 constexpr double kLeastNoise_px = 0.25;
-/// How far around a frame its neighbours are asked, and how often, until they agree.
+/// How far around a frame its neighbours are asked, and how many times as far, round by round: a
+/// bone may be taken for the wrong one over many frames.
 constexpr double kNeighbours_s = 1.0 / 15;
-constexpr int kNeighbourRounds = 4;
+constexpr std::array<double, 5> kNeighbourRounds{8, 4, 2, 1, 1};
+/// A foot that is seen within that of where it was stands, on a 1.7 m body; it is the frames so far
+/// around that tell.
+constexpr double kStill_m = 0.0025, kStanding_s = 2.0 / 15;
 constexpr int kOrientation = 6;  ///< numbers of one orientation
 
 /// One frame of the answer and what the track says of it.
 struct Frame {
   Eigen::Vector3d place;      ///< of the root, camera axes
   std::vector<Sight> sights;  ///< by tracked joint; the variance for a noise of one
+};
+
+/// An answer, what the track says of it, and their measures.
+struct Clip {
+  std::vector<Frame> frames;
+  std::vector<std::size_t> feet;  ///< their places among the sights
+  double depth = 0;               ///< of the root, usually
+  double units_per_m = 1, frame_time_s = 1;
+
+  Eigen::Index count() const { return static_cast<Eigen::Index>(frames.size()); }
 };
 
 Eigen::Vector2d ray_of(const Eigen::Vector3d& position) {
@@ -104,11 +122,15 @@ void look_at(const TrackRays& track, double variance, double fade_s, double fram
   }
 }
 
+bool says_something(const Sight& sight) {
+  return std::isfinite(sight.variance) && sight.ray.allFinite();
+}
+
 /// The sights that say anything, for a noise of that deviation.
 std::vector<Sight> usable(const Frame& frame, double noise) {
   std::vector<Sight> sights;
   for (const Sight& sight : frame.sights) {
-    if (!std::isfinite(sight.variance) || !sight.ray.allFinite()) continue;
+    if (!says_something(sight)) continue;
     sights.push_back(sight);
     sights.back().variance *= noise * noise;
   }
@@ -143,33 +165,6 @@ double misfit(const std::vector<Frame>& frames, FramePrior prior, double start, 
   return std::max(least, noise);
 }
 
-/// Mean of the rows around row `t`, weighted by a Gaussian of that deviation.
-/// @param itself whether row `t` counts
-RowVectorD mean_around(const MatrixD& values, Eigen::Index t, double deviation_frames,
-                       bool itself) {
-  const auto reach = static_cast<Eigen::Index>(std::ceil(3 * deviation_frames));
-  const Eigen::Index last = std::min(values.rows() - 1, t + reach);
-  RowVectorD sum = RowVectorD::Zero(values.cols());
-  double total = 0;
-  for (Eigen::Index k = std::max<Eigen::Index>(0, t - reach); k <= last; ++k) {
-    if (k == t && !itself) continue;
-    const double away = static_cast<double>(k - t) / deviation_frames;
-    const double weight = std::exp(-0.5 * away * away);
-    sum += weight * values.row(k);
-    total += weight;
-  }
-  return sum / total;
-}
-
-/// @return [rows x columns], Gaussian of that deviation over the rows
-MatrixD smoothed(const MatrixD& values, double deviation_frames) {
-  MatrixD result(values.rows(), values.cols());
-  for (Eigen::Index t = 0; t < values.rows(); ++t) {
-    result.row(t) = mean_around(values, t, deviation_frames, true);
-  }
-  return result;
-}
-
 /// The deviation of the Gaussian that is off least, in frames: of width w it leaves
 /// noise² / (2 √π w) of the noise's variance and bends the path by w² bend / 2.
 double best_width_frames(double noise_m, double bend_m_s2, double frame_time_s) {
@@ -184,6 +179,16 @@ double usual_depth(const std::vector<Frame>& frames) {
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
   std::nth_element(depths.begin(), middle, depths.end());
   return *middle;
+}
+
+/// Places of the feet among the joints.
+std::vector<std::size_t> feet_among(const std::vector<int>& joints, const Skeleton& skeleton) {
+  const std::vector<int> feet = foot_joints(skeleton);
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    if (std::find(feet.begin(), feet.end(), joints[k]) != feet.end()) places.push_back(k);
+  }
+  return places;
 }
 
 /// @param turns [frames x 3·orientations] radians
@@ -210,25 +215,63 @@ FramePrior beside(const RowVectorD& neighbours, double change, FramePrior prior)
   return prior;
 }
 
+/// What the frames around say of one foot. @param corrections [frames x parameters] so far
+std::vector<FootDepth> depths_around(const Clip& clip, std::size_t foot,
+                                     const MatrixD& corrections) {
+  std::vector<SeenFoot> seen;
+  for (Eigen::Index t = 0; t < clip.count(); ++t) {
+    const Frame& frame = clip.frames[t];
+    const Sight& sight = frame.sights[foot];
+    const Eigen::VectorXd correction = corrections.row(t).transpose();
+    const bool shown = says_something(sight);
+    seen.push_back({shown ? sight.ray : Eigen::Vector2d(0, 0),
+                    shown ? 1 / std::max(1.0, sight.variance) : 0,
+                    corrected_position(sight.levers, frame.place, correction).z()});
+  }
+  return standing_depths(seen, kStill_m * clip.units_per_m / clip.depth,
+                         std::max(0.5, kStanding_s / clip.frame_time_s));
+}
+
+/// The feet that stand, by frame, at the depth they have in the frames around.
+std::vector<std::vector<HeldDepth>> held_feet(const Clip& clip, double footing,
+                                              const MatrixD& corrections) {
+  std::vector<std::vector<HeldDepth>> held(clip.frames.size());
+  for (const std::size_t foot : clip.feet) {
+    const std::vector<FootDepth> depths = depths_around(clip, foot, corrections);
+    for (std::size_t t = 0; t < held.size(); ++t) {
+      if (!(depths[t].surely > 0)) continue;
+      held[t].push_back({clip.frames[t].sights[foot].levers, depths[t].depth,
+                         footing * footing / depths[t].surely});
+    }
+  }
+  return held;
+}
+
 /// The turns of every frame: first each for itself, then as its neighbours make them likely. A bone
 /// that leans towards the camera looks like one that leans away from it as much; where a frame took
 /// it for the wrong one its neighbours tell.
 /// @return [frames x 3·orientations] radians
-MatrixD solve(const std::vector<Frame>& frames, FramePrior prior, double noise, double change,
-              double neighbours_frames) {
-  const auto count = static_cast<Eigen::Index>(frames.size());
-  const Eigen::Index turns = 3 * static_cast<Eigen::Index>(prior.parents.size());
-  MatrixD corrections(count, turns + 3);
+MatrixD solve(const Clip& clip, const FramePrior& alone, double noise, const TrackFit& fit) {
+  const Eigen::Index turns = 3 * static_cast<Eigen::Index>(alone.parents.size());
+  MatrixD corrections(clip.count(), turns + 3);
   std::vector<std::vector<Sight>> sights;
-  for (const Frame& frame : frames) sights.push_back(usable(frame, noise));
-  const auto fit = [&](Eigen::Index t, FramePrior with) {
-    with.place = frames[t].place;
-    corrections.row(t) = fit_frame(sights[t], with).correction.transpose();
+  for (const Frame& frame : clip.frames) sights.push_back(usable(frame, noise));
+  const auto solve_frame = [&](Eigen::Index t, FramePrior prior) {
+    prior.place = clip.frames[t].place;
+    corrections.row(t) = fit_frame(sights[t], prior).correction.transpose();
   };
-  for (Eigen::Index t = 0; t < count; ++t) fit(t, prior);
-  for (int round = 0; round < kNeighbourRounds && count > 1; ++round) {
-    for (Eigen::Index t = 0; t < count; ++t) {
-      fit(t, beside(mean_around(corrections, t, neighbours_frames, false), change, prior));
+  for (Eigen::Index t = 0; t < clip.count(); ++t) solve_frame(t, alone);
+  if (clip.count() == 1) return corrections.leftCols(turns);
+  const double around = std::max(0.5, kNeighbours_s / clip.frame_time_s);
+  for (std::size_t round = 0; round < kNeighbourRounds.size(); ++round) {
+    const double reach = around * kNeighbourRounds[round];
+    // Frames by themselves can be far off, so that at first most of them have it.
+    const auto neighbours = round == 0 ? median_around : mean_around;
+    const auto held = held_feet(clip, fit.footing_m * clip.units_per_m, corrections);
+    for (Eigen::Index t = 0; t < clip.count(); ++t) {
+      FramePrior prior = beside(neighbours(corrections, t, reach), fit.change, alone);
+      prior.held = held[t];
+      solve_frame(t, std::move(prior));
     }
   }
   return corrections.leftCols(turns);
@@ -262,28 +305,32 @@ MatrixD fit_to_track(const PoseFeatures& pose_features, const MatrixD& features,
   std::vector<int> joints;
   for (const int place : seen.places) joints.push_back(answer.skeleton.find(names[place]));
   const TurnedBones bones(pose_features, answer.skeleton, joints);
-  std::vector<Frame> frames = answer_frames(answer, bones, camera);
+  Clip clip;
+  clip.frames = answer_frames(answer, bones, camera);
+  clip.feet = feet_among(joints, answer.skeleton);
+  clip.depth = usual_depth(clip.frames);
+  clip.units_per_m = file_units_per_metre(answer.skeleton);
+  clip.frame_time_s = 1 / track.fps;
 
-  const double focal_px = std::sqrt(camera.fx_px * camera.fy_px), frame_time_s = 1 / track.fps;
-  const double units = file_units_per_metre(answer.skeleton), depth = usual_depth(frames);
+  const double focal_px = std::sqrt(camera.fx_px * camera.fy_px);
   const double track_noise = std::max(kLeastNoise_px, track_noise_px(track)) / focal_px;
-  look_at(seen, track_noise * track_noise, fit.fade_s, frame_time_s, frames);
+  look_at(seen, track_noise * track_noise, fit.fade_s, clip.frame_time_s, clip.frames);
   FramePrior prior;
   prior.parents = bones.parents();
   prior.turn_deviation_rad = fit.turn_deg * std::numbers::pi / 180;
   prior.likeness = fit.likeness;
-  prior.place_deviation = fit.place_m * units;
-  const double least = std::max(track_noise, fit.proportions_m * units / std::max(depth, 1e-9));
+  prior.place_deviation = fit.place_m * clip.units_per_m;
+  const double least =
+      std::max(track_noise, fit.proportions_m * clip.units_per_m / std::max(clip.depth, 1e-9));
   // What a bone's length on the image is off by is taken for depth, most where the bone hardly
   // leans: noise there does not average out.
   const double noise =
-      fit.caution * misfit(frames, prior, std::max(least, kFirstNoise_px / focal_px), least);
+      fit.caution * misfit(clip.frames, prior, std::max(least, kFirstNoise_px / focal_px), least);
 
-  const double neighbours = std::max(0.5, kNeighbours_s / frame_time_s);
-  MatrixD turns = solve(frames, prior, noise, fit.change, neighbours);
-  const double noise_m = track_noise * depth / units;
+  MatrixD turns = solve(clip, prior, noise, fit);
+  const double noise_m = track_noise * clip.depth / clip.units_per_m;
   if (noise_m > 0) {
-    turns = smoothed(turns, best_width_frames(noise_m, fit.bend_m_s2, frame_time_s));
+    turns = smoothed_rows(turns, best_width_frames(noise_m, fit.bend_m_s2, clip.frame_time_s));
   }
   return turned(features, turns);
 }

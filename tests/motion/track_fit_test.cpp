@@ -8,6 +8,7 @@
 
 #include "frame_fit.hpp"
 #include "mcdbn/errors.hpp"
+#include "mcdbn/motion/foot_joints.hpp"
 #include "mcdbn/motion/root_trajectory.hpp"
 #include "mcdbn/motion/synthesize.hpp"
 #include "mcdbn/motion/track_noise.hpp"
@@ -172,12 +173,34 @@ TEST_CASE("track fit: the Jacobian is that of finite differences") {
       const auto ray = [&](double step) -> Eigen::Vector2d {
         Eigen::VectorXd moved = correction;
         moved[k] += step;
-        const Eigen::Vector3d position = corrected_position(sight, place, moved);
+        const Eigen::Vector3d position = corrected_position(sight.levers, place, moved);
         return position.head<2>() / position.z();
       };
       // Rays are near 1: their rounding over the step, and the step's square.
       CHECK((jacobian.col(k) - (ray(kStep) - ray(-kStep)) / (2 * kStep)).norm() < 1e-9);
     }
+  }
+}
+
+TEST_CASE("track fit: a held depth and the prior share as their variances say") {
+  constexpr double kBone = 20, kDeviation = 0.2, kNearer = 0.01;
+  // Across the image: a turn moves its end in depth by its length, to first order.
+  const std::vector<Lever> levers{{0, {kBone, 0, 0}}};
+  const Eigen::Vector3d place(0, 0, 300);
+  FramePrior prior;
+  prior.place = place;
+  prior.parents = {-1};
+  prior.turn_deviation_rad = kDeviation;
+  prior.place_deviation = 1e-6;
+  const Sight blind{levers, {kBone / 300, 0}, 1e12};
+  for (const double variance : {1e-6, 4.0, 1e6}) {
+    CAPTURE(variance);
+    prior.held = {{levers, 300 - kNearer, variance}};
+    const FrameFit fit = fit_frame({blind}, prior);
+    const double of_turn = kDeviation * kDeviation * kBone * kBone;
+    const double depth = corrected_position(levers, place, fit.correction).z();
+    // The next order is the turn's cube.
+    CHECK(std::abs(300 - depth - kNearer * of_turn / (of_turn + variance)) < 1e-9);
   }
 }
 
@@ -242,6 +265,32 @@ TEST_CASE("track fit: neighbours tell bones that lean to the camera from those t
     beside_squares += error(scene, beside);
   }
   CHECK(beside_squares < 0.75 * alone_squares);
+}
+
+TEST_CASE("track fit: a foot that stands stays where it stands") {
+  // Someone stands still; at first the answer has the legs where they are not.
+  Scene scene = make_scene(0);
+  scene.truth.channels.rowwise() = scene.truth.channels.row(0).eval();
+  scene.track = project_motion(scene.truth, scene.camera);
+  scene.features = scene.pose_features.encode(scene.truth, scene.camera.camera_from_world);
+  scene.root = joint_positions(scene.truth).leftCols<3>();
+  constexpr int kWrongFrames = 4;
+  scene.features.topRows<kWrongFrames>() = make_scene(1).features.topRows<kWrongFrames>();
+  const std::vector<int> feet = foot_joints(scene.truth.skeleton);
+  REQUIRE(!feet.empty());
+  // Mean square of how much too near the camera, or too far from it, they are in those frames.
+  const auto off = [&](const TrackFit& options) {
+    const MatrixD wrong =
+        joint_positions(scene.decode(scene.fit(options))) - joint_positions(scene.truth);
+    double squares = 0;
+    for (const int foot : feet) {
+      const MatrixD depth = wrong.middleCols<3>(3 * foot).topRows<kWrongFrames>() *
+                            scene.camera.camera_from_world.row(2).transpose();
+      squares += depth.squaredNorm();
+    }
+    return squares;
+  };
+  CHECK(off({}) < off({.footing_m = 1e3}) / 4);
 }
 
 TEST_CASE("track fit: a joint that the tracker swapped is let go of") {

@@ -14,7 +14,10 @@ struct TrackFit {
   double change = 0.4;    ///< of a turn from those of the frames around it, as a share of it
   double likeness = 0.5;  ///< correlation of a joint's turn with its parent's
   double place_m = 0.1;   ///< standard deviation of the root's place, on a 1.7 m body
-  double caution = 2;     ///< how many times the track's noise it is taken to be off by
+  /// How far a foot that stands still on the image strays from the depth that it has in the frames
+  /// around, on a 1.7 m body.
+  double footing_m = 0.0125;
+  double caution = 2;  ///< how many times the track's noise it is taken to be off by
   /// How far, at least, joints are from where a body of the skeleton's proportions has them, on a
   /// 1.7 m body: for a skeleton that is not the person's own.
   double proportions_m = 0;
@@ -27,7 +30,7 @@ struct TrackFit {
 /// Moves an answer so that its joints lie where the track shows them. The answer is the prior:
 /// every orientation is turned about the camera's axes, and the root shifted, as is most likely
 /// given the track and the frames around (Gauss-Newton per frame, in rounds; joints that nothing
-/// likely explains are let go of).
+/// likely explains are let go of; feet that stand still on the image come no nearer either).
 /// How much the track counts is told from the clip: from how well it can be met at all, so that the
 /// track of a body of other proportions, or of joints put elsewhere, is not taken at its word. The
 /// turns are smoothed over time as much as the track's noise asks for, and fade where joints go

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "mcdbn/matrix_types.hpp"
+
+namespace mcdbn {
+
+/// Mean of the rows around row `t` but not itself, weighted by a Gaussian of that deviation.
+/// @param values [rows x columns], two rows at least
+RowVectorD mean_around(const MatrixD& values, Eigen::Index t, double deviation_rows);
+
+/// The same rows' weighted median, column by column: what most say, however far off the others are.
+RowVectorD median_around(const MatrixD& values, Eigen::Index t, double deviation_rows);
+
+/// Every row's mean of itself and those around it. @return [rows x columns]
+MatrixD smoothed_rows(const MatrixD& values, double deviation_rows);
+
+}  // namespace mcdbn
