@@ -10,28 +10,27 @@ namespace {
 
 /// A Gaussian around one row, cut off where it is next to nothing.
 struct Around {
-  Around(Eigen::Index rows, Eigen::Index t, double deviation_rows)
-      : middle(t), deviation(deviation_rows) {
-    const auto reach = static_cast<Eigen::Index>(std::ceil(3 * deviation));
+  Around(Eigen::Index rows, Eigen::Index t, double deviation_rows) {
+    const auto reach = static_cast<Eigen::Index>(std::ceil(3 * deviation_rows));
     first = std::max<Eigen::Index>(0, t - reach);
-    last = std::min(rows - 1, t + reach);
+    for (Eigen::Index k = first; k <= std::min(rows - 1, t + reach); ++k) {
+      const double away = static_cast<double>(k - t) / deviation_rows;
+      weights.push_back(std::exp(-0.5 * away * away));
+    }
   }
-  double weight(Eigen::Index k) const {
-    const double away = static_cast<double>(k - middle) / deviation;
-    return std::exp(-0.5 * away * away);
-  }
+  void leave_out(Eigen::Index k) { weights[static_cast<std::size_t>(k - first)] = 0; }
 
-  Eigen::Index middle, first, last;
-  double deviation;
+  Eigen::Index first;
+  std::vector<double> weights;  ///< of the rows from the first on
 };
 
-RowVectorD mean_of(const MatrixD& values, const Around& around, bool itself) {
+RowVectorD mean_of(const MatrixD& values, const Around& around) {
   RowVectorD sum = RowVectorD::Zero(values.cols());
   double total = 0;
-  for (Eigen::Index k = around.first; k <= around.last; ++k) {
-    if (k == around.middle && !itself) continue;
-    sum += around.weight(k) * values.row(k);
-    total += around.weight(k);
+  Eigen::Index row = around.first;
+  for (const double weight : around.weights) {
+    sum += weight * values.row(row++);
+    total += weight;
   }
   return sum / total;
 }
@@ -51,17 +50,20 @@ double median_of(std::vector<std::pair<double, double>>& weighted) {
 }  // namespace
 
 RowVectorD mean_around(const MatrixD& values, Eigen::Index t, double deviation_rows) {
-  return mean_of(values, Around(values.rows(), t, deviation_rows), false);
+  Around around(values.rows(), t, deviation_rows);
+  around.leave_out(t);
+  return mean_of(values, around);
 }
 
 RowVectorD median_around(const MatrixD& values, Eigen::Index t, double deviation_rows) {
-  const Around around(values.rows(), t, deviation_rows);
+  Around around(values.rows(), t, deviation_rows);
+  around.leave_out(t);
   RowVectorD median(values.cols());
-  std::vector<std::pair<double, double>> weighted;
+  std::vector<std::pair<double, double>> weighted(around.weights.size());
   for (Eigen::Index column = 0; column < values.cols(); ++column) {
-    weighted.clear();
-    for (Eigen::Index k = around.first; k <= around.last; ++k) {
-      if (k != t) weighted.emplace_back(values(k, column), around.weight(k));
+    Eigen::Index row = around.first;
+    for (std::size_t k = 0; k < weighted.size(); ++k) {
+      weighted[k] = {values(row++, column), around.weights[k]};
     }
     median[column] = median_of(weighted);
   }
@@ -71,7 +73,7 @@ RowVectorD median_around(const MatrixD& values, Eigen::Index t, double deviation
 MatrixD smoothed_rows(const MatrixD& values, double deviation_rows) {
   MatrixD result(values.rows(), values.cols());
   for (Eigen::Index t = 0; t < values.rows(); ++t) {
-    result.row(t) = mean_of(values, Around(values.rows(), t, deviation_rows), true);
+    result.row(t) = mean_of(values, Around(values.rows(), t, deviation_rows));
   }
   return result;
 }
