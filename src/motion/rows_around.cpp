@@ -8,23 +8,7 @@
 namespace mcdbn {
 namespace {
 
-/// A Gaussian around one row, cut off where it is next to nothing.
-struct Around {
-  Around(Eigen::Index rows, Eigen::Index t, double deviation_rows) {
-    const auto reach = static_cast<Eigen::Index>(std::ceil(3 * deviation_rows));
-    first = std::max<Eigen::Index>(0, t - reach);
-    for (Eigen::Index k = first; k <= std::min(rows - 1, t + reach); ++k) {
-      const double away = static_cast<double>(k - t) / deviation_rows;
-      weights.push_back(std::exp(-0.5 * away * away));
-    }
-  }
-  void leave_out(Eigen::Index k) { weights[static_cast<std::size_t>(k - first)] = 0; }
-
-  Eigen::Index first;
-  std::vector<double> weights;  ///< of the rows from the first on
-};
-
-RowVectorD mean_of(const MatrixD& values, const Around& around) {
+RowVectorD mean_of(const MatrixD& values, const RowsAround& around) {
   RowVectorD sum = RowVectorD::Zero(values.cols());
   double total = 0;
   Eigen::Index row = around.first;
@@ -49,15 +33,27 @@ double median_of(std::vector<std::pair<double, double>>& weighted) {
 
 }  // namespace
 
+RowsAround::RowsAround(Eigen::Index rows, Eigen::Index t, double deviation_rows) {
+  const auto reach = static_cast<Eigen::Index>(std::ceil(3 * deviation_rows));
+  first = std::max<Eigen::Index>(0, t - reach);
+  for (Eigen::Index k = first; k <= std::min(rows - 1, t + reach); ++k) {
+    const double away = static_cast<double>(k - t) / deviation_rows;
+    weights.push_back(std::exp(-0.5 * away * away));
+  }
+}
+
+RowsAround RowsAround::without_itself(Eigen::Index rows, Eigen::Index t, double deviation_rows) {
+  RowsAround around(rows, t, deviation_rows);
+  around.weights[static_cast<std::size_t>(t - around.first)] = 0;
+  return around;
+}
+
 RowVectorD mean_around(const MatrixD& values, Eigen::Index t, double deviation_rows) {
-  Around around(values.rows(), t, deviation_rows);
-  around.leave_out(t);
-  return mean_of(values, around);
+  return mean_of(values, RowsAround::without_itself(values.rows(), t, deviation_rows));
 }
 
 RowVectorD median_around(const MatrixD& values, Eigen::Index t, double deviation_rows) {
-  Around around(values.rows(), t, deviation_rows);
-  around.leave_out(t);
+  const auto around = RowsAround::without_itself(values.rows(), t, deviation_rows);
   RowVectorD median(values.cols());
   std::vector<std::pair<double, double>> weighted(around.weights.size());
   for (Eigen::Index column = 0; column < values.cols(); ++column) {
@@ -73,7 +69,7 @@ RowVectorD median_around(const MatrixD& values, Eigen::Index t, double deviation
 MatrixD smoothed_rows(const MatrixD& values, double deviation_rows) {
   MatrixD result(values.rows(), values.cols());
   for (Eigen::Index t = 0; t < values.rows(); ++t) {
-    result.row(t) = mean_of(values, Around(values.rows(), t, deviation_rows));
+    result.row(t) = mean_of(values, RowsAround(values.rows(), t, deviation_rows));
   }
   return result;
 }

@@ -1,8 +1,20 @@
 #pragma once
 
+#include <vector>
+
 #include "mcdbn/matrix_types.hpp"
 
 namespace mcdbn {
+
+/// A Gaussian around row `t` of so many, cut off where it is next to nothing.
+struct RowsAround {
+  RowsAround(Eigen::Index rows, Eigen::Index t, double deviation_rows);
+  /// The same, of the others only: the row itself weighs nothing.
+  static RowsAround without_itself(Eigen::Index rows, Eigen::Index t, double deviation_rows);
+
+  Eigen::Index first;
+  std::vector<double> weights;  ///< of the rows from the first on
+};
 
 /// Mean of the rows around row `t` but not itself, weighted by a Gaussian of that deviation.
 /// @param values [rows x columns], two rows at least

@@ -1,7 +1,6 @@
 #include "standing_foot.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include "rows_around.hpp"
 
 namespace mcdbn {
 namespace {
@@ -14,22 +13,19 @@ constexpr double kHardlyStands = 0.05;
 
 std::vector<FootDepth> standing_depths(const std::vector<SeenFoot>& foot, double still,
                                        double around_frames) {
-  const auto count = static_cast<std::ptrdiff_t>(foot.size());
-  const auto reach = static_cast<std::ptrdiff_t>(std::ceil(3 * around_frames));
+  const auto count = static_cast<Eigen::Index>(foot.size());
   std::vector<FootDepth> result(foot.size());
-  for (std::ptrdiff_t t = 0; t < count; ++t) {
+  for (Eigen::Index t = 0; t < count; ++t) {
+    const auto around = RowsAround::without_itself(count, t, around_frames);
     double sum = 0, standing = 0, all = 0;
-    const std::ptrdiff_t last = std::min(count - 1, t + reach);
-    for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(0, t - reach); k <= last; ++k) {
-      if (k == t) continue;
-      const double away = static_cast<double>(k - t) / around_frames;
-      const double near = std::exp(-0.5 * away * away);
-      all += near;
-      if (!(foot[k].surely > 0)) continue;
-      const double moved = (foot[t].ray - foot[k].ray).norm() / still;
-      const double weight = near * foot[k].surely / (1 + moved * moved);
-      sum += weight * foot[k].depth;
+    auto other = foot.begin() + around.first;
+    for (const double near : around.weights) {
+      const double moved = (foot[t].ray - other->ray).norm() / still;
+      const double weight = near * other->surely / (1 + moved * moved);
+      sum += weight * other->depth;
       standing += weight;
+      all += near;
+      ++other;
     }
     const double surely = foot[t].surely * standing / all;
     if (surely > kHardlyStands) result[t] = {sum / standing, surely};

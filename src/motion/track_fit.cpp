@@ -181,6 +181,15 @@ double usual_depth(const std::vector<Frame>& frames) {
   return *middle;
 }
 
+FramePrior prior_alone(const TurnedBones& bones, const TrackFit& fit, double units_per_m) {
+  FramePrior prior;
+  prior.parents = bones.parents();
+  prior.turn_deviation_rad = fit.turn_deg * std::numbers::pi / 180;
+  prior.likeness = fit.likeness;
+  prior.place_deviation = fit.place_m * units_per_m;
+  return prior;
+}
+
 /// Places of the feet among the joints.
 std::vector<std::size_t> feet_among(const std::vector<int>& joints, const Skeleton& skeleton) {
   const std::vector<int> feet = foot_joints(skeleton);
@@ -315,11 +324,7 @@ MatrixD fit_to_track(const PoseFeatures& pose_features, const MatrixD& features,
   const double focal_px = std::sqrt(camera.fx_px * camera.fy_px);
   const double track_noise = std::max(kLeastNoise_px, track_noise_px(track)) / focal_px;
   look_at(seen, track_noise * track_noise, fit.fade_s, clip.frame_time_s, clip.frames);
-  FramePrior prior;
-  prior.parents = bones.parents();
-  prior.turn_deviation_rad = fit.turn_deg * std::numbers::pi / 180;
-  prior.likeness = fit.likeness;
-  prior.place_deviation = fit.place_m * clip.units_per_m;
+  const FramePrior prior = prior_alone(bones, fit, clip.units_per_m);
   const double least =
       std::max(track_noise, fit.proportions_m * clip.units_per_m / std::max(clip.depth, 1e-9));
   // What a bone's length on the image is off by is taken for depth, most where the bone hardly
