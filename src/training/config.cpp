@@ -42,8 +42,12 @@ TrainingConfig TrainingConfig::paper() {
 
 void TrainingConfig::validate() const {
   // Counts that nothing works without; histories (order, look-ahead) may be 0.
-  const auto positive = [](const char* name, auto value) {
+  const auto positive = [](const std::string& name, auto value) {
     if (!(value > 0)) throw ConfigError(fmt::format("{} must be above 0, not {}", name, value));
+  };
+  const auto share = [](const std::string& name, double value) {
+    if (!(value >= 0 && value < 1))
+      throw ConfigError(fmt::format("{} must be at least 0 and below 1, not {}", name, value));
   };
   positive("fps", fps);
   positive("phases", phases);
@@ -52,14 +56,14 @@ void TrainingConfig::validate() const {
   positive("mrbm-hidden", mrbm_hidden);
   positive("batch", batch);
   positive("least-batches", least_batches);
-  for (const CdSettings* settings : {&gaussian, &binary}) {
-    positive("gibbs-steps", settings->gibbs_steps);
-    positive("rate", settings->rate);
-    positive("epochs", settings->epochs);
-    if (settings->momentum < 0 || settings->momentum >= 1)
-      throw ConfigError(
-          fmt::format("momentum must be at least 0 and below 1, not {}", settings->momentum));
-  }
+  const auto contrastive_divergence = [&](const std::string& kind, const CdSettings& settings) {
+    positive(kind + ".gibbs-steps", settings.gibbs_steps);
+    positive(kind + ".rate", settings.rate);
+    positive(kind + ".epochs", settings.epochs);
+    share(kind + ".momentum", settings.momentum);
+  };
+  contrastive_divergence("gaussian", gaussian);
+  contrastive_divergence("binary", binary);
   positive("mrbm.rate", mrbm.rate);
   positive("mrbm.mean-field-steps", mrbm.mean_field_steps);
   positive("mrbm.epochs", mrbm.epochs);
@@ -68,10 +72,6 @@ void TrainingConfig::validate() const {
   positive("joint.mean-field-steps", joint.mean_field_steps);
   positive("augment.views", augment.views);
   if (joint.window_frames < 2) throw ConfigError("joint.window-frames must be at least 2");
-  const auto share = [](const char* name, double value) {
-    if (!(value >= 0 && value < 1))
-      throw ConfigError(fmt::format("{} must be at least 0 and below 1, not {}", name, value));
-  };
   share("joint.dropout", joint.dropout);
   share("joint.average", joint.average);
   positive("camera.fov", camera.field_of_view_deg);
