@@ -170,7 +170,7 @@ GreedyStage train_mrbm(const GreedyPlan& plan, const GreedyCode& track, const Gr
       const Eigen::VectorXd gradient = multi_prediction(mrbm, batch, options).gradient.flattened();
       // Flat in the first half, then in a line to a fiftieth.
       const double progress = static_cast<double>(step) / (plan.mrbm.epochs * batches.count());
-      AdamRule rule;
+      AdamRule rule{.beta1 = 0.9F, .beta2 = 0.999F, .epsilon = 1e-8F, .weight_decay = 0};
       rule.rate = static_cast<float>(plan.mrbm.rate *
                                      (progress < 0.5 ? 1.0 : 1.0 - 0.98 * (2.0 * progress - 1.0)));
       MatrixD updated = mrbm.flattened().transpose();

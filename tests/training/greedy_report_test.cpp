@@ -142,6 +142,7 @@ std::pair<MatrixF, MatrixF> pairs_of(const reference::GreedyCode& track,
 TEST_CASE("greedy reports: every epoch of every stage, its loss and how far the run is") {
   check_reports(scene_of_many_epochs());
   check_reports(scene_of_equal_sizes());
+  check_reports(scene_without_history());
 }
 
 TEST_CASE("greedy reports: health is that of the stage's own layer on its own input") {

@@ -129,6 +129,11 @@ TEST_CASE("crbm_health is the double reference's: Gaussian and binary, with and 
   check_against_reference({5, 8, 0, VisibleKind::gaussian});
 }
 
+TEST_CASE("layer health is of sixteen windows and ten free frames") {
+  CHECK(kHealthWindows == 16);
+  CHECK(kFreeRunFrames == 10);
+}
+
 TEST_CASE("saturation counts probabilities below 0.01 and above 0.99, no others") {
   MrbmParameters p;
   p.W = {MatrixF::Zero(1, 6), MatrixF::Zero(1, 6)};

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "mcdbn/training/contrastive_divergence.hpp"
 #include "training/settings_table.hpp"
 
 using namespace mcdbn;
@@ -149,4 +150,18 @@ TEST_CASE("learning settings: what may be nothing is accepted as nothing") {
                            "gaussian.gibbs-steps", "binary.epochs", "mrbm.mean-field-steps",
                            "mrbm.epochs", "joint.windows", "joint.mean-field-steps"})
     check_accepted(name, 1);
+}
+
+TEST_CASE("learning settings: what no setting says") {
+  const AdamRule adam;
+  CHECK(adam.rate == 1e-3F);
+  CHECK(adam.beta1 == 0.9F);
+  CHECK(adam.beta2 == 0.999F);
+  CHECK(adam.epsilon == 1e-8F);
+  CHECK(adam.weight_decay == 0);
+  const MomentumRule momentum;
+  CHECK(momentum.rate == 1e-3F);
+  CHECK(momentum.momentum == 0);
+  CHECK(momentum.weight_decay == 0);
+  CHECK(CdRule{}.gibbs_steps == 1);
 }
