@@ -14,6 +14,7 @@
 #include "mcdbn/training/held_out_person.hpp"
 #include "mcdbn/training/joint_pass.hpp"
 #include "mcdbn/training/joint_start.hpp"
+#include "motion/scratch_folder.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -23,12 +24,10 @@ namespace {
 /// Two synthesized walks of each person as files, and a configuration small enough for a test.
 class SmallRun {
  public:
-  explicit SmallRun(int people = 1)
-      : folder_(std::filesystem::temp_directory_path() / "mcdbn_joint_test") {
-    std::filesystem::create_directories(folder_);
+  explicit SmallRun(int people = 1) {
     for (int person = 0; person < people; ++person)
       for (int clip = 0; clip < 2; ++clip) {
-        files.push_back(folder_ / fmt::format("walk_{}_{}.bvh", person, clip));
+        files.push_back(folder / fmt::format("walk_{}_{}.bvh", person, clip));
         write_bvh(files.back(), synthesize_clip(person, clip));
       }
     config.hidden = 10;
@@ -42,13 +41,13 @@ class SmallRun {
     config.joint.window_frames = 8;
     data = std::make_unique<TrainingSet>(make_training_set(files, config, nullptr));
   }
-  ~SmallRun() { std::filesystem::remove_all(folder_); }
 
   Mcdbn start(Device& device) const {
     return random_start(device, static_cast<std::size_t>(data->tracks.front().cols()),
                         static_cast<std::size_t>(data->poses.front().cols()), config);
   }
 
+  ScratchFolder folder;
   std::vector<std::filesystem::path> files;
   TrainingConfig config;
   std::unique_ptr<TrainingSet> data;
@@ -62,7 +61,6 @@ class SmallRun {
     options.clip = clip + 1;
     return synthesize(options);
   }
-  std::filesystem::path folder_;
 };
 
 bool same_bits(const Mcdbn& x, const Mcdbn& y) {
