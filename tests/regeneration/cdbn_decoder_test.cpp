@@ -227,15 +227,3 @@ TEST_CASE("decoder: a temperature between 0 and 1 draws as frame by frame does")
     CHECK(fused != decoded(device, {p}, code, 1, {}));
   });
 }
-
-TEST_CASE("decoder: a Gaussian top layer is sampled frame by frame") {
-  on_every_device([](Device& device) {
-    RegenerationOptions options;
-    options.temperature = 1.0;
-    const CrbmParameters p = parameters_of({7, 13, 2, kGaussian}, 3);
-    const MatrixF code = random_code(2 * kFrames, 13);
-    const MatrixF states = decoded(device, {p}, code, 2, options);
-    CHECK(states.allFinite());
-    CHECK(states == decoded(device, {p}, code, 2, options, false));
-  });
-}
