@@ -157,3 +157,23 @@ TEST_CASE(
     CHECK_THROWS_AS(regenerate_clip(model, lost, scene.placement(), {}), InputError);
   });
 }
+
+TEST_CASE("gaps are filled in three rounds, each from the answer to the round before") {
+  Scene scene(30.0);
+  scene.track.confidence.col(scene.track.find("LHand")).segment(10, 20).setZero();
+  const Modalities& m = scene.modalities;
+  const MatrixF features = m.encode_track(scene.track);
+  const MatrixF truth = m.encode_pose(scene.clip, scene.camera.camera_from_world);
+  std::vector<MatrixF> asked;
+  // Each answer holds the arm elsewhere, so that every round shows.
+  const auto answer = [&](const MatrixF& seen) -> MatrixF {
+    asked.push_back(seen);
+    return truth * (1.0F - 0.1F * static_cast<float>(asked.size()));
+  };
+  const MatrixF filled = fill_gaps(m, features, scene.track, scene.placement(), answer);
+  REQUIRE(asked.size() == 3);
+  CHECK(asked[0].array().isNaN().any());
+  for (const MatrixF& seen : {asked[1], asked[2], filled}) CHECK_FALSE(seen.array().isNaN().any());
+  CHECK(asked[1] != asked[2]);
+  CHECK(filled != asked[2]);
+}
