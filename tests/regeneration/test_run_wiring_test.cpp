@@ -290,17 +290,15 @@ TEST_CASE("a leading calibration pose is kept in test and training clips alike, 
   const Scene scene;
   on_every_device([&](Device& device) {
     Model model = scene.model(device);
-    Motion posed = clip_of(12, 1.0);
-    posed.channels.row(0).setZero();
-    const auto file = scene.write("posed.bvh", posed), test = scene.write("test.bvh", [&] {
-      posed.channels.row(5) *= 1.01;  // other bytes than the training clip's
-      return posed;
-    }());
-    posed.channels.row(5) /= 1.01;
+    Motion posed = clip_of(40, 1.0);
+    posed.channels.row(0).setZero();  // a T-pose, far from the next frame
+    const auto file = scene.write("posed.bvh", posed);
+    posed.channels.row(5) *= 1.01;  // other bytes
+    const auto test = scene.write("test.bvh", posed);
     TestRunOptions options = plain_options(scene);
-    CHECK(run_test(model, {test}, options)[0].truth.motion.frames() == 11);
+    CHECK(run_test(model, {test}, options)[0].truth.motion.frames() == 39);
     options.keep_first_frame = true;
-    CHECK(run_test(model, {test}, options)[0].truth.motion.frames() == 12);
+    CHECK(run_test(model, {test}, options)[0].truth.motion.frames() == 40);
     // The mean pose is that of all training frames that were kept.
     model.training_clips = {identify_clip(file)};
     options.baselines = true;
@@ -310,8 +308,8 @@ TEST_CASE("a leading calibration pose is kept in test and training clips alike, 
         3, static_cast<std::size_t>(scene.modalities.pose_scale.output_dimension()), 6)};
     const auto result = run_test(model, {test}, options).at(0);
     const EncodedClip kept = encode_clip(file, scene.modalities, scene.model_view, true);
-    REQUIRE(kept.pose_features.rows() == 12);
-    const MatrixF mean = kept.pose_features.colwise().mean().replicate(12, 1);
+    REQUIRE(kept.pose_features.rows() == 40);
+    const MatrixF mean = kept.pose_features.colwise().mean().replicate(40, 1);
     CHECK(largest(joint_positions(result.others.at("mean_pose").motion) -
                   joint_positions(motion_of(scene, result.truth, mean, std::nullopt))) < 1e-2);
   });
