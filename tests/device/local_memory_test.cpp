@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <cstdlib>
 #include <numeric>
 
 #include "device/every_device.hpp"
@@ -86,13 +87,16 @@ TEST_CASE("small: a helper works on a local array that is a kernel argument") {
   });
 }
 
-TEST_CASE("the trap of a helper that is not inlined and works on the kernel's own local array") {
-  on_every_device([](Device& device) {
+TEST_CASE(
+    "the trap shows on PoCL 3.1 alone: helpers that are not inlined, the kernel's own array") {
+  const bool optimized = std::getenv("MCDBN_BUILD_OPTIONS") == nullptr;
+  on_every_device([&](Device& device) {
+    const bool is_pocl = device.info().platform_name == "Portable Computing Language";
+    const bool known = is_pocl && device.info().driver_version.starts_with("3.1");
     const bool right = sums(device, kNotInlined + kOwnArray) == wanted();
-    MESSAGE(device.info().name, ", driver ", device.info().driver_version, ": ",
-            std::string(right ? "the trap does not show" : "wrong sums, the trap is real"));
-    // PoCL alone may be wrong here; any other device has no excuse.
-    if (device.info().platform_name.find("Portable Computing Language") == std::string::npos)
-      CHECK(right);
+    // Where this fails the trap is gone, and with it what makes INLINE (activation.clh) necessary.
+    if (known && optimized) CHECK_FALSE(right);
+    // No other driver was seen to fall into it; other versions of PoCL are not known.
+    if (!is_pocl) CHECK(right);
   });
 }

@@ -9,6 +9,7 @@
 #include "device/scoped_variable.hpp"
 #include "mcdbn/device/gemm.hpp"
 #include "mcdbn/device/row_tile.hpp"
+#include "motion/scratch_folder.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -18,10 +19,9 @@ namespace {
 
 /// A user's cache folder of the test's own.
 struct CacheFolder {
-  fs::path path = fs::temp_directory_path() / "mcdbn-tuning-test";
+  ScratchFolder scratch;
+  fs::path path = scratch / "cache";
   ScopedVariable variable{"XDG_CACHE_HOME", path.string()};
-  CacheFolder() { fs::remove_all(path); }
-  ~CacheFolder() { fs::remove_all(path); }
 };
 
 DeviceInfo some_device(std::string driver = {}) {
