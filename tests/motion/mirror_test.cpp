@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "mcdbn/motion/bvh.hpp"
 
@@ -61,8 +62,79 @@ TEST_CASE("a mirrored motion stands where the mirror shows the other side") {
     CHECK((joint_positions(*other) - seen_in_mirror(motion)).cwiseAbs().maxCoeff() < 1e-11);
     const auto back = mirrored(*other);
     REQUIRE(back);
-    CHECK((joint_positions(*back) - joint_positions(motion)).cwiseAbs().maxCoeff() < 1e-11);
+    // Every channel, those of the leaves too, which move no joint.
+    CHECK((back->channels - motion.channels).cwiseAbs().maxCoeff() < 1e-11);
+    CHECK(other->frame_time_s == motion.frame_time_s);
   }
+}
+
+TEST_CASE("a mirrored body of both sides alike turns every joint as the mirror shows it") {
+  const Motion motion = two_armed(true);
+  const auto other = mirrored(motion);
+  REQUIRE(other);
+  const Eigen::Vector3d turn(-1, 1, -1);  // z, x, y: about the mirror's own axis as it was
+  const std::vector<int> opposite{0, 3, 4, 1, 2};
+  for (int j = 0; j < 5; ++j) {
+    CAPTURE(j);
+    const int own = motion.skeleton.first_channel(j) + (j == 0 ? 3 : 0);
+    const int there = motion.skeleton.first_channel(opposite[j]) + (j == 0 ? 3 : 0);
+    const MatrixD want = motion.channels.middleCols(there, 3) * turn.asDiagonal();
+    CHECK((other->channels.middleCols(own, 3) - want).cwiseAbs().maxCoeff() < 1e-11);
+  }
+  CHECK(other->channels.col(0) == -motion.channels.col(0));
+  CHECK(other->channels.middleCols(1, 2) == motion.channels.middleCols(1, 2));
+}
+
+TEST_CASE("mirrored joints whose bones all rest along x are reflected along their own y") {
+  const Motion motion = two_armed(false);
+  const auto other = mirrored(motion);
+  REQUIRE(other);
+  const Eigen::Vector3d mirror(-1, 1, 1), bones(1, -1, 1);
+  const std::vector<int> opposite{0, 3, 4, 1, 2};
+  for (const int t : {0, 7, 19}) {
+    const WorldPose before = forward_kinematics(motion.skeleton, motion.channels.row(t));
+    const WorldPose after = forward_kinematics(motion.skeleton, other->channels.row(t));
+    for (int j = 0; j < 5; ++j) {  // the hands, which have no bone, as their arms
+      CAPTURE(j);
+      const Eigen::Vector3d own = j == 0 ? mirror : bones;
+      const Eigen::Matrix3d want =
+          mirror.asDiagonal() * before.world_from_joint[opposite[j]] * own.asDiagonal();
+      CHECK((after.world_from_joint[j] - want).cwiseAbs().maxCoeff() < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("mirrored angles run on continuously past half a turn") {
+  Motion motion = two_armed(true);
+  const int turn = motion.skeleton.first_channel(0) + 5;
+  motion.channels.leftCols(6).setZero();
+  for (int t = 0; t < 20; ++t) motion.channels(t, turn) = 40.0 * t;
+  const auto other = mirrored(motion);
+  REQUIRE(other);
+  CHECK((other->channels.col(turn) + motion.channels.col(turn)).cwiseAbs().maxCoeff() < 1e-10);
+}
+
+TEST_CASE("sides are told by words, and by letters at either end of a name") {
+  const auto opposite_of = [](const char* left, const char* right) {
+    Motion motion = two_armed(true);
+    motion.skeleton.joints[1].name = left;
+    motion.skeleton.joints[2].name = "LeftHand";
+    motion.skeleton.joints[3].name = right;
+    motion.skeleton.joints[4].name = "RightHand";
+    return opposite_joints(motion.skeleton);
+  };
+  const std::vector<int> both{0, 3, 4, 1, 2};
+  CHECK(opposite_of("LeftArm", "RightArm") == both);
+  CHECK(opposite_of("arm_left", "arm_right") == both);
+  CHECK(opposite_of("Arm_L", "Arm_R") == both);
+  CHECK(opposite_of("arm.l", "arm.r") == both);
+  CHECK(opposite_of("LArm", "RArm") == both);
+  CHECK(opposite_of("L_arm", "R_arm") == both);
+  CHECK(opposite_of("l_arm", "r_arm") == both);
+  CHECK(opposite_of("lArm", "rArm") == both);
+  // No mark: the hands would hang on arms that are no pair.
+  CHECK(opposite_of("larm", "rarm").empty());
+  CHECK(opposite_of("armL", "armR").empty());
 }
 
 TEST_CASE("a bone that leans by a hair does not turn its joint round in the mirror") {
