@@ -17,11 +17,12 @@ using namespace mcdbn;
 
 namespace {
 
-/// Of the turns by which answers are wrong; the fit is not told.
-constexpr double kWrong_deg = 12;
+/// Of the turns by which answers are wrong: their size, and how alike they are along a limb.
+/// Neither is the fit's own number, and it is not told.
+constexpr double kWrong_deg = 12, kAlike = 0.3;
 
-/// A walk, its 2D track through a lens with distortion, and an answer that is wrong by turns, alike
-/// along a limb as the fit supposes, and by a misplaced root.
+/// A walk, its 2D track through a lens with distortion, and an answer that is wrong by turns, a
+/// little alike along a limb, and by a misplaced root.
 struct Scene {
   Motion truth;
   Camera camera;
@@ -77,7 +78,7 @@ Scene make_scene(unsigned seed = 1, int frames = 60, double scale = 1) {
   scene.root = joint_positions(scene.truth).leftCols<3>();
   if (seed == 0) return scene;
   FramePrior prior;
-  prior.likeness = TrackFit{}.likeness;
+  prior.likeness = kAlike;
   prior.turn_deviation_rad = kWrong_deg * M_PI / 180;
   const Skeleton& skeleton = scene.pose_features.skeleton();
   const std::vector<int>& joints = scene.pose_features.joints();
@@ -201,6 +202,33 @@ TEST_CASE("track fit: a held depth and the prior share as their variances say") 
     const double depth = corrected_position(levers, place, fit.correction).z();
     // The next order is the turn's cube.
     CHECK(std::abs(300 - depth - kNearer * of_turn / (of_turn + variance)) < 1e-9);
+  }
+}
+
+TEST_CASE(
+    "track fit: a ray and the prior share as their variances say, and a child's turn as well") {
+  constexpr double kBone = 20, kDepth = 300, kSeen = 1e-5, kLikeness = 0.6;
+  const Eigen::Vector3d place(0, 0, kDepth);
+  FramePrior prior;
+  prior.place = place;
+  prior.parents = {-1, 0};
+  prior.likeness = kLikeness;
+  prior.place_deviation = 1e-9;
+  // Two bones along x: a turn about z moves its end along y by its length, to first order.
+  const std::vector<Lever> levers{{0, {kBone, 0, 0}}, {1, {kBone, 0, 0}}};
+  for (const double deviation : {0.02, 0.2}) {
+    for (const double variance : {1e-10, 1e-4, 1e-2}) {
+      CAPTURE(deviation);
+      CAPTURE(variance);
+      prior.turn_deviation_rad = deviation;
+      const FrameFit fit = fit_frame({{levers, {2 * kBone / kDepth, kSeen}, variance}}, prior);
+      const double slope = kBone / kDepth, turns = deviation * deviation;
+      // The variance of both turns' sum, and each turn's covariance with it.
+      const double of_sum = 2 * (1 + kLikeness) * turns, with_sum = (1 + kLikeness) * turns;
+      const double gain = slope * with_sum / (slope * slope * of_sum + variance);
+      for (const Eigen::Index turn : {2, 5})
+        CHECK(std::abs(fit.correction[turn] - gain * kSeen) < 1e-6 * gain * kSeen + 1e-12);
+    }
   }
 }
 
