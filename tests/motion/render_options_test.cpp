@@ -153,3 +153,37 @@ TEST_CASE("the camera follows the root only if asked to, and goes round only if 
   options.follow_root = false;
   CHECK(first_and_last() > 100);
 }
+
+TEST_CASE("an overlay draws its second clip in other colours") {
+  const ScratchFolder folder;
+  const Motion motion = test::swinging(test::small_body(), 2);
+  RenderOptions options = through_camera(motion);
+  options.overlay = true;
+  options.sheet_columns = 1;
+  const cv::Mat one = read_sheet(folder, {{motion, ""}}, options),
+                two = read_sheet(folder, {{motion, ""}, {motion, ""}}, options);
+  cv::Mat difference;
+  cv::absdiff(one.rowRange(0, 150), two.rowRange(0, 150), difference);
+  // Drawn twice in the same colours the edges alone would be a little stronger.
+  CHECK(cv::sum(difference).ddot({1, 1, 1, 0}) > 20000);
+}
+
+TEST_CASE("figures side by side are drawn to one scale") {
+  const ScratchFolder folder;
+  Motion still = test::swinging(test::small_body(), 6);
+  for (int t = 1; t < 6; ++t) still.channels.row(t) = still.channels.row(0);
+  Motion spread = still;  // its hips rise far above where they were
+  spread.channels(3, 1) += 250;
+  RenderOptions options;
+  options.sheet_columns = 1;
+  options.placement.width_px = 160;
+  options.placement.height_px = 200;
+  const auto height_px = [&](const std::vector<RenderClip>& clips) {
+    const cv::Mat sheet = read_sheet(folder, clips, options);
+    return cv::boundingRect(limbs_of(sheet.rowRange(0, 200))).height;
+  };
+  const int alone = height_px({{still, ""}}), beside = height_px({{still, ""}, {spread, ""}});
+  CHECK(alone > 100);
+  CHECK(beside < 0.7 * alone);
+  CHECK(beside > 20);
+}

@@ -2,7 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "mcdbn/motion/camera.hpp"
 #include "mcdbn/motion/track_noise.hpp"
@@ -54,4 +56,37 @@ TEST_CASE("damage: each kind does its own, as much as asked for") {
   Track2d plain = whole;
   add_pixel_noise(plain, 3, 1);
   CHECK(differs(plain, noisy));
+}
+
+TEST_CASE("damage: a limb is out of sight for 0.3 to 1.5 seconds, about every other second") {
+  const Skeleton body = test::small_body();
+  const auto any_hidden = [&](int frames, double fps, std::uint64_t seed) {
+    Track2d track = track_at(fps);
+    for (MatrixD* values : {&track.x_px, &track.y_px, &track.confidence})
+      *values = MatrixD::Ones(frames, track.joint_count());
+    hide_limbs(track, body, seed);
+    std::vector<bool> hidden;
+    for (int t = 0; t < frames; ++t) hidden.push_back((track.confidence.row(t).array() == 0).any());
+    return hidden;
+  };
+  // In less than three seconds once: what touches no end is a whole time out of sight.
+  double shortest_s = 9, longest_s = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const std::vector<bool> hidden = any_hidden(290, 100, seed);
+    const auto count = std::count(hidden.begin(), hidden.end(), true);
+    if (count == 0 || hidden.front() || hidden.back()) continue;
+    shortest_s = std::min(shortest_s, static_cast<double>(count) / 100);
+    longest_s = std::max(longest_s, static_cast<double>(count) / 100);
+  }
+  CHECK(shortest_s >= 0.29);
+  CHECK(shortest_s < 0.6);
+  CHECK(longest_s <= 1.51);
+  CHECK(longest_s > 1.2);
+  // Ten times in twenty seconds, 0.9 seconds each, some of them at once.
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const std::vector<bool> hidden = any_hidden(1000, 50, seed);
+    const auto seconds = static_cast<double>(std::count(hidden.begin(), hidden.end(), true)) / 50;
+    CHECK(seconds > 3.5);
+    CHECK(seconds < 11);
+  }
 }
