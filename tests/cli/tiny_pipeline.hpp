@@ -34,7 +34,8 @@ class TinyPipeline {
   ScratchFolder folder_;
 };
 
-/// Says so where there is none.
+/// Fails the test where there is none: nothing would be tested. Where MCDBN_ALLOW_NO_DEVICE is set,
+/// says that the test is skipped, by name, and returns false.
 bool have_device();
 
 }  // namespace mcdbn::test

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "run_cli.hpp"
+#include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;
 
@@ -64,11 +64,8 @@ TEST_CASE("wrong usage is exit code 2") {
 }
 
 TEST_CASE("devices lists what there is") {
+  if (!have_device()) return;
   const CliResult text = run_cli("devices");
-  if (text.exit_code == 4) {
-    MESSAGE("SKIPPED devices: no OpenCL device here");
-    return;
-  }
   CHECK(text.exit_code == 0);
   CHECK(text.standard_error.empty());
   const auto listed = nlohmann::json::parse(run_cli("devices --json").standard_output);
@@ -90,7 +87,7 @@ TEST_CASE("no OpenCL platform is exit code 4 and says what to install") {
 }
 
 TEST_CASE("a full disk behind stdout is a failure") {
-  if (run_cli("devices").exit_code != 0) return;
+  if (!have_device()) return;
   const CliResult result = run_cli("devices >/dev/full");
   CHECK(result.exit_code == 1);
   CHECK(count_lines(result.standard_error) == 1);

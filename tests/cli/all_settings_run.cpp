@@ -1,0 +1,60 @@
+#include "all_settings_run.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "mcdbn/text_file.hpp"
+#include "settings_table.hpp"
+#include "tiny_pipeline.hpp"
+
+namespace mcdbn::test {
+namespace fs = std::filesystem;
+
+const AllSettingsRun& AllSettingsRun::instance() {
+  static const AllSettingsRun run;
+  return run;
+}
+
+fs::path AllSettingsRun::run() const {
+  return TinyPipeline::instance().folder("all_settings");
+}
+
+std::vector<fs::path> AllSettingsRun::clips() {
+  const fs::path motion = TinyPipeline::instance().motion();
+  return {motion / "walk_s01_01.bvh", motion / "walk_s01_02.bvh", motion / "walk_s02_01.bvh",
+          motion / "walk_s02_02.bvh"};
+}
+
+std::string AllSettingsRun::quoted_clips() {
+  std::string quoted;
+  for (const fs::path& clip : clips()) quoted += fmt::format(" '{}'", clip.string());
+  return quoted;
+}
+
+AllSettingsRun::AllSettingsRun() {
+  const CliResult result = train(quoted_clips(), run(), all_flags());
+  CAPTURE(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  recorded_ = recorded_settings(run());
+}
+
+std::map<std::string, double> recorded_settings(const fs::path& run) {
+  std::map<std::string, double> settings;
+  for (const auto& [name, value] : settings_in(read_text_file(run / "config.toml")))
+    CHECK_MESSAGE(settings.emplace(name, value).second, name, " is recorded once");
+  return settings;
+}
+
+std::map<std::string, double> settings_of_options(const std::string& options) {
+  const ScratchFolder folder;
+  fs::create_directories(folder / "run/metrics.jsonl");
+  const CliResult result =
+      train(TinyPipeline::instance().training_clips(), folder / "run", options);
+  CAPTURE(result.standard_error);
+  CHECK(result.exit_code == 3);
+  CHECK(result.standard_error.find("metrics.jsonl: cannot be written") != std::string::npos);
+  CHECK(!fs::exists(folder / "run/model.safetensors"));
+  return recorded_settings(folder / "run");
+}
+
+}  // namespace mcdbn::test

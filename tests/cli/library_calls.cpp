@@ -1,0 +1,34 @@
+#include "library_calls.hpp"
+
+#include <memory>
+
+#include "mcdbn/regeneration/sample_calibration.hpp"
+#include "mcdbn/text_file.hpp"
+#include "mcdbn/training/training_set.hpp"
+#include "motion/scratch_folder.hpp"
+
+namespace mcdbn::test {
+
+Device& usual_device() {
+  static Device& device = *std::make_unique<Device>(Device::open()).release();
+  return device;
+}
+
+LibraryTraining train_by_library(const std::vector<std::filesystem::path>& clips,
+                                 const TrainingConfig& config, const nlohmann::json& record) {
+  LibraryTraining result;
+  std::vector<std::string> notices;
+  const TrainingSet data = make_training_set(clips, config, &notices);
+  auto [network, stopped] =
+      train_network(usual_device(), data, clips, config,
+                    [&](const EpochReport& report) { result.epochs.push_back(report); });
+  if (config.joint.steps > 0)
+    network.sampling = calibrated_sampling(network, data.modalities, data.tracks, data.poses);
+  const ScratchFolder folder;
+  save_model(folder / "model.safetensors",
+             {std::move(network), data.modalities, data.clips, record, std::move(stopped)});
+  result.model_file = read_text_file(folder / "model.safetensors");
+  return result;
+}
+
+}  // namespace mcdbn::test

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mcdbn/device/device.hpp"
+#include "mcdbn/model/model_file.hpp"
+#include "mcdbn/training/training_schedule.hpp"
+
+namespace mcdbn::test {
+
+/// The device that the program takes where nothing is said. Never closed, as every_device.hpp says.
+Device& usual_device();
+
+/// What the library itself makes of a call, for comparison with the program's files.
+struct LibraryTraining {
+  std::string model_file;  ///< its bytes
+  std::vector<EpochReport> epochs;
+};
+
+/// @param record what the model file is to hold of its settings
+LibraryTraining train_by_library(const std::vector<std::filesystem::path>& clips,
+                                 const TrainingConfig& config, const nlohmann::json& record);
+
+}  // namespace mcdbn::test

@@ -1,0 +1,88 @@
+#include "option_table.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "run_cli.hpp"
+
+namespace mcdbn::test {
+namespace {
+
+/// "-o,--output" or "--mirror,--no-mirror{false}": the long names.
+std::vector<std::string> long_names(const std::string& word) {
+  std::vector<std::string> names;
+  std::istringstream parts(word);
+  for (std::string name; std::getline(parts, name, ',');)
+    if (name.starts_with("--")) names.push_back(name.substr(0, name.find('{')));
+  return names;
+}
+
+nlohmann::json first_device() {
+  return nlohmann::json::parse(run_cli("devices --json").standard_output).at("devices").at(0);
+}
+
+void check_no_such_device(const std::string& call) {
+  const CliResult result = run_cli(call);
+  CAPTURE(result.standard_error);
+  CHECK(result.exit_code == 4);
+  CHECK(result.standard_output.empty());
+  CHECK(result.standard_error.find("no-such-name") != std::string::npos);
+  const nlohmann::json device = first_device();
+  for (const char* field : {"name", "platform"})
+    CHECK(result.standard_error.find(device.at(field).get<std::string>()) != std::string::npos);
+}
+
+}  // namespace
+
+std::set<std::string> options_in_help(const std::string& command) {
+  const CliResult help = run_cli(command + " --help");
+  REQUIRE(help.exit_code == 0);
+  std::set<std::string> options;
+  bool positionals = false;
+  std::istringstream lines(help.standard_output);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("Example")) break;
+    if (!line.empty() && line[0] != ' ') positionals = line == "Positionals:";
+    if (!line.starts_with("  ") || line.starts_with("   ")) continue;  // or a text that goes on
+    const std::string word = line.substr(2, line.find(' ', 2) - 2);
+    if (positionals)
+      options.insert(word);
+    else
+      for (const std::string& name : long_names(word)) options.insert(name);
+  }
+  REQUIRE(options.erase("--help") == 1);
+  return options;
+}
+
+void check_options(const std::string& command, const std::vector<OptionRow>& rows) {
+  std::set<std::string> listed = options_in_help(command);
+  for (const OptionRow& row : rows) {
+    INFO(command, " ", row.option);
+    CHECK_MESSAGE(listed.erase(row.option) == 1, "the help lists it, and no other row has it");
+    row.check();
+  }
+  for (const std::string& option : listed) {
+    INFO(command, " ", option);
+    FAIL_CHECK("an option without a row that says what it changes");
+  }
+}
+
+std::vector<OptionRow> device_rows(const std::string& arguments,
+                                   const std::function<std::string()>& output) {
+  REQUIRE(run_cli(arguments).exit_code == 0);
+  const std::string plain = output();
+  const auto check = [=](const std::string& option, const std::string& field) {
+    const std::string name = first_device().at(field).get<std::string>();
+    REQUIRE(name.size() > 4);
+    const std::string part = name.substr(1, name.size() - 2);
+    CHECK(run_cli(arguments + " " + option + " '" + part + "'").exit_code == 0);
+    CHECK(output() == plain);
+    check_no_such_device(arguments + " " + option + " no-such-name");
+  };
+  return {{"--platform", [=] { check("--platform", "platform"); }},
+          {"--device", [=] { check("--device", "name"); }}};
+}
+
+}  // namespace mcdbn::test

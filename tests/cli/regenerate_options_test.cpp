@@ -1,0 +1,188 @@
+// Every option of regenerate, and what it changes: compared with what the library makes of the
+// same.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "library_calls.hpp"
+#include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/motion/camera.hpp"
+#include "mcdbn/motion/keypoints.hpp"
+#include "mcdbn/regeneration/clip_regeneration.hpp"
+#include "mcdbn/text_file.hpp"
+#include "option_table.hpp"
+#include "tiny_pipeline.hpp"
+
+using namespace mcdbn::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Call {
+  fs::path model, track;
+  std::optional<fs::path> camera, skeleton;
+  std::optional<std::size_t> samples, gibbs_steps, mrbm_gibbs_steps;
+  std::optional<double> temperature;
+  std::optional<std::uint64_t> seed;
+  std::string fit;
+
+  std::string arguments(const fs::path& output) const {
+    std::string text = fmt::format("regenerate --model '{}' --input '{}' -o '{}'", model.string(),
+                                   track.string(), output.string());
+    const auto add = [&](const char* flag, const auto& value) {
+      if (value) text += fmt::format(" {} {}", flag, *value);
+    };
+    if (camera) text += fmt::format(" --camera '{}'", camera->string());
+    if (skeleton) text += fmt::format(" --skeleton '{}'", skeleton->string());
+    add("--samples", samples);
+    add("--gibbs-steps", gibbs_steps);
+    add("--mrbm-gibbs-steps", mrbm_gibbs_steps);
+    add("--temperature", temperature);
+    add("--seed", seed);
+    return fit.empty() ? text : text + " --fit " + fit;
+  }
+};
+
+/// The defaults are written out here once more, as the help and the README say them.
+std::vector<std::string> by_library(const Call& call) {
+  const mcdbn::Model model = load_model(usual_device(), call.model);
+  mcdbn::ClipPlacement placement;
+  if (call.camera) placement.camera = mcdbn::read_camera(*call.camera);
+  if (call.skeleton) placement.skeleton = mcdbn::read_bvh(*call.skeleton).skeleton;
+  if (call.fit == "none") placement.fit.reset();
+  mcdbn::RegenerationOptions options;
+  options.samples = call.samples.value_or(1);
+  options.temperature = call.temperature.value_or(options.samples > 1 ? 1.0 : 0.0);
+  options.seed = call.seed.value_or(1);
+  options.sampling = model.network.sampling;
+  if (call.gibbs_steps) options.sampling = {*call.gibbs_steps, 0, false, 1.0};
+  if (call.mrbm_gibbs_steps)
+    options.sampling = {call.gibbs_steps.value_or(0), *call.mrbm_gibbs_steps, false, 1.0};
+  std::vector<std::string> texts;
+  for (const mcdbn::Motion& motion :
+       regenerate_clip(model, mcdbn::read_track_csv(call.track), placement, options))
+    texts.push_back(bvh_text(motion));
+  return texts;
+}
+
+/// out.bvh, or out_01.bvh and so on.
+std::vector<std::string> by_program(const Call& call) {
+  const ScratchFolder folder;
+  const CliResult result = run_cli(call.arguments(folder / "out.bvh"));
+  CAPTURE(result.standard_error);
+  CHECK(result.exit_code == 0);
+  CHECK(result.standard_output.empty());
+  const std::size_t samples = call.samples.value_or(1);
+  std::vector<std::string> texts;
+  for (std::size_t i = 1; i <= samples; ++i) {
+    const fs::path file = folder / (samples == 1 ? "out.bvh" : fmt::format("out_{:02}.bvh", i));
+    REQUIRE(fs::exists(file));
+    texts.push_back(mcdbn::read_text_file(file));
+  }
+  CHECK(std::distance(fs::directory_iterator(folder / "."), {}) ==
+        static_cast<std::ptrdiff_t>(samples));
+  return texts;
+}
+
+/// Equal to the library's answer, and another answer than without the change.
+void check_same(const Call& call, const std::vector<std::string>& before) {
+  const auto texts = by_program(call);
+  CHECK(texts == by_library(call));
+  CHECK(texts != before);
+}
+
+fs::path first_test_clip() {
+  return TinyPipeline::instance().motion() / "walk_s02_01.bvh";
+}
+
+/// A track of another number of frames, seen by a camera whose file is kept.
+void make_track(const fs::path& track, const fs::path& camera, const std::string& options) {
+  REQUIRE(run_cli(fmt::format("project '{}' -o '{}' --write-camera '{}' {}",
+                              first_test_clip().string(), track.string(), camera.string(), options))
+              .exit_code == 0);
+}
+
+}  // namespace
+
+TEST_CASE("regenerate: every option changes what its help says") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  make_track(folder / "track.csv", folder / "camera.yaml", "--noise-px 2");
+  make_track(folder / "other.csv", folder / "other.yaml", "--camera-azimuth -50 --seed 3");
+  const Call plain{.model = pipeline.model(),
+                   .track = folder / "track.csv",
+                   .samples = 2,
+                   .temperature = 0.8,
+                   .seed = 3,
+                   .fit = "none"};
+  const auto before = by_program(plain);
+  CHECK(before == by_library(plain));
+  CHECK(before[0] != before[1]);
+  const auto row = [&](const char* option, const std::function<void(Call&)>& change) {
+    return OptionRow{option, [=] {
+                       Call changed = plain;
+                       change(changed);
+                       check_same(changed, before);
+                     }};
+  };
+  std::vector<OptionRow> rows = {
+      row("--seed", [](Call& c) { c.seed = 9; }),
+      row("--temperature", [](Call& c) { c.temperature = 0.3; }),
+      row("--samples", [](Call& c) { c.samples = 3; }),
+      row("--gibbs-steps", [](Call& c) { c.gibbs_steps = 3; }),
+      row("--mrbm-gibbs-steps", [](Call& c) { c.mrbm_gibbs_steps = 2; }),
+      row("--camera", [&](Call& c) { c.camera = folder / "camera.yaml"; }),
+      row("--skeleton", [&](Call& c) { c.skeleton = first_test_clip(); }),
+      row("--fit", [](Call& c) { c.fit = "track"; }),
+      row("--input", [&](Call& c) { c.track = folder / "other.csv"; }),
+      row("--model", [&](Call& c) {
+        REQUIRE(train(pipeline.test_clips(), folder / "run", kTiny).exit_code == 0);
+        c.model = folder / "run/model.safetensors";
+      })};
+  const fs::path output = folder / "named.bvh";
+  Call one = plain;
+  one.samples = 1;
+  const auto text = [=] { return mcdbn::read_text_file(output); };
+  for (const OptionRow& each : device_rows(one.arguments(output), text)) rows.push_back(each);
+  rows.push_back({"--output", [&] { CHECK(text() == by_library(one).at(0)); }});
+  rows.push_back({"--quiet", [&] {
+                    const std::string call = one.arguments(output);
+                    CHECK(count_lines(run_cli(call).standard_error) == 1);
+                    const std::string seen = text();
+                    CHECK(run_cli(call + " --quiet").standard_error.empty());
+                    CHECK(text() == seen);
+                  }});
+  check_options("regenerate", rows);
+}
+
+TEST_CASE("regenerate: what holds where an option is not said") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  make_track(folder / "track.csv", folder / "camera.yaml", "--noise-px 2");
+  const Call bare{.model = TinyPipeline::instance().model(), .track = folder / "track.csv"};
+  const auto answer = by_program(bare);
+  CHECK(answer == by_library(bare));
+  Call said = bare;
+  said.samples = 1;
+  said.temperature = 0;
+  said.seed = 77;  // nothing is drawn
+  said.fit = "track";
+  CHECK(answer == by_library(said));
+
+  Call several = bare;
+  several.samples = 2;
+  several.fit = "none";
+  said = several;
+  said.temperature = 1;
+  said.seed = 1;
+  CHECK(by_program(several) == by_library(said));
+  // Steps of both kinds; and one sample that is drawn.
+  several.gibbs_steps = 2;
+  several.mrbm_gibbs_steps = 3;
+  CHECK(by_program(several) == by_library(several));
+  Call drawn = bare;
+  drawn.temperature = 0.6;
+  check_same(drawn, answer);
+}

@@ -1,0 +1,158 @@
+#include "settings_table.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+namespace mcdbn::test {
+namespace {
+
+/// A member as a number, and a number as the member.
+#define SETTING(name, value, member)                                                       \
+  {                                                                                        \
+    name, value, [](const TrainingConfig& c) { return static_cast<double>(c.member); },    \
+        [](TrainingConfig& c, double v) { c.member = static_cast<decltype(c.member)>(v); } \
+  }
+#define SWITCH(name, value, member)                                            \
+  {                                                                            \
+    name, value, [](const TrainingConfig& c) { return c.member ? 1.0 : 0.0; }, \
+        [](TrainingConfig& c, double v) { c.member = v != 0; }, true           \
+  }
+
+}  // namespace
+
+const std::vector<SettingRow>& setting_rows() {
+  static const std::vector<SettingRow> rows = {
+      SETTING("seed", 7, seed),
+      SETTING("fps", 25, fps),
+      SETTING("phases", 2, phases),
+      SWITCH("keep-first-frame", 1, keep_first_frame),
+      SETTING("order", 3, order),
+      SETTING("hidden", 9, hidden),
+      SETTING("layers", 2, layers),
+      SETTING("mrbm-hidden", 7, mrbm_hidden),
+      SETTING("look-ahead", 2, look_ahead),
+      SETTING("batch", 13, batch),
+      SETTING("least-batches", 5, least_batches),
+      SETTING("gaussian.gibbs-steps", 2, gaussian.gibbs_steps),
+      SETTING("gaussian.rate", 0.0021, gaussian.rate),
+      SETTING("gaussian.rate-A", 0.00013, gaussian.rate_A),
+      SETTING("gaussian.rate-B", 0.0017, gaussian.rate_B),
+      SETTING("gaussian.momentum", 0.55, gaussian.momentum),
+      SETTING("gaussian.momentum-from-epoch", 1, gaussian.momentum_from_epoch),
+      SETTING("gaussian.weight-decay", 0.0031, gaussian.weight_decay),
+      SETTING("gaussian.initial-deviation", 0.023, gaussian.initial_deviation),
+      SETTING("gaussian.epochs", 4, gaussian.epochs),
+      SETTING("binary.gibbs-steps", 3, binary.gibbs_steps),
+      SETTING("binary.rate", 0.0063, binary.rate),
+      SETTING("binary.rate-A", 0.0041, binary.rate_A),
+      SETTING("binary.rate-B", 0.0057, binary.rate_B),
+      SETTING("binary.momentum", 0.45, binary.momentum),
+      SETTING("binary.momentum-from-epoch", 2, binary.momentum_from_epoch),
+      SETTING("binary.weight-decay", 0.0071, binary.weight_decay),
+      SETTING("binary.initial-deviation", 0.037, binary.initial_deviation),
+      SETTING("binary.epochs", 5, binary.epochs),
+      SETTING("mrbm.rate", 0.0011, mrbm.rate),
+      SETTING("mrbm.weight-decay", 0.0019, mrbm.weight_decay),
+      SETTING("mrbm.initial-deviation", 0.043, mrbm.initial_deviation),
+      SETTING("mrbm.mean-field-steps", 4, mrbm.mean_field_steps),
+      SETTING("mrbm.epochs", 2, mrbm.epochs),
+      SETTING("joint.steps", 6, joint.steps),
+      SWITCH("joint.from-greedy", 0, joint.from_greedy),
+      SETTING("joint.windows", 5, joint.windows),
+      SETTING("joint.people-power", 0.3, joint.people_power),
+      SETTING("joint.window-frames", 8, joint.window_frames),
+      SETTING("joint.settle-frames", 3, joint.settle_frames),
+      SETTING("joint.rate", 0.0033, joint.rate),
+      SETTING("joint.weight-decay", 0.7, joint.weight_decay),
+      SETTING("joint.dropout", 0.2, joint.dropout),
+      SETTING("joint.average", 0.8, joint.average),
+      SETTING("joint.places", 0.6, joint.places),
+      SETTING("joint.velocities", 0.4, joint.velocities),
+      SETTING("joint.contacts", 0.15, joint.contacts),
+      SETTING("joint.reverse", 0.25, joint.reverse),
+      SETTING("joint.mean-field-steps", 3, joint.mean_field_steps),
+      SETTING("joint.hold-out-among", 2, joint.hold_out_among),
+      SETTING("augment.views", 3, augment.views),
+      SWITCH("augment.mirror", 0, augment.mirror),
+      SETTING("augment.azimuth", 11, augment.azimuth_deg),
+      SETTING("augment.elevation", 4, augment.elevation_deg),
+      SETTING("augment.distance", 0.07, augment.distance),
+      SETTING("augment.bone", 0.08, augment.bone),
+      SETTING("augment.turn", 3, augment.turn_deg),
+      SETTING("augment.speed", 0.09, augment.speed),
+      SETTING("augment.noise", 1.5, augment.noise_px),
+      SETTING("augment.missing", 0.65, augment.missing),
+      SETTING("camera.azimuth", -20, camera.azimuth_deg),
+      SETTING("camera.elevation", 6, camera.elevation_deg),
+      SETTING("camera.fov", 50, camera.field_of_view_deg),
+  };
+  return rows;
+}
+
+const SettingRow& setting_row(const std::string& name) {
+  const auto& rows = setting_rows();
+  const auto found = std::find_if(rows.begin(), rows.end(),
+                                  [&](const SettingRow& row) { return row.name == name; });
+  REQUIRE_MESSAGE(found != rows.end(), "no row for the setting ", name);
+  return *found;
+}
+
+std::string flag_of(const SettingRow& row) {
+  std::string flag = row.name;
+  std::replace(flag.begin(), flag.end(), '.', '-');
+  if (row.is_switch) return (row.value != 0 ? "--" : "--no-") + flag;
+  return fmt::format("--{} {}", flag, row.value);
+}
+
+std::string all_flags() {
+  std::string flags;
+  for (const SettingRow& row : setting_rows())
+    if (std::string(row.name) != "joint.from-greedy") flags += " " + flag_of(row);
+  return flags;
+}
+
+TrainingConfig all_settings() {
+  TrainingConfig config;
+  for (const SettingRow& row : setting_rows())
+    if (std::string(row.name) != "joint.from-greedy") row.write(config, row.value);
+  return config;
+}
+
+std::string all_toml() {
+  std::map<std::string, std::string> tables;  // the settings without a table come first: ""
+  for (const SettingRow& row : setting_rows()) {
+    const std::string name = row.name;
+    if (name == "joint.from-greedy") continue;
+    const auto dot = name.find('.');
+    const std::string table = dot == std::string::npos ? "" : name.substr(0, dot);
+    const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);
+    tables[table] += row.is_switch ? fmt::format("{} = {}\n", key, row.value != 0)
+                                   : fmt::format("{} = {}\n", key, row.value);
+  }
+  std::string text;
+  for (const auto& [table, lines] : tables)
+    text += table.empty() ? lines : fmt::format("[{}]\n{}", table, lines);
+  return text;
+}
+
+std::vector<std::pair<std::string, double>> settings_in(const std::string& toml) {
+  std::vector<std::pair<std::string, double>> settings;
+  std::string prefix;
+  std::istringstream lines(toml);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("[")) prefix = line.substr(1, line.find(']') - 1) + ".";
+    const auto equals = line.find(" = ");
+    if (equals == std::string::npos) continue;
+    const std::string value = line.substr(equals + 3);
+    settings.emplace_back(prefix + line.substr(0, equals), value == "true"    ? 1.0
+                                                           : value == "false" ? 0.0
+                                                                              : std::stod(value));
+  }
+  return settings;
+}
+
+}  // namespace mcdbn::test

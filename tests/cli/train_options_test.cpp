@@ -1,0 +1,118 @@
+// Every option of train, and what it changes.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "all_settings_run.hpp"
+#include "mcdbn/text_file.hpp"
+#include "option_table.hpp"
+#include "settings_table.hpp"
+#include "tiny_pipeline.hpp"
+
+using namespace mcdbn::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Shorter still than kTiny.
+const std::string kQuick =
+    kTinyGreedy + " --stages greedy --layers 1 --order 2 --least-batches 1 --batch 36";
+
+constexpr const char* kSwitches[] = {"keep-first-frame", "joint.from-greedy", "augment.mirror"};
+
+std::string with_dashes(std::string name) {
+  std::replace(name.begin(), name.end(), '.', '-');
+  return name;
+}
+
+/// `--mirror` and `--no-mirror`, each against a file that says the opposite.
+void check_switch(const std::string& name, bool on) {
+  const ScratchFolder folder;
+  const auto dot = name.find('.');
+  const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);
+  const std::string table = dot == std::string::npos ? "" : "[" + name.substr(0, dot) + "]\n";
+  const fs::path file = folder.write("s.toml", fmt::format("{}{} = {}\n", table, key, !on));
+  const std::string config = fmt::format("--config '{}'", file.string());
+  CHECK(settings_of_options(config).at(name) == (on ? 0.0 : 1.0));
+  CHECK(settings_of_options(config + (on ? " --" : " --no-") + with_dashes(name)).at(name) ==
+        (on ? 1.0 : 0.0));
+}
+
+/// Its flag stands in the run with all flags; its value in that run's record, not the default.
+void check_setting(const SettingRow& row) {
+  const auto& recorded = AllSettingsRun::instance().recorded();
+  REQUIRE(recorded.count(row.name) == 1);
+  CHECK(recorded.at(row.name) == row.value);
+  CHECK(row.read(mcdbn::TrainingConfig{}) != row.value);
+}
+
+std::vector<OptionRow> setting_option_rows() {
+  std::vector<OptionRow> rows;
+  for (const SettingRow& row : setting_rows())
+    if (!row.is_switch)
+      rows.push_back({"--" + with_dashes(row.name), [&row] { check_setting(row); }});
+  for (const char* name : kSwitches)
+    for (const bool on : {true, false})
+      rows.push_back({(on ? "--" : "--no-") + with_dashes(name), [=] { check_switch(name, on); }});
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("train: every option changes what its help says") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const fs::path run = folder / "run";
+  const auto model = [&] { return mcdbn::read_text_file(run / "model.safetensors"); };
+  const auto trained = [&](const std::string& clips, const std::string& options) {
+    const CliResult result = train(clips, run, kQuick + " " + options);
+    CAPTURE(result.standard_error);
+    CHECK(result.exit_code == 0);
+    return result;
+  };
+  const CliResult plain_result = trained(pipeline.training_clips(), "");
+  const std::string plain = model();
+
+  std::vector<OptionRow> rows = setting_option_rows();
+  const std::string call =
+      fmt::format("train {} -o '{}' {}", pipeline.training_clips(), run.string(), kQuick);
+  for (const OptionRow& row : device_rows(call, model)) rows.push_back(row);
+  rows.push_back({"data", [&] {
+                    trained(pipeline.test_clips(), "");
+                    CHECK(model() != plain);
+                    CHECK(train("absent.bvh", run, "").exit_code == 3);
+                  }});
+  rows.push_back({"--output", [&] {
+                    const fs::path other = folder / "a/b/run";
+                    CHECK(train(pipeline.training_clips(), other, kQuick).exit_code == 0);
+                    for (const char* file : {"model.safetensors", "metrics.jsonl", "config.toml"})
+                      CHECK(fs::file_size(other / file) > 100);
+                  }});
+  rows.push_back({"--quiet", [&] {
+                    CHECK(plain_result.standard_error.find("mrbm epoch 2/2") != std::string::npos);
+                    CHECK(plain_result.standard_error.find("info: ") != std::string::npos);
+                    CHECK(trained(pipeline.training_clips(), "--quiet").standard_error.empty());
+                    CHECK(model() == plain);
+                  }});
+  rows.push_back({"--config", [&] {
+                    const fs::path file = folder.write("c.toml", "seed = 3\n");
+                    trained(pipeline.training_clips(), fmt::format("--config '{}'", file.string()));
+                    const std::string by_file = model();
+                    CHECK(by_file != plain);
+                    trained(pipeline.training_clips(), "--seed 3");
+                    CHECK(model() == by_file);
+                    CHECK(train("x.bvh", run, "--config absent.toml").exit_code == 2);
+                  }});
+  // What these do has test cases of its own, and scripts_test.py.
+  rows.push_back(
+      {"--preset", [&] { CHECK(train("x.bvh", run, "--preset other").exit_code == 2); }});
+  rows.push_back(
+      {"--stages", [&] { CHECK(train("x.bvh", run, "--stages other").exit_code == 2); }});
+  rows.push_back({"--sweep", [&] {
+                    const CliResult result =
+                        train(pipeline.training_clips(), folder / "sweep", "--sweep absent.toml");
+                    CHECK(result.exit_code == 2);
+                    CHECK(result.standard_error.find("absent.toml") != std::string::npos);
+                  }});
+  check_options("train", rows);
+}

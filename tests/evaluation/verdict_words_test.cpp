@@ -1,0 +1,131 @@
+// Which words a report finds for which figures: both sides of every threshold.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "numbered_report.hpp"
+
+namespace mcdbn {
+namespace {
+
+using Kind = Verdict::Kind;
+using namespace test;
+
+struct Figures {
+  double mpjpe_mm, pcc_channel, pcc_flat = 0.5;
+};
+
+ClipScore score_with(const Figures& figures) {
+  ClipScore score;
+  score.error.mpjpe_mm = figures.mpjpe_mm;
+  score.pcc_channel = figures.pcc_channel;
+  score.pcc_flat = figures.pcc_flat;
+  return score;
+}
+
+/// One action of two clips with one sample each; the model against one baseline.
+EvaluationReport duel(const Figures& model, const Figures& baseline, const char* name) {
+  EvaluationReport report = numbered_report();
+  report.clips.resize(2);
+  report.fit = "none";
+  report.damage = {};
+  for (ReportClip& clip : report.clips) {
+    clip.action = "walk";
+    clip.samples = {{clip.truth_mm, score_with(model)}};
+    clip.others = {{name, {clip.truth_mm, score_with(baseline)}}};
+  }
+  // The baseline is nearer on the second clip in any case.
+  report.clips[1].samples[0].score.error.mpjpe_mm += 4;
+  report.clips[1].others.at(name).score.error.mpjpe_mm -= 4;
+  report.actions = analyse_actions(report.clips, 1);
+  return report;
+}
+
+bool says(const EvaluationReport& report, Kind kind, const std::string& text) {
+  for (const Verdict& verdict : verdicts(report))
+    if (verdict.kind == kind && verdict.text == text) return true;
+  for (const Verdict& verdict : verdicts(report)) MESSAGE(verdict.text);
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("verdicts: nearer, or following better, or both, or neither") {
+  CHECK(says(duel({20, 0.9}, {25, 0.8}, "ridge_window"), Kind::good,
+             "The model beats ridge regression: 22.0 mm against 23.0 mm, per-channel PCC 0.900 "
+             "against 0.800; nearer on 1 of 2 clips."));
+  CHECK(says(duel({20, 0.7}, {25, 0.8}, "mlp_window"), Kind::bad,
+             "The model is nearer to the truth than the MLP, but follows the motion less well: "
+             "22.0 mm against 23.0 mm, per-channel PCC 0.700 against 0.800; nearer on 1 of 2 "
+             "clips."));
+  CHECK(says(duel({20, 0.9}, {22, 0.8}, "nearest_neighbour"), Kind::bad,
+             "The model is farther from the truth than the nearest neighbour, though it follows "
+             "the motion better: 22.0 mm against 20.0 mm, per-channel PCC 0.900 against 0.800; "
+             "nearer on 1 of 2 clips."));
+  CHECK(says(duel({20, 0.7}, {20, 0.8}, "hold_last_frame"), Kind::bad,
+             "The model loses to one pose held throughout: 22.0 mm against 18.0 mm, per-channel "
+             "PCC 0.700 against 0.800; nearer on 0 of 2 clips."));
+}
+
+TEST_CASE("verdicts: a constant pose by the flattened correlation") {
+  CHECK(says(duel({20, 0.7, 0.95}, {50, 0.02, 0.81}, "mean_pose"), Kind::note,
+             "Even a pose that never moves reaches a flattened PCC of 0.8100 (the model: 0.9500): "
+             "judge by the per-channel PCC, where it gets 0.02."));
+  CHECK(says(duel({20, 0.7, 0.9}, {50, 0.02, 0.9}, "mean_pose"), Kind::bad,
+             "By the flattened PCC that the paper reports, a pose that never moves (0.9000) is as "
+             "good as the model (0.9000)."));
+  for (const Verdict& verdict : verdicts(duel({20, 0.7, 0.9}, {50, 0.02, 0.79}, "mean_pose")))
+    CHECK(verdict.text.find("flattened") == std::string::npos);
+}
+
+TEST_CASE("verdicts: planted feet, samples and how alike clips are") {
+  EvaluationReport report = numbered_report();
+  // The answer is the mean field, number 2: feet at 25 mm/s where the capture's are at 14.
+  CHECK(says(report, Kind::bad,
+             "Planted feet slide at 25 mm/s, in the capture itself at 14 mm/s: 1.8 times as "
+             "fast."));
+  const ActionReport& walk = report.actions[0];
+  CHECK(
+      says(report, Kind::bad,
+           fmt::format("walk: 2 samples of a clip differ by {:.1f} mm; a sample is off by 49.2 mm "
+                       "on average, the best of 2 by 48.7 mm, the single mean-field answer by "
+                       "22.0 mm.",
+                       *walk.diversity_mm)));
+  for (ReportClip& clip : report.clips) clip.others.at(kMeanField).score.foot_slide = {20, 30, 3};
+  CHECK(says(report, Kind::good,
+             "Planted feet slide at 30 mm/s, in the capture itself at 20 mm/s: 1.5 times as "
+             "fast."));
+  CHECK(says(report, Kind::bad,
+             "1 of 5 clips were trained on: every figure that includes them flatters the model. "
+             "They are marked."));
+
+  ActionReport& likeness = report.actions[0];
+  likeness.pairs_real.statistics.median = 0.9;
+  const auto alike = [&](double median, double kl) {
+    likeness.pairs_drawn.statistics.median = median;
+    likeness.weibull_kl = kl;
+    for (const Verdict& verdict : verdicts(report))
+      if (verdict.text.starts_with("walk: regenerated clips are ")) return verdict;
+    return Verdict{};
+  };
+  CHECK(alike(0.95, 0.39).text ==
+        "walk: regenerated clips are more alike than real ones (median pairwise PCC 0.950 against "
+        "0.900; KL of the fitted Weibulls 0.39 nats).");
+  CHECK(alike(0.95, 0.39).kind == Kind::good);
+  CHECK(alike(0.85, 0.41).kind == Kind::note);
+  CHECK(alike(0.85, 0.41).text.find("less alike than") != std::string::npos);
+  CHECK(alike(0.904, 0.1).text.find("about as alike as") != std::string::npos);
+}
+
+TEST_CASE("verdicts: where a baseline is nearer on an action of several") {
+  EvaluationReport report = numbered_report();
+  for (ReportClip& clip : report.clips)
+    if (clip.action == "jump") clip.others.at("ridge_window").score.error.mpjpe_mm = 15;
+  report.actions = analyse_actions(report.clips, 7);
+  CHECK(says(report, Kind::bad,
+             "On jump, ridge regression is nearer to the truth: 15.0 mm against the model's 22.0 "
+             "mm."));
+  for (const Verdict& verdict : verdicts(report))
+    CHECK(verdict.text.find("On walk") == std::string::npos);
+}
+
+}  // namespace mcdbn
