@@ -21,11 +21,11 @@ namespace {
 
 struct Call {
   fs::path model, track;
-  std::optional<fs::path> camera, skeleton;
-  std::optional<std::size_t> samples, gibbs_steps, mrbm_gibbs_steps;
-  std::optional<double> temperature;
-  std::optional<std::uint64_t> seed;
-  std::string fit;
+  std::optional<fs::path> camera = {}, skeleton = {};
+  std::optional<std::size_t> samples = {}, gibbs_steps = {}, mrbm_gibbs_steps = {};
+  std::optional<double> temperature = {};
+  std::optional<std::uint64_t> seed = {};
+  std::string fit = {};
 
   std::string arguments(const fs::path& output) const {
     std::string text = fmt::format("regenerate --model '{}' --input '{}' -o '{}'", model.string(),

@@ -143,14 +143,3 @@ TEST_CASE("a platform or device that is not there is exit code 4 with the list")
   }
   CHECK(!fs::exists(run));
 }
-
-TEST_CASE("an interrupt is exit code 130 and leaves no model") {
-  if (!have_device()) return;
-  const TinyPipeline& pipeline = TinyPipeline::instance();
-  const fs::path run = pipeline.folder("interrupted");
-  const CliResult result =
-      train(pipeline.training_clips(), run, "--stages joint --joint-steps 1000000",
-            "timeout --preserve-status --signal=INT 5");
-  CHECK(result.exit_code == 130);
-  CHECK(!fs::exists(run / "model.safetensors"));
-}

@@ -111,6 +111,66 @@ class Scripts(unittest.TestCase):
         self.assertEqual(after["hidden=8,order=3"]["mpjpe_mm"],
                          before["hidden=8,order=3"]["mpjpe_mm"])
 
+    def test_sweep_gives_each_configuration_its_own_settings(self):
+        text = """
+test = ["walk/walk_s02_01.bvh"]
+[[configuration]]
+seed = 4
+[[configuration]]
+hidden = [7, 6]
+gaussian.rate = [0.002, 0.003]
+[[configuration]]
+joint.from-greedy = false
+"""
+        varied = [{"seed": 4},
+                  {"gaussian.rate": 0.002, "hidden": 7}, {"gaussian.rate": 0.002, "hidden": 6},
+                  {"gaussian.rate": 0.003, "hidden": 7}, {"gaussian.rate": 0.003, "hidden": 6},
+                  {"joint.from-greedy": False}]
+        # What the sweep varies has the last word.
+        (self.folder / "sweep.toml").write_text(text)
+        training = self.folder / "walk/walk_s01_01.bvh"
+        result = self.run_cli("train", training, "-o", self.folder / "sweep", "--sweep",
+                              self.folder / "sweep.toml", "--quiet", *TINY.split(),
+                              "--order", 2, "--seed", 9)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        lines = (self.folder / "sweep/sweep.jsonl").read_text().splitlines()
+        records = [json.loads(line) for line in lines]
+        self.assertEqual([record["configuration"] for record in records], varied)
+        figures = set()
+        for record, changes in zip(records, varied):
+            name = ",".join(f"{key}={json.dumps(value)}" for key, value in changes.items())
+            self.assertEqual(record["name"], name)
+            self.assertEqual(record["status"], "ok")
+            self.assertEqual(record["clips"], 1)
+            self.assertEqual(record["frames"], 60)
+            settings = record["settings"]
+            self.assertEqual(settings["order"], 2)
+            self.assertEqual(settings["seed"], changes.get("seed", 9))
+            self.assertEqual(settings["hidden"], changes.get("hidden", 8))
+            self.assertEqual(settings["gaussian"]["rate"], changes.get("gaussian.rate", 0.001))
+            self.assertEqual(settings["joint"]["from-greedy"],
+                             changes.get("joint.from-greedy", True))
+            figures.add(record["mpjpe_mm"])
+            # The table on stdout has the same figures.
+            row = next(line for line in result.stdout.splitlines() if line.startswith(name + " "))
+            self.assertEqual(row.split()[-2:], [f"{record['pcc_channel']:.3f}",
+                                                f"{record['mpjpe_mm']:.1f}"])
+        self.assertEqual(len(figures), len(varied))
+
+        # A configuration alone gives the same model, and evaluate the same scores.
+        alone = self.folder / "alone"
+        self.assertEqual(self.run_cli("train", training, "-o", alone, "--quiet", *TINY.split(),
+                                      "--order", 2, "--seed", 9, "--hidden", 6,
+                                      "--gaussian-rate", 0.003).returncode, 0)
+        swept = self.folder / "sweep/gaussian.rate=0.003,hidden=6"
+        for file in ("model.safetensors", "config.toml"):
+            self.assertEqual((alone / file).read_bytes(), (swept / file).read_bytes())
+        scores = json.loads(self.run_cli(
+            "evaluate", "--model", alone / "model.safetensors", "--test",
+            self.folder / "walk/walk_s02_01.bvh", "--fit", "none", "--json").stdout)["model"]
+        for figure in ("pcc_flat", "pcc_channel", "mpjpe_mm"):
+            self.assertEqual(records[4][figure], scores[figure])
+
     def test_bad_sweep_files_name_their_line(self):
         for text, words in (("test = ['x']\n", "nothing to try"),
                             ("[grid]\norder = [2]\n", "no 'test'"),

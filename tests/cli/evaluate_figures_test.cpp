@@ -1,0 +1,94 @@
+// The figures of an evaluation from the motions themselves, by code of the tests' own.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "independent_scores.hpp"
+#include "library_calls.hpp"
+#include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/motion/camera.hpp"
+#include "mcdbn/regeneration/test_run.hpp"
+#include "tiny_pipeline.hpp"
+
+using namespace mcdbn::test;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+void check_scores(const std::map<std::string, double>& wanted, const json& found,
+                  double tolerance) {
+  CHECK(found.size() == wanted.size());
+  for (const auto& [name, value] : wanted) {
+    CAPTURE(name);
+    REQUIRE(found.contains(name));
+    const double off = std::abs(found.at(name).get<double>() - value);
+    CHECK(off <= tolerance * std::max(1.0, std::abs(value)));
+  }
+}
+
+json figures_of(const mcdbn::ClipScore& score) {
+  json figures = {{"foot_slide_of_truth_mm_s", score.foot_slide.truth_mm_s}};
+  for (const mcdbn::ScoreFigure& figure : mcdbn::score_figures())
+    figures[figure.name] = figure.of(score);
+  return figures;
+}
+
+}  // namespace
+
+TEST_CASE("the scores of every method are those of its motion, by independent code") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const mcdbn::Model model = load_model(usual_device(), pipeline.model());
+  mcdbn::TestRunOptions options;
+  options.camera = model.modalities.camera;
+  options.regeneration.samples = 2;
+  options.regeneration.temperature = 1;
+  for (const mcdbn::ClipResult& result :
+       run_test(model, {pipeline.motion() / "walk_s02_01.bvh"}, options)) {
+    const auto check = [&](const mcdbn::Regeneration& answer) {
+      const auto wanted = independent_scores(result.truth.motion, answer.motion,
+                                             result.truth.camera.camera_from_world);
+      // Sums of a few thousand terms in double.
+      check_scores(wanted, figures_of(answer.score), 1e-9);
+    };
+    CHECK(result.samples.size() == 2);
+    CHECK(result.others.size() == 6);
+    for (const mcdbn::Regeneration& sample : result.samples) check(sample);
+    for (const auto& [name, other] : result.others) {
+      CAPTURE(name);
+      check(other);
+    }
+  }
+}
+
+TEST_CASE("evaluate scores what regenerate writes, against the test clip's own file") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const fs::path clip = pipeline.motion() / "walk_s02_02.bvh";
+  // The tiny model was trained for the usual view, which project has too.
+  const std::string camera = (folder / "camera.yaml").string();
+  REQUIRE(run_cli(fmt::format("project '{}' -o '{}' --write-camera '{}'", clip.string(),
+                              (folder / "track.csv").string(), camera))
+              .exit_code == 0);
+  REQUIRE(run_cli(fmt::format("regenerate --model '{}' --input '{}' -o '{}' --camera '{}' "
+                              "--skeleton '{}' --fit none",
+                              pipeline.model().string(), (folder / "track.csv").string(),
+                              (folder / "out.bvh").string(), camera, clip.string()))
+              .exit_code == 0);
+  const CliResult result =
+      run_cli(fmt::format("evaluate --model '{}' --test '{}' --fit none --json --quiet",
+                          pipeline.model().string(), clip.string()));
+  REQUIRE(result.exit_code == 0);
+  const auto wanted = independent_scores(mcdbn::read_bvh(clip), mcdbn::read_bvh(folder / "out.bvh"),
+                                         mcdbn::read_camera(camera).camera_from_world);
+  auto found = json::parse(result.standard_output).at("model");
+  // Files hold five digits or so of a motion; accelerations are its second differences times 900.
+  const double acceleration = wanted.at("acceleration_error_mm_s2");
+  CHECK(found.at("acceleration_error_mm_s2").get<double>() ==
+        doctest::Approx(acceleration).epsilon(0.02));
+  found["acceleration_error_mm_s2"] = acceleration;
+  check_scores(wanted, found, 2e-3);
+}

@@ -1,0 +1,208 @@
+// Every option of evaluate, and what it changes: compared with the library's own run.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "library_calls.hpp"
+#include "mcdbn/evaluation/evaluation_report.hpp"
+#include "mcdbn/regeneration/test_run.hpp"
+#include "mcdbn/text_file.hpp"
+#include "option_table.hpp"
+#include "tiny_pipeline.hpp"
+
+using namespace mcdbn::test;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// What may be said; the library's run takes the same.
+struct Call {
+  fs::path model = {};
+  std::vector<fs::path> test = {};
+  bool by_folder = false, keep_first_frame = false, include_training = false, fit = true;
+  std::size_t samples = 1;
+  double temperature = 0;
+  std::optional<mcdbn::SamplingRule> sampling = {};
+  std::uint64_t seed = 1;
+  double azimuth_deg = 30, elevation_deg = 10;  // as the tiny model was trained
+  mcdbn::TrackDamage damage = {};
+};
+
+/// The summary without what baselines say: those take longer than all the rest.
+json by_library(const Call& call) {
+  const mcdbn::Model model = load_model(usual_device(), call.model);
+  mcdbn::TestRunOptions options;
+  options.camera = model.modalities.camera;
+  options.camera.azimuth_deg = call.azimuth_deg;
+  options.camera.elevation_deg = call.elevation_deg;
+  options.regeneration.samples = call.samples;
+  options.regeneration.temperature = call.temperature;
+  options.regeneration.seed = call.seed;
+  options.regeneration.sampling = call.sampling.value_or(model.network.sampling);
+  if (!call.fit) options.fit.reset();
+  options.damage = call.damage;
+  options.keep_first_frame = call.keep_first_frame;
+  options.include_training = call.include_training;
+  options.baselines = false;
+  mcdbn::EvaluationReport report;
+  report.clips = report_clips(model, run_test(model, call.test, options), call.by_folder);
+  report.actions = analyse_actions(report.clips, call.seed);
+  report.temperature = call.temperature;
+  report.fit = call.fit ? "track" : "none";
+  report.damage = call.damage;
+  return json(summary_json(report));
+}
+
+/// What both know.
+json without_baselines(json summary) {
+  for (const char* name : {"baselines", "verdicts", "protocol", "model_file"}) summary.erase(name);
+  for (json& action : summary.at("actions")) action.erase("baselines");
+  return summary;
+}
+
+json by_program(const Call& call, const std::string& options) {
+  std::string clips;
+  for (const fs::path& clip : call.test) clips += fmt::format(" '{}'", clip.string());
+  const CliResult result = run_cli(fmt::format("evaluate --model '{}' --json --quiet --test {} {}",
+                                               call.model.string(), clips, options));
+  CAPTURE(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  CHECK(result.standard_error.empty());
+  return json::parse(result.standard_output);
+}
+
+/// A test clip with its rest pose, a calibration, before its first frame.
+fs::path with_calibration_pose(const fs::path& clip, const ScratchFolder& folder) {
+  std::string text = mcdbn::read_text_file(clip);
+  const auto frames = text.find("Frames: ") + 8;
+  const int count = std::stoi(text.substr(frames));
+  text.replace(frames, std::to_string(count).size(), std::to_string(count + 1));
+  const auto first = text.find('\n', text.find("Frame Time")) + 1;
+  std::string pose = text.substr(first, text.find('\n', first) - first);
+  const auto channels = std::ranges::count(pose, ' ') + 1;
+  pose = "0";
+  for (int i = 1; i < channels; ++i) pose += " 0";
+  text.insert(first, pose + "\n");
+  fs::create_directories(folder / "calibrated");
+  return folder.write("calibrated/walk_s02_09.bvh", text);
+}
+
+}  // namespace
+
+TEST_CASE("evaluate: every option changes what its help says") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  Call all;
+  all.model = pipeline.model();
+  all.test = {with_calibration_pose(pipeline.motion() / "walk_s02_01.bvh", folder),
+              pipeline.motion() / "walk_s01_01.bvh"};
+  all.by_folder = all.keep_first_frame = all.include_training = true;
+  all.fit = false;
+  all.samples = 2;
+  all.temperature = 0.7;
+  all.sampling = mcdbn::SamplingRule{2, 3, false, 1.0};
+  all.seed = 9;
+  all.azimuth_deg = 55;
+  all.elevation_deg = 20;
+  all.damage = {2, 0.1, 0.3};
+  // Everything at once: each row then says that its own option did something.
+  const fs::path report = folder / "report";
+  const json summary = by_program(
+      all, fmt::format("--actions by-folder --keep-first-frame --include-training --fit none "
+                       "--samples 2 --temperature 0.7 --gibbs-steps 2 --mrbm-gibbs-steps 3 "
+                       "--seed 9 --camera-azimuth 55 --camera-elevation 20 --track-noise-px 2 "
+                       "--track-missing 0.1 --track-hide 0.3 --report '{}'",
+                       report.string()));
+  const json found = without_baselines(summary);
+  CHECK(found == without_baselines(by_library(all)));
+  const auto row = [&](const char* option, const std::function<void(Call&)>& undo) {
+    return OptionRow{option, [=, &all] {
+                       Call without = all;
+                       undo(without);
+                       const json other = by_library(without);
+                       CHECK(found.at("model") != other.at("model"));
+                       CHECK(found != without_baselines(other));
+                     }};
+  };
+  const auto refused = [&](const std::string& options, int exit_code) {
+    return run_cli(fmt::format("evaluate --quiet --model '{}' --test '{}' {}", all.model.string(),
+                               all.test[1].string(), options))
+               .exit_code == exit_code;
+  };
+  std::vector<OptionRow> rows = {
+      row("--keep-first-frame", [](Call& call) { call.keep_first_frame = false; }),
+      row("--fit", [](Call& call) { call.fit = true; }),
+      row("--samples", [](Call& call) { call.samples = 1; }),
+      row("--temperature", [](Call& call) { call.temperature = 1; }),
+      row("--gibbs-steps", [](Call& call) { call.sampling->gibbs_steps = 0; }),
+      row("--mrbm-gibbs-steps", [](Call& call) { call.sampling->mrbm_gibbs_steps = 0; }),
+      row("--seed", [](Call& call) { call.seed = 1; }),
+      row("--camera-azimuth", [](Call& call) { call.azimuth_deg = 30; }),
+      row("--camera-elevation", [](Call& call) { call.elevation_deg = 10; }),
+      row("--track-noise-px", [](Call& call) { call.damage.noise_px = 0; }),
+      row("--track-missing", [](Call& call) { call.damage.missing_share = 0; }),
+      row("--track-hide", [](Call& call) { call.damage.hidden_s = 0; }),
+      row("--test", [](Call& call) { call.test.pop_back(); }),
+      {"--actions",
+       [&] {
+         CHECK(found.at("actions").size() == 2);
+         CHECK(found.at("actions").at(0).at("name") == "calibrated");
+         CHECK(found.at("actions").at(1).at("name") == "motion");
+       }},
+      {"--include-training",
+       [&] {
+         CHECK(found.at("training_clips") == 1);
+         CHECK(refused("", 3));
+       }},
+      {"--report",
+       [&] {
+         CHECK(json::parse(mcdbn::read_text_file(report / "summary.json")) == summary);
+         CHECK(fs::file_size(report / "report.html") > 10000);
+       }},
+      {"--model", [&] { CHECK(summary.at("model_file") == "model.safetensors"); }},
+      {"--json", [&] { CHECK(summary.is_object()); }},
+      {"--protocol", [&] { CHECK(refused("--protocol other", 2)); }},
+      {"--platform", [&] { CHECK(refused("--platform no-such-name", 4)); }},
+      {"--device", [&] { CHECK(refused("--device no-such-name", 4)); }},
+      {"--quiet", [] {}}};  // by_program says it, and the next test case does not
+  check_options("evaluate", rows);
+}
+
+TEST_CASE("evaluate: what holds where an option is not said, and the text for people") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  Call call;
+  call.model = pipeline.model();
+  call.test = {pipeline.motion() / "walk_s02_01.bvh"};
+  const std::string platform = mcdbn::list_devices().at(0).platform_name;
+  const CliResult text = run_cli(fmt::format("evaluate --model '{}' --test '{}' --platform '{}'",
+                                             call.model.string(), call.test[0].string(), platform));
+  REQUIRE(text.exit_code == 0);
+  CHECK(text.standard_error.find("%  reading clips") != std::string::npos);
+  const json wanted = by_library(call);
+  CHECK(text.standard_output.starts_with("1 clips, 36 frames\n"));
+  const json& model = wanted.at("model");
+  CHECK(text.standard_output.find(
+            fmt::format("\nmodel               {:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n",
+                        model.at("pcc_flat").get<double>(), model.at("pcc_channel").get<double>(),
+                        model.at("mpjpe_mm").get<double>(), model.at("pa_mpjpe_mm").get<double>(),
+                        model.at("root_mm").get<double>())) != std::string::npos);
+}
+
+TEST_CASE("evaluate --protocol paper: ten samples by the network alone, by folder") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  Call call;
+  call.model = pipeline.model();
+  call.test = {pipeline.motion() / "walk_s01_02.bvh"};
+  const json summary = by_program(call, "--protocol paper");
+  CHECK(summary.at("protocol") == "paper");
+  call.samples = 10;
+  call.temperature = 1;
+  call.fit = false;
+  call.by_folder = call.include_training = true;
+  CHECK(without_baselines(summary) == without_baselines(by_library(call)));
+}

@@ -1,0 +1,229 @@
+// Every option of synthesize and project, and what it changes: compared with the library's own.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/motion/camera.hpp"
+#include "mcdbn/motion/clip.hpp"
+#include "mcdbn/motion/keypoints.hpp"
+#include "mcdbn/motion/synthesize.hpp"
+#include "mcdbn/motion/track_noise.hpp"
+#include "mcdbn/text_file.hpp"
+#include "motion/scratch_folder.hpp"
+#include "option_table.hpp"
+#include "run_cli.hpp"
+
+using namespace mcdbn::test;
+using mcdbn::SynthesisAction;
+using mcdbn::SynthesisOptions;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The files of a folder by name.
+std::map<std::string, std::string> files_of(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    files[entry.path().filename().string()] = mcdbn::read_text_file(entry.path());
+  return files;
+}
+
+std::map<std::string, std::string> synthesized(const std::string& options) {
+  const ScratchFolder folder;
+  const CliResult result =
+      run_cli(fmt::format("synthesize -o '{}' {}", (folder / "clips").string(), options));
+  CAPTURE(result.standard_error);
+  CHECK(result.exit_code == 0);
+  CHECK(result.standard_output.empty());
+  return files_of(folder / "clips");
+}
+
+struct Clip {
+  const char* name;
+  int subject, clip;
+};
+
+/// The library's clips under these names, with `options` for all.
+void check_clips(const std::map<std::string, std::string>& files, const std::vector<Clip>& clips,
+                 SynthesisOptions options) {
+  CHECK(files.size() == clips.size());
+  for (const Clip& clip : clips) {
+    CAPTURE(clip.name);
+    options.subject = clip.subject;
+    options.clip = clip.clip;
+    REQUIRE(files.count(clip.name) == 1);
+    CHECK(files.at(clip.name) == bvh_text(synthesize(options)));
+  }
+}
+
+SynthesisOptions short_clip() {
+  SynthesisOptions options;
+  options.action = SynthesisAction::jump;
+  options.seconds = 0.5;
+  return options;
+}
+
+struct ProjectCall {
+  mcdbn::ClipOptions clip = {};
+  mcdbn::CameraPlacement placement = {};
+  std::optional<mcdbn::Camera> camera = {};
+  double noise_px = 0;
+  std::uint64_t seed = 1;
+};
+
+/// The track that the library makes of it, as the program would write it.
+std::string track_text(const fs::path& file, const ProjectCall& call) {
+  const ScratchFolder folder;
+  const mcdbn::Motion motion = mcdbn::load_clip(file, call.clip);
+  const mcdbn::Camera camera = call.camera ? *call.camera : place_camera(motion, call.placement);
+  mcdbn::Track2d track = project_motion(motion, camera);
+  add_pixel_noise(track, call.noise_px, call.seed);
+  write_track_csv(folder / "track.csv", track);
+  return mcdbn::read_text_file(folder / "track.csv");
+}
+
+}  // namespace
+
+TEST_CASE("synthesize: every option changes what its help says") {
+  const std::string base = "--action jump --clips 1 --subjects 1 --seconds 0.5";
+  const std::vector<Clip> one = {{"jump_s01_01.bvh", 1, 1}};
+  check_clips(synthesized(base), one, short_clip());
+  const auto row = [&](const char* option, const char* arguments,
+                       const std::function<void(SynthesisOptions&)>& change) {
+    return OptionRow{option, [=] {
+                       SynthesisOptions options = short_clip();
+                       change(options);
+                       const auto files = synthesized(base + " " + arguments);
+                       check_clips(files, one, options);
+                       CHECK(files.at(one[0].name) != bvh_text(synthesize(short_clip())));
+                     }};
+  };
+  check_options(
+      "synthesize",
+      {row("--seed", "--seed 8", [](auto& options) { options.seed = 8; }),
+       row("--fps", "--fps 24", [](auto& options) { options.fps = 24; }),
+       {"--seconds",
+        [] {
+          SynthesisOptions options = short_clip();
+          options.seconds = 0.9;
+          check_clips(synthesized("--action jump --clips 1 --seconds 0.9"),
+                      {{"jump_s01_01.bvh", 1, 1}}, options);
+        }},
+       {"--action",
+        [] {
+          for (const SynthesisAction action : mcdbn::synthesis_actions()) {
+            SynthesisOptions options = short_clip();
+            options.action = action;
+            const std::string name(synthesis_action_name(action));
+            const std::string file = name + "_s01_01.bvh";
+            check_clips(synthesized("--clips 1 --seconds 0.5 --action " + name),
+                        {{file.c_str(), 1, 1}}, options);
+          }
+        }},
+       {"--clips",
+        [] {
+          CHECK(synthesized("--action jump --seconds 0.5").size() == 10);
+          CHECK(synthesized("--action jump --seconds 0.5 --clips 3").size() == 3);
+        }},
+       {"--subjects",
+        [] {
+          check_clips(synthesized("--action jump --seconds 0.5 --clips 5 --subjects 2"),
+                      {{"jump_s01_01.bvh", 1, 1},
+                       {"jump_s02_01.bvh", 2, 1},
+                       {"jump_s01_02.bvh", 1, 2},
+                       {"jump_s02_02.bvh", 2, 2},
+                       {"jump_s01_03.bvh", 1, 3}},
+                      short_clip());
+          CHECK(synthesized("--action jump --seconds 0.5 --clips 6").count("jump_s05_01.bvh") == 1);
+        }},
+       {"--output",
+        [] {
+          const ScratchFolder folder;
+          const std::string call = "synthesize --action jump --clips 1 --seconds 0.5 -o ";
+          CHECK(run_cli(call + (folder / "a/b").string()).exit_code == 0);
+          CHECK(fs::exists(folder / "a/b/jump_s01_01.bvh"));
+        }},
+       {"--quiet", [&] {
+          const ScratchFolder folder;
+          const std::string call = "synthesize " + base + " -o " + (folder / "x").string();
+          CHECK(run_cli(call).standard_error.find("1 clips of jump by 1 subjects") !=
+                std::string::npos);
+          CHECK(run_cli(call + " --quiet").standard_error.empty());
+        }}});
+}
+
+TEST_CASE("project: every option changes what its help says") {
+  const ScratchFolder folder;
+  const fs::path clip = folder.write("clip.bvh", small_bvh(60, true));
+  const fs::path output = folder / "track.csv";
+  const auto projected = [&](const std::string& options) {
+    fs::remove(output);
+    const CliResult result =
+        run_cli(fmt::format("project '{}' -o '{}' {}", clip.string(), output.string(), options));
+    CAPTURE(result.standard_error);
+    CHECK(result.exit_code == 0);
+    return mcdbn::read_text_file(output);
+  };
+  const std::string plain = projected("");
+  CHECK(plain == track_text(clip, {}));
+  const auto row = [&](const char* option, const std::string& arguments,
+                       const std::function<void(ProjectCall&)>& change) {
+    return OptionRow{option, [=, &projected] {
+                       ProjectCall call;
+                       change(call);
+                       const std::string track = projected(arguments);
+                       CHECK(track == track_text(clip, call));
+                       CHECK(track != plain);
+                     }};
+  };
+  mcdbn::Camera camera = place_camera(mcdbn::load_clip(clip), {});
+  camera.width_px = 800;
+  camera.fx_px = 700;
+  const fs::path camera_file = folder / "camera.yaml";
+  write_camera(camera_file, camera);
+  check_options(
+      "project",
+      {row("--noise-px", "--noise-px 3", [](auto& call) { call.noise_px = 3; }),
+       row("--seed", "--noise-px 3 --seed 6",
+           [](auto& call) {
+             call.noise_px = 3;
+             call.seed = 6;
+           }),
+       row("--fps", "--fps 50", [](auto& call) { call.clip.fps = 50; }),
+       row("--keep-first-frame", "--keep-first-frame",
+           [](auto& call) { call.clip.keep_first_frame = true; }),
+       row("--camera", fmt::format("--camera '{}'", camera_file.string()),
+           [&](auto& call) { call.camera = mcdbn::read_camera(camera_file); }),
+       row("--camera-azimuth", "--camera-azimuth -70",
+           [](auto& call) { call.placement.azimuth_deg = -70; }),
+       row("--camera-elevation", "--camera-elevation 35",
+           [](auto& call) { call.placement.elevation_deg = 35; }),
+       row("--camera-distance", "--camera-distance 777",
+           [](auto& call) { call.placement.distance = 777; }),
+       row("--camera-fov", "--camera-fov 70",
+           [](auto& call) { call.placement.field_of_view_deg = 70; }),
+       row("--image-size", "--image-size 640 360",
+           [](auto& call) {
+             call.placement.width_px = 640;
+             call.placement.height_px = 360;
+           }),
+       {"clip", [] { CHECK(run_cli("project absent.bvh -o t.csv").exit_code == 3); }},
+       {"--output", [&] { CHECK(!projected("").empty()); }},
+       {"--write-camera",
+        [&] {
+          const fs::path written = folder / "written.yaml";
+          projected(fmt::format("--camera-azimuth 12 --write-camera '{}'", written.string()));
+          const ScratchFolder other;
+          mcdbn::CameraPlacement placement;
+          placement.azimuth_deg = 12;
+          write_camera(other / "c.yaml", place_camera(mcdbn::load_clip(clip), placement));
+          CHECK(mcdbn::read_text_file(written) == mcdbn::read_text_file(other / "c.yaml"));
+        }},
+       {"--quiet", [&] {
+          const std::string call =
+              fmt::format("project '{}' -o '{}'", clip.string(), output.string());
+          CHECK(run_cli(call).standard_error.find("15 frames of 2 joints at 30 fps") !=
+                std::string::npos);
+          CHECK(run_cli(call + " --quiet").standard_error.empty());
+        }}});
+}

@@ -1,0 +1,128 @@
+// Every option of render, and what it changes: compared with the library's own picture or film.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <opencv2/videoio.hpp>
+
+#include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/motion/clip.hpp"
+#include "mcdbn/motion/render.hpp"
+#include "mcdbn/text_file.hpp"
+#include "motion/scratch_folder.hpp"
+#include "option_table.hpp"
+#include "run_cli.hpp"
+
+using namespace mcdbn::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Call {
+  mcdbn::ClipOptions clip = {};
+  mcdbn::RenderOptions render = {};
+};
+
+std::string sheet_by_library(const std::vector<fs::path>& clips, const Call& call) {
+  const ScratchFolder folder;
+  std::vector<mcdbn::RenderClip> all;
+  for (const fs::path& clip : clips)
+    all.push_back({mcdbn::load_clip(clip, call.clip), clip.filename().string()});
+  render(all, folder / "sheet.png", call.render);
+  return mcdbn::read_text_file(folder / "sheet.png");
+}
+
+/// Frames a second of a film.
+double rate_of(const fs::path& film) {
+  const cv::VideoCapture capture(film.string());
+  return capture.get(cv::CAP_PROP_FPS);
+}
+
+}  // namespace
+
+TEST_CASE("render: every option changes what its help says") {
+  const ScratchFolder folder;
+  std::string moved = small_bvh(200, true);
+  for (std::size_t at = 0; (at = moved.find("0 90 ", at)) != std::string::npos; at += 5)
+    moved.replace(at, 5, "0 70 ");
+  const std::vector<fs::path> clips = {folder.write("one.bvh", small_bvh(240, true)),
+                                       folder.write("two.bvh", moved)};
+  const auto call_of = [&](const std::string& options, const fs::path& output) {
+    return fmt::format("render '{}' '{}' -o '{}' {}", clips[0].string(), clips[1].string(),
+                       output.string(), options);
+  };
+  const auto drawn = [&](const std::string& options) {
+    const fs::path output = folder / "sheet.png";
+    fs::remove(output);
+    const CliResult result = run_cli(call_of(options, output));
+    CAPTURE(result.standard_error);
+    CHECK(result.exit_code == 0);
+    return mcdbn::read_text_file(output);
+  };
+  const std::string plain = drawn("");
+  CHECK(plain == sheet_by_library(clips, {}));
+  const auto row = [&](const char* option, const std::string& arguments,
+                       const std::function<void(Call&)>& change) {
+    return OptionRow{option, [=, &drawn] {
+                       Call call;
+                       change(call);
+                       const std::string sheet = drawn(arguments);
+                       CHECK(sheet == sheet_by_library(clips, call));
+                       CHECK(sheet != plain);
+                     }};
+  };
+  const fs::path camera_file = folder / "camera.yaml";
+  write_camera(camera_file,
+               place_camera(mcdbn::load_clip(clips[0]), {.azimuth_deg = 80, .distance = 300}));
+  check_options(
+      "render",
+      {row("--overlay", "--overlay", [](auto& call) { call.render.overlay = true; }),
+       row("--orbit", "--orbit", [](auto& call) { call.render.orbit = true; }),
+       row("--orbit-speed", "--orbit --orbit-speed 55",
+           [](auto& call) {
+             call.render.orbit = true;
+             call.render.orbit_deg_per_s = 55;
+           }),
+       row("--still-camera", "--still-camera", [](auto& call) { call.render.follow_root = false; }),
+       row("--columns", "--columns 3", [](auto& call) { call.render.sheet_columns = 3; }),
+       row("--fps", "--fps 11", [](auto& call) { call.clip.fps = 11; }),
+       row("--keep-first-frame", "--keep-first-frame",
+           [](auto& call) { call.clip.keep_first_frame = true; }),
+       row("--camera", fmt::format("--camera '{}'", camera_file.string()),
+           [&](auto& call) { call.render.camera = mcdbn::read_camera(camera_file); }),
+       row("--camera-azimuth", "--camera-azimuth -40",
+           [](auto& call) { call.render.placement.azimuth_deg = -40; }),
+       row("--camera-elevation", "--camera-elevation 50",
+           [](auto& call) { call.render.placement.elevation_deg = 50; }),
+       row("--camera-distance", "--camera-distance 999",
+           [](auto& call) { call.render.placement.distance = 999; }),
+       row("--camera-fov", "--camera-fov 80",
+           [](auto& call) { call.render.placement.field_of_view_deg = 80; }),
+       row("--image-size", "--image-size 160 200",
+           [](auto& call) {
+             call.render.placement.width_px = 160;
+             call.render.placement.height_px = 200;
+           }),
+       {"clips",
+        [&] {
+          const fs::path sheet = folder / "one.png";
+          CHECK(run_cli(fmt::format("render '{}' -o '{}'", clips[1].string(), sheet.string()))
+                    .exit_code == 0);
+          CHECK(mcdbn::read_text_file(sheet) == sheet_by_library({clips[1]}, {}));
+          CHECK(run_cli(fmt::format("render absent.bvh -o '{}'", sheet.string())).exit_code == 3);
+        }},
+       {"--output", [&] { CHECK(drawn("").starts_with("\x89PNG")); }},
+       {"--video-fps",
+        [&] {
+          const fs::path film = folder / "film.mp4";
+          const std::string small = "--image-size 64 64 ";
+          CHECK(run_cli(call_of(small, film)).exit_code == 0);
+          CHECK(rate_of(film) == doctest::Approx(30));
+          CHECK(run_cli(call_of(small + "--video-fps 12", film)).exit_code == 0);
+          CHECK(rate_of(film) == doctest::Approx(12));
+        }},
+       {"--quiet", [&] {
+          const std::string call = call_of("", folder / "sheet.png");
+          CHECK(run_cli(call).standard_error.find("sheet.png: 2 clips") != std::string::npos);
+          CHECK(run_cli(call + " --quiet").standard_error.empty());
+        }}});
+}
