@@ -61,7 +61,6 @@ TEST_CASE("exit codes: usage 2, input 3, without any device") {
            {"train absent -o " + out, 3, "absent"},
            {"train " + clip + " -o " + out + " --hidden 0", 2, "hidden"},
            {"train " + clip + " -o " + out + " --joint-dropout 1", 2, "joint.dropout"},
-           {"train " + clip + " -o " + out + " --hidden -3", 2, "--hidden"},
            {"regenerate --input t.csv -o " + out, 2, "--model"},
            {"evaluate --model m", 2, "--test"},
            {"bench --seconds 601", 2, "--seconds"},
