@@ -7,7 +7,7 @@
 #include "bench_steps.hpp"
 #include "bench_tune.hpp"
 #include "commands.hpp"
-#include "mcdbn/device/peak.hpp"
+#include "device/peak.hpp"
 
 namespace mcdbn::cli {
 namespace {

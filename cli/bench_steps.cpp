@@ -5,11 +5,12 @@
 #include <memory>
 #include <numeric>
 
-#include "mcdbn/model/mrbm_chain.hpp"
-#include "mcdbn/regeneration/mcdbn_regeneration.hpp"
-#include "mcdbn/training/contrastive_divergence.hpp"
-#include "mcdbn/training/minibatch.hpp"
-#include "mcdbn/training/multi_prediction.hpp"
+#include "device/gemm.hpp"
+#include "learning/contrastive_divergence.hpp"
+#include "learning/minibatch.hpp"
+#include "learning/multi_prediction.hpp"
+#include "machines/mrbm_chain.hpp"
+#include "mcdbn/machines/regeneration.hpp"
 
 namespace mcdbn::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "bench_steps.hpp"
-#include "mcdbn/device/gemm.hpp"
+#include "device/gemm.hpp"
 
 namespace mcdbn::cli {
 namespace {

@@ -1,4 +1,5 @@
 #include "camera_options.hpp"
+#include "mcdbn/formats/camera_file.hpp"
 
 #include <utility>
 

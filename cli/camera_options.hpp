@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "mcdbn/motion/camera.hpp"
+#include "mcdbn/camera/camera.hpp"
 
 namespace mcdbn::cli {
 

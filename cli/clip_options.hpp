@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "mcdbn/motion/clip.hpp"
+#include "mcdbn/corpus/clip.hpp"
 
 namespace mcdbn::cli {
 

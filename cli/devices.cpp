@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/device/device.hpp"
-#include "mcdbn/errors.hpp"
 
 namespace mcdbn::cli {
 namespace {

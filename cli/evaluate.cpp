@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "comparison/comparison_run.hpp"
+#include "evaluation/report_page.hpp"
 #include "fit_option.hpp"
 #include "interrupt.hpp"
-#include "mcdbn/evaluation/report_page.hpp"
-#include "mcdbn/motion/clip.hpp"
-#include "mcdbn/regeneration/test_run.hpp"
-#include "mcdbn/training/augmented_views.hpp"
+#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/motion_model/training_schedule.hpp"
 #include "progress.hpp"
 #include "sampling_options.hpp"
 #include "training_options.hpp"
@@ -62,7 +62,7 @@ void print_table(const EvaluationReport& report) {
 /// The views that the model's joint stage learnt from, made again, for the MLP to learn from too.
 void add_views(const Model& model, TestRunOptions& run) {
   const TrainingConfig config = settings_from_json(model.config);
-  if (config.joint.steps == 0) return;
+  if (config.fine_tuning.steps == 0) return;
   std::vector<std::filesystem::path> files;
   for (const TrainingClip& clip : model.training_clips) {
     if (!std::filesystem::exists(clip.path)) return;  // run_test says so

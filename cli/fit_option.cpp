@@ -13,8 +13,8 @@ void add_fit_option(CLI::App& command, std::string& fit, const std::string& note
       ->check(CLI::IsMember({kFitTrack, kFitNone}));
 }
 
-std::optional<TrackFit> track_fit(const std::string& fit) {
-  return fit == kFitNone ? std::nullopt : std::optional(TrackFit{});
+std::optional<TrackFitSettings> track_fit(const std::string& fit) {
+  return fit == kFitNone ? std::nullopt : std::optional(TrackFitSettings{});
 }
 
 }  // namespace mcdbn::cli

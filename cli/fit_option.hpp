@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "mcdbn/motion/track_fit.hpp"
+#include "mcdbn/fitting/track_fit.hpp"
 
 namespace mcdbn::cli {
 
@@ -12,6 +12,6 @@ inline constexpr const char *kFitTrack = "track", *kFitNone = "none";
 
 /// --fit track|none. @param note in the help, behind what it means
 void add_fit_option(CLI::App& command, std::string& fit, const std::string& note);
-std::optional<TrackFit> track_fit(const std::string& fit);
+std::optional<TrackFitSettings> track_fit(const std::string& fit);
 
 }  // namespace mcdbn::cli

@@ -9,9 +9,10 @@
 
 #include "clip_options.hpp"
 #include "commands.hpp"
-#include "mcdbn/errors.hpp"
-#include "mcdbn/model/model_file.hpp"
-#include "mcdbn/motion/keypoints.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/motion_model/model_file.hpp"
 
 namespace mcdbn::cli {
 namespace {

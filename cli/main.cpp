@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn::cli {
 namespace {

@@ -3,11 +3,13 @@
 #include <filesystem>
 #include <memory>
 
+#include "camera/track_noise.hpp"
 #include "camera_options.hpp"
 #include "clip_options.hpp"
 #include "commands.hpp"
-#include "mcdbn/motion/keypoints.hpp"
-#include "mcdbn/motion/track_noise.hpp"
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/formats/camera_file.hpp"
+#include "mcdbn/formats/track_csv.hpp"
 
 namespace mcdbn::cli {
 namespace {

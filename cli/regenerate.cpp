@@ -6,9 +6,11 @@
 
 #include "commands.hpp"
 #include "fit_option.hpp"
-#include "mcdbn/errors.hpp"
-#include "mcdbn/motion/bvh.hpp"
-#include "mcdbn/regeneration/clip_regeneration.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/camera_file.hpp"
+#include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "sampling_options.hpp"
 
 namespace mcdbn::cli {

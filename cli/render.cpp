@@ -1,4 +1,5 @@
-#include "mcdbn/motion/render.hpp"
+#include "mcdbn/drawing/render.hpp"
+#include "mcdbn/formats/camera_file.hpp"
 
 #include <spdlog/spdlog.h>
 

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "mcdbn/regeneration/mcdbn_regeneration.hpp"
+#include "mcdbn/machines/regeneration.hpp"
 
 namespace mcdbn::cli {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn::cli {
 
@@ -12,11 +12,12 @@ toml::table read_settings_file(const std::filesystem::path& file, const std::str
   try {
     return toml::parse_file(file.string());
   } catch (const toml::parse_error& error) {
-    throw ConfigError(fmt::format("{}: {}", place_of(file, error.source()), error.description()));
+    throw ConfigError(
+        fmt::format("{}: {}", location_of(file, error.source()), error.description()));
   }
 }
 
-std::string place_of(const std::filesystem::path& file, const toml::source_region& source) {
+std::string location_of(const std::filesystem::path& file, const toml::source_region& source) {
   return fmt::format("{}:{}", file.string(), source.begin.line);
 }
 

@@ -13,7 +13,7 @@ namespace mcdbn::cli {
 toml::table read_settings_file(const std::filesystem::path& file, const std::string& option);
 
 /// `file:line`
-std::string place_of(const std::filesystem::path& file, const toml::source_region& source);
+std::string location_of(const std::filesystem::path& file, const toml::source_region& source);
 
 /// A number, true or false; null for what no setting can be.
 nlohmann::json scalar_of(const toml::node& node);

@@ -7,11 +7,11 @@
 #include <chrono>
 #include <sstream>
 
+#include "base/text_file.hpp"
+#include "comparison/comparison_run.hpp"
 #include "interrupt.hpp"
-#include "mcdbn/errors.hpp"
-#include "mcdbn/motion/clip.hpp"
-#include "mcdbn/regeneration/test_run.hpp"
-#include "mcdbn/text_file.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/corpus/clip.hpp"
 #include "training_options.hpp"
 #include "training_run.hpp"
 
@@ -117,7 +117,7 @@ class Sweep {
   /// An epoch or mini-batch of everything first: no configuration is charged for compiling.
   void build_kernels(TrainingConfig config, const fs::path& folder) {
     config.gaussian.epochs = config.binary.epochs = config.mrbm.epochs = 1;
-    config.joint.steps = std::min<std::size_t>(config.joint.steps, 1);
+    config.fine_tuning.steps = std::min<std::size_t>(config.fine_tuning.steps, 1);
     CommandContext silent = context_;
     silent.quiet = true;
     train_to_folder(silent, device_, clips_, config, folder, interrupt_);

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "settings_file.hpp"
 #include "sweep.hpp"
 
@@ -10,7 +10,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void reject(const fs::path& file, const toml::node& node, const std::string& what) {
-  throw ConfigError(fmt::format("{}: {}", place_of(file, node.source()), what));
+  throw ConfigError(fmt::format("{}: {}", location_of(file, node.source()), what));
 }
 
 nlohmann::json setting_of(const fs::path& file, const toml::node& node) {
@@ -30,7 +30,7 @@ std::vector<std::vector<SweepSetting>> choices_of(const fs::path& file, const to
       for (auto& choices : choices_of(file, *inner, name + ".")) all.push_back(std::move(choices));
       continue;
     }
-    const std::string where = place_of(file, node.source());
+    const std::string where = location_of(file, node.source());
     std::vector<SweepSetting> choices;
     if (const toml::array* list = node.as_array()) {
       for (const toml::node& value : *list)

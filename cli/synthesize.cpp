@@ -1,4 +1,4 @@
-#include "mcdbn/motion/synthesize.hpp"
+#include "mcdbn/synthesis/synthesize.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "mcdbn/errors.hpp"
-#include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/bvh.hpp"
 
 namespace mcdbn::cli {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
-#include "mcdbn/motion/clip.hpp"
+#include "mcdbn/corpus/clip.hpp"
 #include "sweep.hpp"
 #include "training_options.hpp"
 #include "training_run.hpp"

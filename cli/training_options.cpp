@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "settings_file.hpp"
 
 namespace mcdbn::cli {
@@ -40,7 +40,7 @@ void apply_table(TrainingConfig& config, const toml::table& table, const std::st
     if (const toml::table* inner = node.as_table())
       apply_table(config, *inner, name + ".", file);
     else
-      assign_setting(config, name, scalar_of(node), place_of(file, node.source()));
+      assign_setting(config, name, scalar_of(node), location_of(file, node.source()));
   }
 }
 
@@ -103,16 +103,16 @@ TrainingConfig TrainingOptions::resolve(const Change& sweep_change) const {
   };
   if (preset_ == "paper") return applied_to(TrainingConfig::paper());
   const TrainingConfig config = applied_to({});
-  return config.joint.steps > 0 ? config : applied_to(TrainingConfig::greedy());
+  return config.fine_tuning.steps > 0 ? config : applied_to(TrainingConfig::greedy());
 }
 
 void TrainingOptions::apply_stages(TrainingConfig& config) const {
   if (stages_.empty()) return;
   if (stages_ == "greedy")
-    config.joint.steps = 0;
-  else if (config.joint.steps == 0)
-    config.joint.steps = JointSettings{}.steps;
-  config.joint.from_greedy = stages_ != "joint";
+    config.fine_tuning.steps = 0;
+  else if (config.fine_tuning.steps == 0)
+    config.fine_tuning.steps = FineTuningSettings{}.steps;
+  config.fine_tuning.from_greedy = stages_ != "joint";
 }
 
 void assign_setting(TrainingConfig& config, const std::string& name, const nlohmann::json& value,
@@ -142,7 +142,7 @@ nlohmann::json settings_json(const TrainingConfig& config) {
 TrainingConfig settings_from_json(const nlohmann::json& json) {
   TrainingConfig config;
   // Models from before there was a joint stage say nothing of it.
-  config.joint.steps = 0;
+  config.fine_tuning.steps = 0;
   const nlohmann::json flat = json.flatten();
   for (const auto& [pointer, value] : flat.items()) {
     std::string name = pointer.substr(1);

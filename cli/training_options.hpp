@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mcdbn/training/config.hpp"
+#include "mcdbn/motion_model/training_config.hpp"
 
 namespace mcdbn::cli {
 

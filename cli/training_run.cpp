@@ -6,10 +6,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "mcdbn/errors.hpp"
-#include "mcdbn/regeneration/sample_calibration.hpp"
-#include "mcdbn/text_file.hpp"
-#include "mcdbn/training/training_schedule.hpp"
+#include "base/text_file.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion_model/training_schedule.hpp"
+#include "motion_model/sample_calibration.hpp"
 #include "progress.hpp"
 #include "training_options.hpp"
 
@@ -80,8 +80,8 @@ TrainedRun train_to_folder(const CommandContext& context, Device& device,
   auto [network, stopped] = train_network(device, data, clips, config, observer);
   if (stopped)
     spdlog::info("{} kept out to stop early: stopped after {} of {} mini-batches",
-                 fmt::join(stopped->held_out, ", "), stopped->steps, config.joint.steps);
-  if (config.joint.steps > 0)
+                 fmt::join(stopped->held_out, ", "), stopped->steps, config.fine_tuning.steps);
+  if (config.fine_tuning.steps > 0)
     network.sampling = calibrated_sampling(network, data.modalities, data.tracks, data.poses);
   TrainedRun trained{
       {std::move(network), data.modalities, data.clips, settings_json(config), std::move(stopped)},

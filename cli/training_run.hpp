@@ -5,8 +5,8 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
-#include "mcdbn/model/model_file.hpp"
-#include "mcdbn/training/config.hpp"
+#include "mcdbn/motion_model/model_file.hpp"
+#include "mcdbn/motion_model/training_config.hpp"
 
 namespace mcdbn::cli {
 

@@ -10,14 +10,12 @@
 //   ACTIVATION  0 none, 1 sigmoid (eq 6, 7, 32, 33), 2 times y·(1 − y) of the matrix `factor`,
 //               3 positive part, 4 zero where `factor` is not positive, 5 sigmoid less one half,
 //               6 its gradient, `factor` after drop-out of which kept_share is kept
-//   SAMPLE      0 none, 1 Bernoulli, 2 Gaussian, 3 concrete (sampling.clh); written to `sample` as
+//   SAMPLE      0 none, 1 Bernoulli, 2 Gaussian, 3 concrete (units.clh); written to `sample` as
 //               mean + temperature · (draw − mean)
 // One work-item makes TILE_ROWS x VEC of C, its accumulators in registers.
 // global: (ceil(n / VEC), ceil(rows of C / TILE_ROWS))
 
-#include "philox.clh"
-#include "activation.clh"
-#include "sampling.clh"
+#include "units.clh"
 
 #ifndef TILE_ROWS
 #define TILE_ROWS 10

@@ -4,15 +4,13 @@
 //
 // global: (blocks · GROUP, 2), local: (GROUP, 1). Group (i, d) carries rows i · ROWS … through the
 // direction in which modality d is absent. Compile-time: VISIBLE_0, VISIBLE_1, HIDDEN (units of the
-// modalities and shared), STEPS of mean field, ROWS, COLUMNS, GROUP (row_tile.clh).
+// modalities and shared), STEPS of mean field, ROWS, COLUMNS, GROUP (tile.clh).
 // Outputs are stacks of blocks of `stride` rows, block t after block t − 1; rows past `rows` have
 // errors of zero. Of modality d: codes_d [1 block], values_d and value_errors_d [STEPS blocks]. Of
 // direction d: hidden, hidden_errors [STEPS blocks at d · STEPS], drive, drive_errors [1 block at d],
 // loss[d · stride + row] = Σ cross-entropy of the row.
 
-#include "philox.clh"
-#include "activation.clh"
-#include "row_tile.clh"
+#include "tile.clh"
 #include "mrbm_shape.clh"
 
 #define X_LD (PADDED(VISIBLE_0) > PADDED(VISIBLE_1) ? PADDED(VISIBLE_0) : PADDED(VISIBLE_1))

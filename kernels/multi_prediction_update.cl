@@ -12,8 +12,7 @@
 // Compile-time: VISIBLE_0, VISIBLE_1, HIDDEN, STEPS, TILE_ROWS (divides 16), PIECE_ROWS.
 // `adam`: rate, β1, β2, ε; `correction`: 1 − β1^t, 1 − β2^t, weight decay, unused.
 
-#include "philox.clh"
-#include "activation.clh"
+#include "units.clh"
 #include "mrbm_shape.clh"
 
 #ifndef TILE_ROWS
@@ -27,7 +26,7 @@
 #define TILES(units) (PADDED(units) / TILE_ROWS * (H_LD / VEC))
 #define ALL_TILES (TILES(VISIBLE_0) + TILES(VISIBLE_1))
 
-// update.cl's adam_update at one place, and the gradient for whoever asks
+// optimizers.cl's adam_update at one place, and the gradient for whoever asks
 INLINE floatN update(global float* parameter, global float* mean, global float* square,
                      global float* gradient, int at, floatN g, float4 adam, float4 correction) {
   const floatN m = adam.y * loadN(at, mean) + (1.0f - adam.y) * g;

@@ -1,8 +1,7 @@
 // How fast the device multiplies and adds at best: CHAINS independent fma() chains a work-item, in
 // registers. global: any; out[item] keeps the compiler from dropping them.
 
-#include "philox.clh"
-#include "activation.clh"
+#include "types.clh"
 
 #ifndef CHAINS
 #define CHAINS 16

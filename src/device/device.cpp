@@ -6,8 +6,8 @@
 #include <cctype>
 #include <cstdlib>
 
-#include "mcdbn/device/program.hpp"
-#include "mcdbn/errors.hpp"
+#include "device/program.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {

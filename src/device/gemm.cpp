@@ -1,12 +1,12 @@
-#include "mcdbn/device/gemm.hpp"
+#include "device/gemm.hpp"
 
 #include <clblast.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "mcdbn/device/kernel_arguments.hpp"
-#include "mcdbn/device/units.hpp"
+#include "device/kernel_arguments.hpp"
+#include "device/pointwise.hpp"
 
 namespace mcdbn {
 namespace {

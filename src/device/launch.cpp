@@ -1,4 +1,4 @@
-#include "mcdbn/device/launch.hpp"
+#include "device/launch.hpp"
 
 #include <algorithm>
 

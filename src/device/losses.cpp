@@ -1,6 +1,6 @@
-#include "mcdbn/device/losses.hpp"
+#include "device/losses.hpp"
 
-#include "mcdbn/device/kernel_arguments.hpp"
+#include "device/kernel_arguments.hpp"
 
 namespace mcdbn {
 
@@ -23,10 +23,10 @@ void LossAccumulator::add(const char* kernel, std::size_t slot, const Rows& x, c
               x.index == nullptr && y.index == nullptr,
           "loss: shapes differ");
   Device& device = partial_.device();
-  launch(device, device.programs().kernel("losses.cl", kernel), {{x.count, 1}}, x.matrix->buffer(),
+  launch(device, device.programs().kernel("reduce.cl", kernel), {{x.count, 1}}, x.matrix->buffer(),
          x.offset(), x.stride(), y.matrix->buffer(), y.offset(), y.stride(), to_int(x.columns),
          partial_.buffer());
-  launch(device, device.programs().kernel("losses.cl", "accumulate"), {{1, 1}}, partial_.buffer(),
+  launch(device, device.programs().kernel("reduce.cl", "accumulate"), {{1, 1}}, partial_.buffer(),
          to_int(x.count), scale, sums_.buffer(), to_int(slot));
 }
 

@@ -1,9 +1,9 @@
-#include "mcdbn/device/peak.hpp"
+#include "device/peak.hpp"
 
 #include <algorithm>
 #include <chrono>
 
-#include "mcdbn/device/kernel_arguments.hpp"
+#include "device/kernel_arguments.hpp"
 
 namespace mcdbn {
 

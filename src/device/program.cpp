@@ -1,4 +1,4 @@
-#include "mcdbn/device/program.hpp"
+#include "device/program.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -8,9 +8,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "mcdbn/device/embedded_kernels.hpp"
-#include "mcdbn/device/user_cache.hpp"
-#include "mcdbn/errors.hpp"
+#include "base/user_cache.hpp"
+#include "device/embedded_kernels.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {

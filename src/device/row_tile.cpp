@@ -1,10 +1,10 @@
-#include "mcdbn/device/row_tile.hpp"
+#include "device/row_tile.hpp"
 
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 
-#include "mcdbn/device/kernel_arguments.hpp"
+#include "device/kernel_arguments.hpp"
 
 namespace mcdbn {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/user_cache.hpp"
 #include "mcdbn/device/device.hpp"
-#include "mcdbn/device/user_cache.hpp"
 
 namespace mcdbn {
 namespace {

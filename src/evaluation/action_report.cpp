@@ -1,4 +1,4 @@
-#include "mcdbn/evaluation/action_report.hpp"
+#include "evaluation/action_report.hpp"
 
 #include <fmt/core.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "mcdbn/errors.hpp"
-#include "mcdbn/evaluation/pairwise.hpp"
-#include "mcdbn/evaluation/sample_spread.hpp"
+#include "evaluation/pairwise.hpp"
+#include "evaluation/sample_spread.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {

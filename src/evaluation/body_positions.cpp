@@ -1,6 +1,6 @@
+#include "evaluation/relative_to_root.hpp"
 #include "mcdbn/evaluation/joint_error.hpp"
-#include "mcdbn/motion/features.hpp"
-#include "relative_to_root.hpp"
+#include "motion/body_size.hpp"
 
 namespace mcdbn {
 

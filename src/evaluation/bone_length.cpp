@@ -1,10 +1,10 @@
-#include "mcdbn/evaluation/bone_length.hpp"
+#include "evaluation/bone_length.hpp"
 
 #include <fmt/core.h>
 
 #include <cmath>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 

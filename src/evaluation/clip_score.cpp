@@ -1,4 +1,4 @@
-#include "mcdbn/evaluation/clip_score.hpp"
+#include "evaluation/clip_score.hpp"
 
 #include <cmath>
 #include <limits>

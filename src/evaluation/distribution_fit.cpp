@@ -15,8 +15,8 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
-#include "generalized_extreme_value.hpp"
-#include "mcdbn/errors.hpp"
+#include "evaluation/generalized_extreme_value.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {

@@ -1,4 +1,4 @@
-#include "mcdbn/evaluation/evaluation_report.hpp"
+#include "evaluation/evaluation_report.hpp"
 
 #include <cmath>
 #include <map>

@@ -1,4 +1,4 @@
-#include "mcdbn/evaluation/foot_slide.hpp"
+#include "evaluation/foot_slide.hpp"
 
 #include <fmt/core.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {

@@ -1,4 +1,4 @@
-#include "generalized_extreme_value.hpp"
+#include "evaluation/generalized_extreme_value.hpp"
 
 #include <Eigen/Cholesky>
 #include <boost/math/constants/constants.hpp>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "nelder_mead.hpp"
+#include "evaluation/nelder_mead.hpp"
 
 namespace mcdbn {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "mcdbn/errors.hpp"
-#include "relative_to_root.hpp"
+#include "evaluation/relative_to_root.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {

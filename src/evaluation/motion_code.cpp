@@ -1,4 +1,4 @@
-#include "motion_code.hpp"
+#include "evaluation/motion_code.hpp"
 
 #include <cmath>
 #include <cstdint>

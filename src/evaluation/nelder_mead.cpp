@@ -1,4 +1,4 @@
-#include "nelder_mead.hpp"
+#include "evaluation/nelder_mead.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "page_figures.hpp"
+#include "evaluation/page_figures.hpp"
 
 #include <algorithm>
 #include <cmath>

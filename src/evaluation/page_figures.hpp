@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mcdbn/evaluation/evaluation_report.hpp"
+#include "evaluation/evaluation_report.hpp"
 
 namespace mcdbn {
 

@@ -1,10 +1,10 @@
-#include "page_motion.hpp"
+#include "evaluation/page_motion.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
-#include "motion_code.hpp"
+#include "evaluation/motion_code.hpp"
 
 namespace mcdbn {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mcdbn/evaluation/report_clip.hpp"
+#include "evaluation/report_clip.hpp"
 
 namespace mcdbn {
 

@@ -1,10 +1,10 @@
-#include "mcdbn/evaluation/pairwise.hpp"
+#include "evaluation/pairwise.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
 
 namespace mcdbn {

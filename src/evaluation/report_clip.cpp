@@ -1,4 +1,4 @@
-#include "mcdbn/evaluation/report_clip.hpp"
+#include "evaluation/report_clip.hpp"
 
 namespace mcdbn {
 

@@ -1,13 +1,13 @@
-#include "mcdbn/evaluation/report_page.hpp"
+#include "evaluation/report_page.hpp"
 
 #include <fmt/format.h>
 
-#include "mcdbn/errors.hpp"
-#include "mcdbn/evaluation/report_tables.hpp"
-#include "mcdbn/text_file.hpp"
-#include "page_figures.hpp"
-#include "page_files.hpp"
-#include "page_motion.hpp"
+#include "base/text_file.hpp"
+#include "evaluation/page_figures.hpp"
+#include "evaluation/page_files.hpp"
+#include "evaluation/page_motion.hpp"
+#include "evaluation/report_tables.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {

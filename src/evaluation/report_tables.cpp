@@ -1,4 +1,4 @@
-#include "mcdbn/evaluation/report_tables.hpp"
+#include "evaluation/report_tables.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
-#include "mcdbn/evaluation/sample_spread.hpp"
+#include "evaluation/sample_spread.hpp"
 
 #include <limits>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 

@@ -1,4 +1,4 @@
-#include "mcdbn/evaluation/summary_statistics.hpp"
+#include "evaluation/summary_statistics.hpp"
 
 #include <fmt/core.h>
 
@@ -8,7 +8,7 @@
 #include <iterator>
 #include <limits>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -41,8 +41,8 @@ Histogram histogram_of(const std::vector<double>& values, double low, double hig
   Histogram histogram{low, high, std::vector<int>(static_cast<std::size_t>(bins))};
   for (const double value : values) {
     if (!(value >= low && value <= high)) continue;
-    const double place = high > low ? (value - low) / (high - low) * bins : 0;
-    ++histogram.counts[static_cast<std::size_t>(std::min(static_cast<int>(place), bins - 1))];
+    const double position = high > low ? (value - low) / (high - low) * bins : 0;
+    ++histogram.counts[static_cast<std::size_t>(std::min(static_cast<int>(position), bins - 1))];
   }
   return histogram;
 }

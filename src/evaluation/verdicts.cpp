@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "mcdbn/evaluation/evaluation_report.hpp"
+#include "evaluation/evaluation_report.hpp"
 
 namespace mcdbn {
 namespace {

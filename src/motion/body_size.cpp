@@ -1,4 +1,4 @@
-#include "mcdbn/motion/body_size.hpp"
+#include "motion/body_size.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -13,10 +13,10 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 /// Below this cosine of the middle angle only the sum or difference of the outer two is known.
 constexpr double kGimbalCosine = 1e-6;
 
-/// The rotation channels of a joint: their axes, and their places among all its channels.
+/// The rotation channels of a joint: their axes, and their channel_indices among all its channels.
 struct RotationChannels {
   std::vector<int> axes;
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> channel_indices;
 };
 
 RotationChannels rotation_channels(const Joint& joint) {
@@ -24,7 +24,7 @@ RotationChannels rotation_channels(const Joint& joint) {
   for (std::size_t i = 0; i < joint.channels.size(); ++i) {
     if (!is_rotation(joint.channels[i])) continue;
     found.axes.push_back(axis_of(joint.channels[i]));
-    found.places.push_back(i);
+    found.channel_indices.push_back(i);
   }
   return found;
 }
@@ -152,7 +152,7 @@ void set_local_rotation(const Joint& joint, const Eigen::Matrix3d& parent_from_j
   if (rotations.axes.empty()) return;
   std::vector<double> angles_rad(rotations.axes.size(), 0.0);
   for (std::size_t n = 0; previous && n < angles_rad.size(); ++n) {
-    angles_rad[n] = previous[rotations.places[n]] * kDegree;
+    angles_rad[n] = previous[rotations.channel_indices[n]] * kDegree;
   }
   if (has_three_distinct(rotations.axes)) {
     const Triple before = {angles_rad[0], angles_rad[1], angles_rad[2]};
@@ -163,7 +163,7 @@ void set_local_rotation(const Joint& joint, const Eigen::Matrix3d& parent_from_j
     angles_rad = nearest_angles(parent_from_joint, rotations.axes, angles_rad);
   }
   for (std::size_t n = 0; n < angles_rad.size(); ++n) {
-    joint_channels[rotations.places[n]] = angles_rad[n] / kDegree;
+    joint_channels[rotations.channel_indices[n]] = angles_rad[n] / kDegree;
   }
 }
 

@@ -1,4 +1,4 @@
-#include "mcdbn/motion/foot_joints.hpp"
+#include "motion/foot_joints.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
-#include "joint_matching.hpp"
+#include "motion/joint_matching.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 

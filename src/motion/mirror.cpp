@@ -1,4 +1,4 @@
-#include "mcdbn/motion/mirror.hpp"
+#include "motion/mirror.hpp"
 
 #include <algorithm>
 #include <array>

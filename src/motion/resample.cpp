@@ -1,4 +1,4 @@
-#include "mcdbn/motion/resample.hpp"
+#include "motion/resample.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -97,13 +97,13 @@ Eigen::Quaterniond quaternion_at(const MatrixD& signals, Eigen::Index frame, Eig
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
 }
 
-/// Writes one frame of channels from the signals at `place` (in their own frames).
+/// Writes one frame of channels from the signals at `source_frame` (in their own frames).
 /// @param previous the channels of the frame before, for continuous angles
-void sample(const Skeleton& skeleton, const MatrixD& signals, double place, const double* previous,
-            double* channels) {
-  const auto before = std::min(static_cast<Eigen::Index>(place), signals.rows() - 1);
+void sample(const Skeleton& skeleton, const MatrixD& signals, double source_frame,
+            const double* previous, double* channels) {
+  const auto before = std::min(static_cast<Eigen::Index>(source_frame), signals.rows() - 1);
   const Eigen::Index after = std::min(before + 1, signals.rows() - 1);
-  const double part = place - static_cast<double>(before);
+  const double part = source_frame - static_cast<double>(before);
   Eigen::Index column = 0;
   for (const Joint& joint : skeleton.joints) {
     if (has_rotation(joint)) {
@@ -201,16 +201,16 @@ Motion resample(const Motion& motion, double target_hz, double phase) {
 
   // The last frame is kept although a printed frame time puts it a little past the end.
   constexpr double kSlack = 1e-3;
-  const double last_place = motion.frames() - 1;
+  const double last_frame = motion.frames() - 1;
   const int frames =
-      std::max(1, static_cast<int>(std::floor(last_place / step - phase + kSlack)) + 1);
+      std::max(1, static_cast<int>(std::floor(last_frame / step - phase + kSlack)) + 1);
   Motion result{motion.skeleton, 1.0 / target_hz, MatrixD(frames, motion.channels.cols())};
   for (int frame = 0; frame < frames; ++frame) {
-    const double place = std::min((frame + phase) * step, last_place);
+    const double source_frame = std::min((frame + phase) * step, last_frame);
     // The first frame takes the branch of angles that the file itself uses there.
     const double* previous = frame > 0 ? result.channels.row(frame - 1).data()
-                                       : motion.channels.row(static_cast<int>(place)).data();
-    sample(motion.skeleton, signals, place, previous, result.channels.row(frame).data());
+                                       : motion.channels.row(static_cast<int>(source_frame)).data();
+    sample(motion.skeleton, signals, source_frame, previous, result.channels.row(frame).data());
   }
   restore_constants(motion.channels, result.channels);
   return result;

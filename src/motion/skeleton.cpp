@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include "mcdbn/text_file.hpp"
+#include "base/text_file.hpp"
 #include "settings_table.hpp"
 #include "tiny_pipeline.hpp"
 

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "mcdbn/motion/keypoints.hpp"
-#include "mcdbn/text_file.hpp"
-#include "motion/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/formats/track_csv.hpp"
 #include "run_cli.hpp"
 
 using namespace mcdbn::test;

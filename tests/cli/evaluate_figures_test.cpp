@@ -4,11 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "comparison/comparison_run.hpp"
 #include "independent_scores.hpp"
 #include "library_calls.hpp"
-#include "mcdbn/motion/bvh.hpp"
-#include "mcdbn/motion/camera.hpp"
-#include "mcdbn/regeneration/test_run.hpp"
+#include "mcdbn/camera/camera.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/camera_file.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;

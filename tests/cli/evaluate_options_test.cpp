@@ -4,10 +4,10 @@
 
 #include <optional>
 
+#include "base/text_file.hpp"
+#include "comparison/comparison_run.hpp"
+#include "evaluation/evaluation_report.hpp"
 #include "library_calls.hpp"
-#include "mcdbn/evaluation/evaluation_report.hpp"
-#include "mcdbn/regeneration/test_run.hpp"
-#include "mcdbn/text_file.hpp"
 #include "option_table.hpp"
 #include "tiny_pipeline.hpp"
 

@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include "mcdbn/text_file.hpp"
+#include "base/text_file.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;

@@ -1,11 +1,12 @@
 #include "library_calls.hpp"
+#include "mcdbn/motion_model/training_schedule.hpp"
 
 #include <memory>
 
-#include "mcdbn/regeneration/sample_calibration.hpp"
-#include "mcdbn/text_file.hpp"
-#include "mcdbn/training/training_set.hpp"
-#include "motion/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "mcdbn/corpus/training_set.hpp"
+#include "motion_model/sample_calibration.hpp"
 
 namespace mcdbn::test {
 
@@ -22,7 +23,7 @@ LibraryTraining train_by_library(const std::vector<std::filesystem::path>& clips
   auto [network, stopped] =
       train_network(usual_device(), data, clips, config,
                     [&](const EpochReport& report) { result.epochs.push_back(report); });
-  if (config.joint.steps > 0)
+  if (config.fine_tuning.steps > 0)
     network.sampling = calibrated_sampling(network, data.modalities, data.tracks, data.poses);
   const ScratchFolder folder;
   save_model(folder / "model.safetensors",

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "mcdbn/device/device.hpp"
-#include "mcdbn/model/model_file.hpp"
-#include "mcdbn/training/training_schedule.hpp"
+#include "mcdbn/motion_model/model_file.hpp"
+#include "mcdbn/motion_model/training_schedule.hpp"
 
 namespace mcdbn::test {
 

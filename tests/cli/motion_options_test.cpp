@@ -2,14 +2,16 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include "mcdbn/motion/bvh.hpp"
-#include "mcdbn/motion/camera.hpp"
-#include "mcdbn/motion/clip.hpp"
-#include "mcdbn/motion/keypoints.hpp"
-#include "mcdbn/motion/synthesize.hpp"
-#include "mcdbn/motion/track_noise.hpp"
-#include "mcdbn/text_file.hpp"
-#include "motion/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "camera/track_noise.hpp"
+#include "mcdbn/camera/camera.hpp"
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/camera_file.hpp"
+#include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/synthesis/synthesize.hpp"
 #include "option_table.hpp"
 #include "run_cli.hpp"
 

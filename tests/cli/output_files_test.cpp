@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "mcdbn/text_file.hpp"
+#include "base/text_file.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;

@@ -3,10 +3,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mcdbn/motion/bvh.hpp"
-#include "mcdbn/motion/camera.hpp"
-#include "mcdbn/motion/keypoints.hpp"
-#include "mcdbn/text_file.hpp"
+#include "base/text_file.hpp"
+#include "mcdbn/camera/camera.hpp"
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/camera_file.hpp"
+#include "mcdbn/formats/track_csv.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;

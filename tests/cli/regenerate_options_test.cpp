@@ -5,12 +5,14 @@
 
 #include <optional>
 
+#include "base/text_file.hpp"
 #include "library_calls.hpp"
-#include "mcdbn/motion/bvh.hpp"
-#include "mcdbn/motion/camera.hpp"
-#include "mcdbn/motion/keypoints.hpp"
-#include "mcdbn/regeneration/clip_regeneration.hpp"
-#include "mcdbn/text_file.hpp"
+#include "mcdbn/camera/camera.hpp"
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/camera_file.hpp"
+#include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "option_table.hpp"
 #include "tiny_pipeline.hpp"
 

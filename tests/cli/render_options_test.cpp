@@ -4,11 +4,12 @@
 
 #include <opencv2/videoio.hpp>
 
-#include "mcdbn/motion/bvh.hpp"
-#include "mcdbn/motion/clip.hpp"
-#include "mcdbn/motion/render.hpp"
-#include "mcdbn/text_file.hpp"
-#include "motion/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/drawing/render.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/camera_file.hpp"
 #include "option_table.hpp"
 #include "run_cli.hpp"
 

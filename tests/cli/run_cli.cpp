@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "mcdbn/text_file.hpp"
-#include "motion/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
 
 namespace mcdbn::test {
 

@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "mcdbn/training/config.hpp"
+#include "mcdbn/motion_model/training_config.hpp"
+#include "mcdbn/motion_model/training_schedule.hpp"
 
 namespace mcdbn::test {
 

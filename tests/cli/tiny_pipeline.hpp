@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "motion/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
 #include "run_cli.hpp"
 
 namespace mcdbn::test {

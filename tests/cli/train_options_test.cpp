@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include "all_settings_run.hpp"
-#include "mcdbn/text_file.hpp"
+#include "base/text_file.hpp"
+#include "mcdbn/motion_model/training_schedule.hpp"
 #include "option_table.hpp"
 #include "settings_table.hpp"
 #include "tiny_pipeline.hpp"

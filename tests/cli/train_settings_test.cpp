@@ -9,9 +9,10 @@
 #include <sstream>
 
 #include "all_settings_run.hpp"
+#include "base/safetensors.hpp"
+#include "base/text_file.hpp"
 #include "library_calls.hpp"
-#include "mcdbn/model/safetensors.hpp"
-#include "mcdbn/text_file.hpp"
+#include "mcdbn/motion_model/training_schedule.hpp"
 #include "settings_table.hpp"
 #include "tiny_pipeline.hpp"
 
@@ -176,7 +177,7 @@ TEST_CASE("--preset and --stages say which stages there are and whose defaults h
   check_settings(settings_of_options("--stages both --no-joint-from-greedy --joint-steps 7"),
                  TrainingConfig{}, {{"joint.steps", 7}});
   // Who asks for the stage gets it, however many steps the preset or the flags say.
-  const double steps = static_cast<double>(TrainingConfig{}.joint.steps);
+  const double steps = static_cast<double>(TrainingConfig{}.fine_tuning.steps);
   check_settings(settings_of_options("--preset paper --stages both"), TrainingConfig::paper(),
                  {{"joint.steps", steps}});
   check_settings(settings_of_options("--stages joint --joint-steps 0"), TrainingConfig{},

@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-#include "mcdbn/text_file.hpp"
+#include "base/text_file.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;

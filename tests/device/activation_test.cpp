@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "device/every_device.hpp"
+#include "device/launch.hpp"
 #include "device/probe.hpp"
-#include "mcdbn/device/launch.hpp"
 #include "reference/units_reference.hpp"
 
 using namespace mcdbn;

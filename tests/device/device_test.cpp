@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "device/scoped_variable.hpp"
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 using namespace mcdbn;
 using test::ScopedVariable;

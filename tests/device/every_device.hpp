@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "base/random_matrix.hpp"
 #include "mcdbn/device/matrix.hpp"
 
 namespace mcdbn::test {
@@ -29,17 +30,6 @@ void on_every_device(Body&& body) {
     INFO("device: ", device.info().platform_name, ", ", device.info().name);
     body(device);
   }
-}
-
-/// Entries uniform in [−scale, scale]; the same for the same seed.
-inline MatrixF random_matrix(std::size_t rows, std::size_t columns, unsigned seed,
-                             float scale = 1.0F) {
-  std::mt19937 generator(seed);
-  return MatrixF::NullaryExpr(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns),
-                              [&] {
-                                const auto bits = static_cast<float>(generator() >> 8);
-                                return scale * (bits * 0x1p-23F - 1.0F);
-                              });
 }
 
 /// A whole buffer with its padding columns: [rows x stride].

@@ -1,9 +1,9 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
+#include "device/gemm.hpp"
+#include "device/pointwise.hpp"
 #include "device/shapes.hpp"
-#include "mcdbn/device/gemm.hpp"
-#include "mcdbn/device/units.hpp"
 #include "reference/error_bounds.hpp"
 #include "reference/product_reference.hpp"
 #include "reference/units_reference.hpp"

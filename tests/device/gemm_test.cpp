@@ -1,9 +1,9 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
+#include "device/gemm.hpp"
 #include "device/shapes.hpp"
-#include "mcdbn/device/gemm.hpp"
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
 #include "reference/product_reference.hpp"
 

@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "device/every_device.hpp"
+#include "device/launch.hpp"
 #include "device/probe.hpp"
-#include "mcdbn/device/launch.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -94,7 +94,7 @@ TEST_CASE(
     const bool is_pocl = device.info().platform_name == "Portable Computing Language";
     const bool known = is_pocl && device.info().driver_version.starts_with("3.1");
     const bool right = sums(device, kNotInlined + kOwnArray) == wanted();
-    // Where this fails the trap is gone, and with it what makes INLINE (activation.clh) necessary.
+    // Where this fails the trap is gone, and with it what makes INLINE (units.clh) necessary.
     if (known && optimized) CHECK_FALSE(right);
     // No other driver was seen to fall into it; other versions of PoCL are not known.
     if (!is_pocl) CHECK(right);

@@ -1,4 +1,4 @@
-#include "mcdbn/device/losses.hpp"
+#include "device/losses.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "device/every_device.hpp"
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
 
 using namespace mcdbn;

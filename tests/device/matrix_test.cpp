@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;

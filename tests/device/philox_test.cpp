@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "device/every_device.hpp"
+#include "device/launch.hpp"
 #include "device/probe.hpp"
-#include "mcdbn/device/launch.hpp"
-#include "mcdbn/device/random.hpp"
+#include "mcdbn/base/random.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -56,7 +56,7 @@ void check_words(Device& device, int width, std::uint32_t rows, std::uint32_t co
   constexpr std::uint32_t kGuard = 0xdeadbeef;
   const std::vector<std::uint32_t> initial((rows + 1) * columns, kGuard);
   const cl::Buffer out = to_device(device, initial);
-  launch(device, device.programs().kernel("units.cl", "philox_words", {{"VEC", width}}),
+  launch(device, device.programs().kernel("pointwise.cl", "philox_words", {{"VEC", width}}),
          {{columns, rows}}, out, static_cast<cl_int>(columns), kernel_argument(kKey));
   const auto words = to_host<std::uint32_t>(device, out, initial.size());
   int different = 0;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "device/program.hpp"
 #include "mcdbn/device/device.hpp"
-#include "mcdbn/device/program.hpp"
 
 namespace mcdbn::test {
 
@@ -15,7 +15,7 @@ inline cl::Program build_probe(Device& device, const std::string& text, int vect
   std::string options = "-cl-std=CL1.2 -DVEC=" + std::to_string(vector_width);
   if (const char* extra = std::getenv("MCDBN_BUILD_OPTIONS")) options += std::string(" ") + extra;
   cl::Program program(device.context(),
-                      kernel_source("philox.clh") + kernel_source("activation.clh") + text);
+                      kernel_source("philox.clh") + kernel_source("units.clh") + text);
   program.build(options.c_str());
   return program;
 }

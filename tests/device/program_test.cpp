@@ -1,4 +1,4 @@
-#include "mcdbn/device/program.hpp"
+#include "device/program.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,14 +6,14 @@
 #include <functional>
 #include <sstream>
 
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "base/user_cache.hpp"
 #include "device/every_device.hpp"
+#include "device/launch.hpp"
+#include "device/pointwise.hpp"
 #include "device/scoped_variable.hpp"
-#include "mcdbn/device/launch.hpp"
-#include "mcdbn/device/units.hpp"
-#include "mcdbn/device/user_cache.hpp"
-#include "mcdbn/errors.hpp"
-#include "mcdbn/text_file.hpp"
-#include "motion/scratch_folder.hpp"
+#include "mcdbn/base/errors.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/scratch_folder.hpp"
 #include "device/every_device.hpp"
+#include "device/gemm.hpp"
+#include "device/row_tile.hpp"
 #include "device/scoped_variable.hpp"
-#include "mcdbn/device/gemm.hpp"
-#include "mcdbn/device/row_tile.hpp"
-#include "motion/scratch_folder.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "clips.hpp"
-#include "mcdbn/errors.hpp"
-#include "mcdbn/evaluation/bone_length.hpp"
-#include "mcdbn/evaluation/foot_slide.hpp"
-#include "mcdbn/evaluation/sample_spread.hpp"
-#include "mcdbn/motion/foot_joints.hpp"
+#include "evaluation/bone_length.hpp"
+#include "evaluation/foot_slide.hpp"
+#include "evaluation/sample_spread.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "motion/foot_joints.hpp"
 
 namespace mcdbn {
 namespace {

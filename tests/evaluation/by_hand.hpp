@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mcdbn/matrix_types.hpp"
+#include "mcdbn/base/matrices.hpp"
 
 namespace mcdbn::test {
 

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "mcdbn/matrix_types.hpp"
+#include "mcdbn/base/matrices.hpp"
 
 namespace mcdbn::test {
 

@@ -11,7 +11,7 @@
 #include <functional>
 #include <random>
 
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "clips.hpp"
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mcdbn/evaluation/evaluation_report.hpp"
+#include "evaluation/evaluation_report.hpp"
 
 namespace mcdbn::test {
 

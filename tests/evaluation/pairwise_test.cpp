@@ -1,11 +1,11 @@
-#include "mcdbn/evaluation/pairwise.hpp"
+#include "evaluation/pairwise.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
 #include "clips.hpp"
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
 
 namespace mcdbn {

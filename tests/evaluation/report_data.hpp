@@ -3,7 +3,7 @@
 #include <string>
 
 #include "clips.hpp"
-#include "mcdbn/evaluation/report_clip.hpp"
+#include "evaluation/report_clip.hpp"
 
 namespace mcdbn::test {
 

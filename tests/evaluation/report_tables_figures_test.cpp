@@ -7,10 +7,10 @@
 #include <map>
 #include <sstream>
 
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
 #include "by_hand.hpp"
-#include "mcdbn/evaluation/report_page.hpp"
-#include "mcdbn/text_file.hpp"
-#include "motion/scratch_folder.hpp"
+#include "evaluation/report_page.hpp"
 #include "numbered_report.hpp"
 
 namespace mcdbn {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <sstream>
 
-#include "mcdbn/errors.hpp"
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "evaluation/report_page.hpp"
+#include "evaluation/report_tables.hpp"
+#include "evaluation/sample_spread.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
-#include "mcdbn/evaluation/report_page.hpp"
-#include "mcdbn/evaluation/report_tables.hpp"
-#include "mcdbn/evaluation/sample_spread.hpp"
-#include "mcdbn/text_file.hpp"
-#include "motion/scratch_folder.hpp"
 #include "report_data.hpp"
 
 namespace mcdbn {

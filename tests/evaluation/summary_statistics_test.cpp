@@ -1,4 +1,4 @@
-#include "mcdbn/evaluation/summary_statistics.hpp"
+#include "evaluation/summary_statistics.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "clips.hpp"
-#include "mcdbn/errors.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "mcdbn/errors.hpp"
-#include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/bvh.hpp"
 
 namespace {
 

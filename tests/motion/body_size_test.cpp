@@ -1,8 +1,8 @@
-#include "mcdbn/motion/body_size.hpp"
+#include "motion/body_size.hpp"
 
 #include <doctest/doctest.h>
 
-#include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/formats/bvh.hpp"
 #include "motion/synthetic_motion.hpp"
 #include "shared_data.hpp"
 

@@ -1,11 +1,11 @@
-#include "mcdbn/motion/mirror.hpp"
+#include "motion/mirror.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/formats/bvh.hpp"
 
 using namespace mcdbn;
 

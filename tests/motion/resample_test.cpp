@@ -1,4 +1,4 @@
-#include "mcdbn/motion/resample.hpp"
+#include "motion/resample.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,8 +7,8 @@
 #include <functional>
 #include <numbers>
 
-#include "mcdbn/errors.hpp"
-#include "mcdbn/motion/bvh.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/bvh.hpp"
 #include "shared_data.hpp"
 
 using namespace mcdbn;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "mcdbn/motion/resample.hpp"
+#include "motion/resample.hpp"
 #include "motion/synthetic_motion.hpp"
 
 using namespace mcdbn;

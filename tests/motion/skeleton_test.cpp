@@ -7,9 +7,9 @@
 #include <random>
 #include <sstream>
 
-#include "mcdbn/errors.hpp"
-#include "mcdbn/motion/bvh.hpp"
-#include "mcdbn/text_file.hpp"
+#include "base/text_file.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/bvh.hpp"
 #include "shared_data.hpp"
 
 using namespace mcdbn;

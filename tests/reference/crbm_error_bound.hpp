@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mcdbn/device/update.hpp"
+#include "device/updates.hpp"
 #include "reference/crbm_reference.hpp"
 #include "reference/running_error.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <functional>
 
-#include "mcdbn/device/update.hpp"
-#include "mcdbn/matrix_types.hpp"
+#include "device/updates.hpp"
+#include "mcdbn/base/matrices.hpp"
 
 namespace mcdbn::reference {
 

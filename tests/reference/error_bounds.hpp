@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "mcdbn/matrix_types.hpp"
+#include "mcdbn/base/matrices.hpp"
 
 /// Bounds from rounding error analysis (Higham, "Accuracy and Stability of Numerical Algorithms",
 /// chapter 3), for single precision against the double reference.

@@ -5,7 +5,7 @@
 #include <map>
 #include <numbers>
 
-#include "mcdbn/device/random.hpp"
+#include "mcdbn/base/random.hpp"
 
 namespace mcdbn::reference {
 namespace {
@@ -24,7 +24,7 @@ Eigen::Index total_order(const std::vector<Crbm>& stack) {
   return order;
 }
 
-WindowLayout layout_of(const JointModel& model, const FineTuningSettings& settings) {
+WindowLayout layout_of(const UnrolledModel& model, const FineTuningSettings& settings) {
   WindowLayout layout;
   layout.count = static_cast<Eigen::Index>(settings.windows);
   layout.first = std::max(total_order(model.stacks[0]), total_order(model.stacks[1]));
@@ -107,7 +107,7 @@ DrawnWindows drawn_windows(const FineTuningData& data, const WindowLayout& layou
   return drawn;
 }
 
-DropOut drawn_drop_out(const JointModel& model, int present, const FineTuningSettings& settings,
+DropOut drawn_drop_out(const UnrolledModel& model, int present, const FineTuningSettings& settings,
                        std::size_t step, std::uint16_t first_phase, std::uint32_t window) {
   if (settings.dropout == 0) return {};
   const auto kept = static_cast<float>(1.0 - settings.dropout);
@@ -133,7 +133,7 @@ DropOut drawn_drop_out(const JointModel& model, int present, const FineTuningSet
   return drop_out;
 }
 
-FineTuning::FineTuning(const JointModel& start, FineTuningData data,
+FineTuning::FineTuning(const UnrolledModel& start, FineTuningData data,
                        const FineTuningSettings& settings, Judge judge_pose)
     : settings_(settings),
       data_(std::move(data)),
@@ -142,7 +142,7 @@ FineTuning::FineTuning(const JointModel& start, FineTuningData data,
       layout_(layout_of(start, settings)) {
   value_ = average_ = shape_.flattened();
   mean_ = square_ = Eigen::VectorXd::Zero(value_.size());
-  JointModel marks = shape_;
+  UnrolledModel marks = shape_;
   for_each_matrix(marks, [](auto& matrix, bool weight, const char*) {
     matrix.setConstant(weight ? 1.0 : 0.0);
   });
@@ -150,13 +150,13 @@ FineTuning::FineTuning(const JointModel& start, FineTuningData data,
 }
 
 Eigen::VectorXd FineTuning::gradient(double& loss) const {
-  const JointModel model = shape_.with_parameters(value_);
-  JointModel sum = shape_.with_parameters(Eigen::VectorXd::Zero(value_.size()));
+  const UnrolledModel model = shape_.with_parameters(value_);
+  UnrolledModel sum = shape_.with_parameters(Eigen::VectorXd::Zero(value_.size()));
   const DrawnWindows drawn = drawn_windows(data_, layout_, settings_, done_);
   const auto one_direction = [&](int present, std::uint16_t phase, const Judge& judge) {
     const MatrixD& input = present == 0 ? drawn.track : drawn.pose;
     const MatrixD& target = present == 0 ? drawn.pose : drawn.track;
-    std::vector<JointGradient> windows;
+    std::vector<UnrolledGradient> windows;
     MatrixD prediction(target.rows(), target.cols());
     for (Eigen::Index i = 0; i < layout_.count; ++i) {
       windows.emplace_back(
@@ -205,7 +205,7 @@ void FineTuning::learn(const Eigen::VectorXd& gradient) {
 }
 
 double FineTuning::loss_on(const FineTuningData& others) const {
-  const JointModel model = averaged();
+  const UnrolledModel model = averaged();
   constexpr std::size_t kBatches = 4;
   double sum = 0;
   for (std::size_t batch = 0; batch < kBatches; ++batch) {
@@ -213,8 +213,8 @@ double FineTuning::loss_on(const FineTuningData& others) const {
     MatrixD prediction(drawn.pose.rows(), drawn.pose.cols());
     for (Eigen::Index i = 0; i < layout_.count; ++i)
       prediction.middleRows(i * layout_.frames, layout_.frames) =
-          JointGradient(model, 0, drawn.track.middleRows(i * layout_.frames, layout_.frames),
-                        static_cast<int>(layout_.first), settings_.mean_field_steps, {})
+          UnrolledGradient(model, 0, drawn.track.middleRows(i * layout_.frames, layout_.frames),
+                           static_cast<int>(layout_.first), settings_.mean_field_steps, {})
               .prediction();
     sum += judge_pose_(layout_, prediction, drawn.pose).loss;
   }

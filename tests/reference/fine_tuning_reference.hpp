@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "reference/joint_gradient.hpp"
+#include "reference/unrolled_gradient.hpp"
 
 namespace mcdbn::reference {
 
@@ -50,7 +50,7 @@ DrawnWindows drawn_windows(const FineTuningData& data, const WindowLayout& layou
 
 /// The drop-out of window `window` in mini-batch `step`.
 /// @param first_phase 0 for 3D from 2D, 0x100 for 2D from 3D
-DropOut drawn_drop_out(const JointModel& model, int present, const FineTuningSettings& settings,
+DropOut drawn_drop_out(const UnrolledModel& model, int present, const FineTuningSettings& settings,
                        std::size_t step, std::uint16_t first_phase, std::uint32_t window);
 
 /// Calls call(matrix, whether it is a weight, name) for all parameters, in the order of
@@ -76,7 +76,7 @@ void for_each_matrix(Model& model, const Call& call) {
 class FineTuning {
  public:
   /// @param start in ordinary form  @param judge_pose the loss on 3D
-  FineTuning(const JointModel& start, FineTuningData data, const FineTuningSettings& settings,
+  FineTuning(const UnrolledModel& start, FineTuningData data, const FineTuningSettings& settings,
              Judge judge_pose);
 
   /// One mini-batch. @return its loss on 3D
@@ -84,7 +84,7 @@ class FineTuning {
   /// The length of the last mini-batch's gradient, before it was cut.
   double gradient_length() const { return gradient_length_; }
   /// The moving average of the parameters, in centered form.
-  JointModel averaged() const { return shape_.with_parameters(average_); }
+  UnrolledModel averaged() const { return shape_.with_parameters(average_); }
   /// The loss of the moving average on the first four mini-batches of other data, without drop-out.
   double loss_on(const FineTuningData& others) const;
   const WindowLayout& layout() const { return layout_; }
@@ -96,7 +96,7 @@ class FineTuning {
   FineTuningSettings settings_;
   FineTuningData data_;
   Judge judge_pose_;
-  JointModel shape_;  ///< of the centered model; its parameters are `value_`
+  UnrolledModel shape_;  ///< of the centered model; its parameters are `value_`
   WindowLayout layout_;
   Eigen::VectorXd value_, mean_, square_, average_, is_weight_;
   double gradient_length_ = 0;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mcdbn/device/random.hpp"
+#include "mcdbn/base/random.hpp"
 #include "reference/units_reference.hpp"
 #include "reference/update_reference.hpp"
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "mcdbn/matrix_types.hpp"
+#include "mcdbn/base/matrices.hpp"
 
 namespace mcdbn::reference {
 

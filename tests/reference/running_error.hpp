@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mcdbn/matrix_types.hpp"
+#include "mcdbn/base/matrices.hpp"
 
 /// Running error analysis (Higham, chapter 3): values in double beside a bound on how far a single
 /// precision computation of the same expression may lie from them, whatever its order of summation.

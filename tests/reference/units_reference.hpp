@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mcdbn/matrix_types.hpp"
+#include "mcdbn/base/matrices.hpp"
 
 /// The paper's mathematics in double precision with Eigen, written to be read beside the equations.
 /// What the kernels compute is tested against it. Batches are row-major: one row, one case.

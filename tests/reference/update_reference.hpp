@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mcdbn/device/update.hpp"
-#include "mcdbn/matrix_types.hpp"
+#include "device/updates.hpp"
+#include "mcdbn/base/matrices.hpp"
 
 namespace mcdbn::reference {
 

@@ -1,3 +1,6 @@
+// The room device: OpenCL: devices, programs, matrices, products, pointwise work, updates, tuning.
+// It uses base.
+// Add here: a kernel in kernels/, its host side here (pointwise.cpp shows the pattern).
 #pragma once
 
 #include <cstdint>

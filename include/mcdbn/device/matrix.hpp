@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "mcdbn/base/matrices.hpp"
 #include "mcdbn/device/device.hpp"
-#include "mcdbn/matrix_types.hpp"
 
 namespace mcdbn {
 

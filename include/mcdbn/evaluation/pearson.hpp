@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mcdbn/matrix_types.hpp"
+#include "mcdbn/base/matrices.hpp"
 
 namespace mcdbn {
 

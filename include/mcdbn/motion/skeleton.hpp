@@ -1,3 +1,5 @@
+// The room motion: skeletons and their motion: kinematics, rotations, resampling, body size, mirror
+// images, feet. It uses base. Add here: what needs no camera and no file format.
 #pragma once
 
 #include <Eigen/Core>
@@ -5,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mcdbn/matrix_types.hpp"
+#include "mcdbn/base/matrices.hpp"
 
 namespace mcdbn {
 

@@ -2,10 +2,11 @@
 
 #include <iostream>
 
-#include "mcdbn/device/losses.hpp"
-#include "mcdbn/device/units.hpp"
-#include "mcdbn/device/update.hpp"
-#include "mcdbn/model/crbm.hpp"
+#include "device/gemm.hpp"
+#include "device/losses.hpp"
+#include "device/pointwise.hpp"
+#include "device/updates.hpp"
+#include "mcdbn/machines/crbm.hpp"
 #include "peer.hpp"
 
 using namespace mcdbn;

@@ -44,7 +44,7 @@ def momentum_update(parameter, velocity, gradient, rate, decay):
 
 
 class CrbmStep:
-    """CD-k as kernels/gibbs_chain.cl and cd_update.cl do it."""
+    """CD-k as kernels/contrastive_divergence.cl and contrastive_divergence_update.cl do it."""
 
     def __init__(self, visible, batch, gibbs_steps, binary, draw):
         self.frames = frames_of(visible, binary)

@@ -1,8 +1,8 @@
 // Trains a Gaussian CRBM on a matrix, one frame a row: two waves that the past tells much about.
 #include <cmath>
 #include <iostream>
-#include <mcdbn/errors.hpp>
-#include <mcdbn/training/greedy_schedule.hpp>
+#include <mcdbn/base/errors.hpp>
+#include <mcdbn/learning/greedy_schedule.hpp>
 
 int main() {
   mcdbn::MatrixF frames(400, 2);

@@ -1,0 +1,52 @@
+// The room camera: cameras, and the 2D tracks that they see: projection, rays, damage, other rates.
+// It uses motion.
+// Add here: what happens to tracks; a file of them belongs to formats.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/motion/skeleton.hpp"
+
+namespace mcdbn {
+
+/// A pinhole camera with OpenCV's distortion. Camera axes are OpenCV's: x right, y down, z forward.
+struct Camera {
+  Eigen::Matrix3d camera_from_world = Eigen::Matrix3d::Identity();  ///< rotation
+  Eigen::Vector3d translation{0, 0, 0};  ///< x_camera = R·x_world + translation, file units
+  double fx_px = 1000, fy_px = 1000, cx_px = 960, cy_px = 540;
+  std::vector<double> distortion;  ///< k1 k2 p1 p2 [k3 …], may be empty
+  int width_px = 1920, height_px = 1080;
+};
+
+/// Where to put a camera that looks at a clip. Azimuth 0 looks along the clip's −z axis
+/// (at a figure that faces +z), positive azimuth moves the camera to the figure's left (+x).
+struct CameraPlacement {
+  double azimuth_deg = 30.0;
+  double elevation_deg = 10.0;
+  std::optional<double> distance;   ///< file units; unset: the whole clip's body just fits in view
+  double field_of_view_deg = 45.0;  ///< vertical
+  int width_px = 1920, height_px = 1080;
+  bool operator==(const CameraPlacement&) const = default;
+};
+
+/// camera_from_world of that azimuth and elevation, with the world's +y up.
+Eigen::Matrix3d camera_rotation(double azimuth_deg, double elevation_deg);
+
+/// Aims a camera at the centre of the clip, with every joint of every frame in view.
+Camera place_camera(const Motion& motion, const CameraPlacement& placement);
+/// The same for points. @param points [frames x 3·joints] world  @throws InputError if none
+Camera place_camera(const MatrixD& points, const CameraPlacement& placement);
+
+/// Projects world points through the camera by cv::projectPoints.
+/// @param points [frames x 3·joints]  @return [frames x 2·joints] pixels, NaN behind the camera
+MatrixD project_points(const Camera& camera, const MatrixD& points);
+
+/// The 2D track of a clip's joints as the camera sees it; confidence 1, NaN and 0 where a joint is
+/// behind the camera.
+Track2d project_motion(const Motion& motion, const Camera& camera);
+
+}  // namespace mcdbn

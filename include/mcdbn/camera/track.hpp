@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mcdbn/base/matrices.hpp"
+
+namespace mcdbn {
+
+/// 2D joints over time as one camera sees them. A missing joint is NaN with confidence 0.
+struct Track2d {
+  std::vector<std::string> joint_names;
+  MatrixD x_px, y_px, confidence;  ///< each [frames x joints]
+  double fps = 30.0;
+  int width_px = 1920, height_px = 1080;
+
+  int frames() const { return static_cast<int>(x_px.rows()); }
+  int joint_count() const { return static_cast<int>(joint_names.size()); }
+  int find(const std::string& name) const;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,49 @@
+// The room corpus: clips as training sequences: reading, views, people.
+// It uses formats, features, synthesis.
+// Add here: another way to see or change clips before training: beside augmentation.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mcdbn/corpus/augmentation.hpp"
+#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/features/modalities.hpp"
+
+namespace mcdbn {
+
+/// How clips become training sequences.
+struct CorpusSettings {
+  double fps = 30.0;
+  std::size_t phases = 1;  ///< sampling grids taken from each clip where its own rate allows
+  bool keep_first_frame = false;
+  CameraPlacement camera;
+  AugmentationSettings augment;
+
+  /// @throws ConfigError naming the setting that is out of range
+  void validate() const;
+};
+
+/// Synchronized clips of both modalities, standardized: [frames x dimension] each.
+struct TrainingSet {
+  Modalities modalities;
+  std::vector<MatrixF> tracks;      ///< 2D
+  std::vector<MatrixF> poses;       ///< 3D
+  std::vector<TrainingClip> clips;  ///< files as they were read; of augmented views, each view's
+  /// Who is seen in each of `poses`, counted from 0; empty where nobody asked.
+  std::vector<std::size_t> people;
+  std::size_t frames() const;
+};
+
+/// Reads BVH files, resamples each on `phases` shifted grids, projects it through the camera and
+/// learns the features and their scaling.
+/// @param with_views the scaling is learnt from augmented views, too (make_augmented_views)
+/// @throws InputError
+TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
+                              const CorpusSettings& settings, std::uint64_t seed, bool with_views,
+                              std::vector<std::string>* notices);
+
+}  // namespace mcdbn

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mcdbn/base/matrices.hpp"
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/motion/skeleton.hpp"
+
+namespace mcdbn {
+
+/// The 2D modality: joint pixels relative to the root joint divided by the body's size in the
+/// image, then the root's place in the image (as fractions of its height, from its centre) and the
+/// logarithm of that size over the image's height. DESIGN section 3.
+///
+/// The size of a frame is the RMS distance of its joints from the root; where joints are missing,
+/// the others stand in by their usual share of it. Its logarithm is smoothed over `kSizeWindow_s`
+/// to both sides by local lines, which takes the gait out of it, yet follows a walk towards the
+/// camera.
+class TrackFeatures {
+ public:
+  /// The joints to use, by name; joints that coincide with their parent should be left out. The
+  /// root joint is always used, whether listed or not. @throws InputError if a name comes twice
+  explicit TrackFeatures(std::vector<std::string> joint_names, std::string root_name);
+  /// The joints of a skeleton that are worth tracking: every joint at or below `root` that is not
+  /// at its parent's place.
+  static TrackFeatures for_skeleton(const Skeleton& skeleton, int root);
+
+  int dimension() const;
+  const std::vector<std::string>& joint_names() const {
+    return joint_names_;
+  }  ///< without the root
+  const std::string& root_name() const { return root_name_; }
+  std::vector<std::string> feature_names() const;
+
+  struct FillCount {
+    int interpolated = 0;
+    int missing = 0;
+  };
+  /// Joined by name. Gaps of at most `kLongestGap_s` are interpolated (held at the track's ends);
+  /// what is longer stays NaN, and so does all of a frame without its root joint.
+  /// @param filled if given, how many joint-frames were interpolated and how many stay missing
+  /// @return [frames x dimension]  @throws InputError if a joint of the model is in no column
+  MatrixD encode(const Track2d& track, FillCount* filled = nullptr) const;
+  static constexpr double kLongestGap_s = 0.2;
+  static constexpr double kSizeWindow_s = 1.0;  ///< to either side
+
+  nlohmann::json to_json() const;
+  /// @throws InputError
+  static TrackFeatures from_json(const nlohmann::json& json);
+
+ private:
+  std::vector<std::string> joint_names_;
+  std::string root_name_;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "mcdbn/learning/layer_health.hpp"
+
+namespace mcdbn {
+
+/// What an observer learns of each epoch.
+struct EpochReport {
+  std::string stage;  ///< pose.0, pose.1, track.0, track.1, mrbm, joint
+  std::size_t epoch = 0, epochs = 0;
+  double loss = 0;  ///< mean squared reconstruction error of a unit, or cross-entropy of a unit
+  double windows_per_s = 0;
+  double stage_progress = 0;            ///< 0 … 1
+  double overall_progress = 0;          ///< 0 … 1, by the stages' own cost
+  std::optional<double> held_out_loss;  ///< of the clips held out, fine-tuning only
+  std::optional<LayerHealth> health;    ///< at a stage's first and last epoch, and every fifth
+};
+using EpochObserver = std::function<void(const EpochReport&)>;
+
+}  // namespace mcdbn

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+
+#include "mcdbn/learning/epoch_report.hpp"
+#include "mcdbn/learning/paired_clips.hpp"
+#include "mcdbn/learning/sequence_loss.hpp"
+#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/machines/mcdbn.hpp"
+
+namespace mcdbn {
+
+/// The mini-batches after which the parameters that were kept stood, and their loss on the clips
+/// held out.
+struct KeptStep {
+  std::size_t steps = 0;
+  double loss = 0;
+};
+
+/// What fine-tuning makes.
+struct FineTuned {
+  Mcdbn network;
+  std::optional<KeptStep> kept;  ///< if clips were held out
+};
+
+/// The stage that the paper leaves out and its reference [19] has: MinVI back-propagated through
+/// the whole network (unrolled_pass.hpp) on windows that run freely, as regeneration does. 3D from
+/// 2D weighs most; the other direction stays trained. The result is the moving average of the
+/// parameters: the last one or, where clips are held out, the last one before those fared worse.
+/// The observer may throw to stop.
+/// @param held_out clips that are not learnt from and say when to stop
+/// @param make_loss of the 3D modality
+/// @throws DivergenceError saying what to lower
+FineTuned fine_tune(Device& device, const Mcdbn& start, const PairedClips& clips,
+                    const std::optional<PairedClips>& held_out, const LearningSettings& settings,
+                    const SequenceLossMaker& make_loss, const EpochObserver& observer = {});
+
+}  // namespace mcdbn

@@ -1,0 +1,34 @@
+// The room learning: how machines are trained on sequences: contrastive divergence,
+// multi-prediction, the greedy schedule (Algorithm 1), fine-tuning. It uses machines. Add here: a
+// learning rule: a class beside ContrastiveDivergence, its kernels named after it.
+#pragma once
+
+#include <string>
+
+#include "mcdbn/learning/epoch_report.hpp"
+#include "mcdbn/learning/paired_clips.hpp"
+#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/machines/mcdbn.hpp"
+
+namespace mcdbn {
+
+/// Algorithm 1: the 3D CDBN layer by layer, the 2D CDBN, then the MRBM on their codes.
+/// The observer may throw to stop.
+/// @param start weights to start from; nothing: small random ones, as the settings' deviations say
+/// @throws DivergenceError saying what to lower
+Mcdbn train_greedy(Device& device, const PairedClips& clips, const LearningSettings& learning,
+                   const EpochObserver& observer = {}, const Mcdbn* start = nullptr);
+
+/// One layer of Algorithm 1: CD-k on every window of `visible` for settings.epochs epochs.
+/// @param initial its visible_mean is taken from `visible`
+/// @param stream separates this layer's random numbers from those of the others
+Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
+                const CdSettings& settings, const LearningSettings& learning, std::uint16_t stream,
+                const EpochObserver& observer = {}, const std::string& stage = "crbm");
+
+/// The MRBM by multi-prediction on codes whose rows belong to the same frames.
+Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
+                const MrbmParameters& initial, const LearningSettings& learning,
+                std::uint16_t stream, const EpochObserver& observer = {});
+
+}  // namespace mcdbn

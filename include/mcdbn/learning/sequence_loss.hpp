@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+#include "mcdbn/device/matrix.hpp"
+
+namespace mcdbn {
+
+/// Windows of a mini-batch: `count` of `frames` frames, one after another. Frames before `first`
+/// are history, those before `lead` settle, the rest are judged.
+struct SequenceWindows {
+  std::size_t count = 0, frames = 0, first = 0, lead = 0;
+  std::size_t rows() const { return count * frames; }
+};
+
+/// What fine-tuning minimizes: an error of the frames that a network predicted for a mini-batch of
+/// windows, summed up on the device until it is asked for.
+class SequenceLoss {
+ public:
+  virtual ~SequenceLoss() = default;
+  /// Writes dL/d prediction, zero before the windows' lead. Each is [at least windows.rows() x
+  /// dimension]. Enqueues and returns. @throws ShapeError
+  virtual void differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) = 0;
+  /// The weighted loss, its mean since the last call. Waits for the queue.
+  virtual double read_and_reset() = 0;
+};
+
+/// Makes a loss for windows of that shape.
+using SequenceLossMaker =
+    std::function<std::unique_ptr<SequenceLoss>(Device& device, const SequenceWindows& windows)>;
+
+}  // namespace mcdbn

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "mcdbn/machines/crbm.hpp"
+#include "mcdbn/machines/sequences.hpp"
+
+namespace mcdbn {
+
+/// A stack of CRBMs of any depth: a Gaussian one below, binary ones on the hidden probabilities of
+/// the one beneath (section III.B, Fig. 4).
+struct Cdbn {
+  std::vector<Crbm> layers;
+
+  std::size_t code_dimension() const { return layers.back().shape().hidden; }
+  /// Frames that the whole stack needs before the first one that has a code.
+  std::size_t total_order() const;
+  /// Mean-field up-pass through every layer: hidden probabilities of all frames that have a
+  /// history.
+  Sequences up_pass(const Sequences& visible) const;
+};
+
+/// The same through one layer.
+Sequences up_pass(const Crbm& layer, const Sequences& visible);
+
+}  // namespace mcdbn

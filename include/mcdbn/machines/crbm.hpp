@@ -1,0 +1,67 @@
+#pragma once
+
+#include "mcdbn/base/random.hpp"
+#include "mcdbn/device/matrix.hpp"
+
+namespace mcdbn {
+
+enum class VisibleKind { gaussian, binary };
+
+struct CrbmShape {
+  std::size_t visible = 0;
+  std::size_t hidden = 0;
+  std::size_t order = 0;  ///< frames of history; 0 makes it an RBM
+  VisibleKind kind = VisibleKind::gaussian;
+  bool operator==(const CrbmShape&) const = default;
+};
+
+/// A CRBM's parameters on the host, with the paper's letters. Histories run oldest frame first.
+struct CrbmParameters {
+  CrbmShape shape;
+  MatrixF W;  ///< [visible x hidden]
+  MatrixF A;  ///< [order·visible x visible] history → visible (eq 16)
+  MatrixF B;  ///< [order·visible x hidden]  history → hidden (eq 17)
+  MatrixF a;  ///< [1 x visible]
+  MatrixF b;  ///< [1 x hidden]
+  /// [1 x visible] what the visible units are on average over the training windows (0 where they
+  /// are standardized): the history before a free-running start.
+  MatrixF visible_mean;
+
+  static CrbmParameters zeros(const CrbmShape& shape);
+  /// W, A and B drawn from N(0, deviation²), biases zero.
+  static CrbmParameters random(const CrbmShape& shape, double deviation, const RandomKey& key);
+};
+
+/// A conditional RBM (eq 13 to 17; Gaussian units have variance 1, as data is standardized); an RBM
+/// or Gaussian RBM where the order is 0 (eq 1 to 11). Frames stand in one matrix
+/// [frames x visible], so that the history of row t is the `order` rows before it, read in place.
+class Crbm {
+ public:
+  Crbm(Device& device, const CrbmParameters& parameters);
+  CrbmParameters to_host() const;
+  const CrbmShape& shape() const { return shape_; }
+  Device& device() const { return W.device(); }
+
+  /// The history of each row: `order` frames that end before it. @param rows one frame each
+  Rows history(const Rows& rows) const;
+
+  /// b̂ = b + H·B (eq 17). @param out [rows x hidden]
+  void dynamic_hidden_bias(const Rows& rows, const Rows& out) const;
+  /// â = a + H·A (eq 16). @param out [rows x visible]
+  void dynamic_visible_bias(const Rows& rows, const Rows& out) const;
+  /// p(h = 1 | v, H), eq 11 with eq 17. @param out [rows x hidden]
+  void hidden_probabilities(const Rows& rows, const Rows& out) const;
+  /// Brings the transposed copy of W up to date after W changed.
+  void refresh_transposed();
+
+  // The paper's letters, on the device. A and B have order·stride rows: a history is read with its
+  // padding, whose weights are zero and stay zero because the padding is.
+  Matrix W, A, B, a, b;
+  Matrix W_transposed;  ///< [hidden x visible]
+  Matrix visible_mean;  ///< [1 x visible], see CrbmParameters
+
+ private:
+  CrbmShape shape_;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,45 @@
+// The room machines: RBM, CRBM, CDBN, MRBM and MCDBN on plain matrices: parameters, inference,
+// regeneration. It uses device. Add here: a machine: its parameters on the host, its class on the
+// device (crbm.hpp shows the pattern).
+#pragma once
+
+#include <cstddef>
+
+#include "mcdbn/machines/cdbn.hpp"
+#include "mcdbn/machines/mrbm.hpp"
+
+namespace mcdbn {
+
+/// How variations of an answer are drawn above temperature 0.
+struct SamplingRule {
+  /// k of Algorithm 5 in the decoder's top layer, 0: mean field. Table 2 has 3, but only the first
+  /// step starts from the code: with a greedy network the error of samples at temperature 0.5 on
+  /// held-out CMU walks is 53 mm with k = 1 and 130 mm with k = 2.
+  std::size_t gibbs_steps = 1;
+  /// k of the MRBM's own sampled chain, each sample's for itself: then samples differ in the 3D
+  /// code that is inferred, too. 0: mean field, one code for all samples.
+  std::size_t mrbm_gibbs_steps = 0;
+  /// The chain's units draw once a sample, not once a frame, and concretely: a sample is one person
+  /// throughout and does not shake.
+  bool steady = false;
+  double scale = 1.0;  ///< what temperature 1 stands for (calibrated_sampling)
+};
+
+/// The multimodal conditional deep belief network (section IV.A, Fig. 6): a CDBN for each modality
+/// and an MRBM over their codes.
+struct Mcdbn {
+  Cdbn track;  ///< 2D
+  Cdbn pose;   ///< 3D
+  Mrbm mrbm;
+  std::size_t look_ahead = 0;  ///< the 2D code of frame t + look_ahead stands for the 3D code of t
+  std::size_t mean_field_steps = 10;
+  SamplingRule sampling = {};
+  /// The 2D CDBN itself fills in missing 2D joints. Else they are left at their mean, as a network
+  /// that was trained as a whole has learnt to see them.
+  bool fills_gaps = true;
+
+  Cdbn& cdbn(Modality modality) { return modality == Modality::track ? track : pose; }
+  const Cdbn& cdbn(Modality modality) const { return modality == Modality::track ? track : pose; }
+};
+
+}  // namespace mcdbn

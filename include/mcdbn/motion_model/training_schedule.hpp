@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "mcdbn/learning/epoch_report.hpp"
+#include "mcdbn/learning/paired_clips.hpp"
+#include "mcdbn/motion_model/model_file.hpp"
+#include "mcdbn/motion_model/training_config.hpp"
+
+namespace mcdbn {
+
+/// What a training run makes.
+struct TrainedNetwork {
+  Mcdbn network;
+  std::optional<EarlyStopping> early_stopping;  ///< if one person was held out
+};
+
+/// make_training_set as a training run's settings say.
+TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
+                              const TrainingConfig& config, std::vector<std::string>* notices);
+/// make_augmented_views likewise.
+TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files,
+                                 const Modalities& modalities, const TrainingConfig& config);
+
+/// A training set as `learning` takes it; `set` must live on.
+PairedClips paired_clips(const TrainingSet& set);
+
+/// Fine-tuning with the loss on poses (PoseLoss). Of at least config.hold_out_among people one is
+/// held out (person_to_hold_out) and says when to stop.
+/// @param views augmented ones  @throws DivergenceError
+TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& views,
+                         const TrainingConfig& config, const EpochObserver& observer = {});
+
+/// The greedy stages (Algorithm 1) on the clips as they are, or on augmented views of them and then
+/// fine-tuning, or that alone, as config.fine_tuning says.
+/// @param files as make_training_set read them, for the views
+/// The observer may throw to stop. @throws DivergenceError, InputError
+TrainedNetwork train_network(Device& device, const TrainingSet& data,
+                             const std::vector<std::filesystem::path>& files,
+                             const TrainingConfig& config, const EpochObserver& observer = {});
+
+}  // namespace mcdbn

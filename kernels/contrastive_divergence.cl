@@ -1,0 +1,132 @@
+// The whole chain of CD-k (Algorithm 2) in one launch. Rows of a mini-batch are independent while
+// they are sampled, so one work-group runs everything for its ROWS rows: dynamic biases from the
+// history read in place (eq 15 to 17), the hidden units of the data, then `gibbs_steps` times
+// visible means and hidden units. What the products read, visible means `v` and hidden units `s`,
+// is in __local; the rest goes to the outputs, which contrastive_divergence_update.cl reads.
+//
+// global: (blocks · GROUP), local: (GROUP). Compile-time: VISIBLE, HIDDEN (units), ORDER (frames of
+// history), GAUSSIAN (1, or 0 for binary visible units), ROWS, COLUMNS, GROUP (tile.clh).
+// Outputs are [blocks · ROWS x V_LD or H_LD]; rows past `rows` repeat the last one.
+//   visible_data, hidden_data          v and p(h | v, H) of the data
+//   visible, hidden                    the same at the chain's end
+//   visible_change, hidden_change      data − end; dynamic biases while the chain runs
+//   loss[row]                          Σ (v data − v end)²
+
+#undef SAMPLE
+#define SAMPLE 1
+#include "tile.clh"
+#include "crbm_shape.clh"
+
+// v ← the frames `back` before those of the block's rows
+INLINE void take_frames(local float* v, global const float* frames, const int at[ROWS], int back) {
+  SYNC();
+  for (int column = get_local_id(0) * VEC; column < V_LD; column += GROUP * VEC)
+    for (int r = 0; r < ROWS; ++r)
+      storeN(loadN((at[r] - back) * V_LD + column, frames), r * V_LD + column, v);
+  SYNC();
+}
+
+// change = data − end, where `end` is this tile
+INLINE void store_change(floatN end[ROWS][COLUMNS], const int count, global const float* data,
+                         global float* change, const int ld, int column) {
+#pragma unroll
+  for (int r = 0; r < ROWS; ++r)
+#pragma unroll
+    for (int c = 0; c < count; ++c) {
+      const int at = r * ld + column + c * VEC;
+      storeN(loadN(at, data) - end[r][c], at, change);
+    }
+}
+
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
+    global const float* frames, global const int* index, int first, int shift, int rows,
+    global const float* w, global const float* w_transposed, global const float* weights_a,
+    global const float* weights_b, global const float* bias_a, global const float* bias_b,
+    global float* visible_data, global float* visible, global float* visible_change,
+    global float* hidden_data, global float* hidden, global float* hidden_change,
+    global float* loss, int gibbs_steps, uint4 random) {
+  local float v[ROWS * V_LD];
+  local float s[ROWS * H_LD];
+  const int row0 = get_group_id(0) * ROWS;
+  int at[ROWS];
+  for (int r = 0; r < ROWS; ++r) at[r] = index[first + min(row0 + r, rows - 1)] + shift;
+  visible_data += row0 * V_LD;
+  visible += row0 * V_LD;
+  visible_change += row0 * V_LD;
+  hidden_data += row0 * H_LD;
+  hidden += row0 * H_LD;
+  hidden_change += row0 * H_LD;
+  floatN sum[ROWS][COLUMNS];
+
+  // â and b̂ (eq 16, 17), one frame of the history after the other
+  FOR_TILES(V_LD, {
+    load_tile(sum, count, bias_a, 0, column);
+    store_tile(sum, count, visible_change, V_LD, column);
+  });
+  FOR_TILES(H_LD, {
+    load_tile(sum, count, bias_b, 0, column);
+    store_tile(sum, count, hidden_change, H_LD, column);
+  });
+  for (int q = 0; q < ORDER; ++q) {
+    take_frames(v, frames, at, ORDER - q);
+    FOR_TILES(V_LD, {
+      load_tile(sum, count, visible_change, V_LD, column);
+      add_products(sum, count, v, V_LD, VISIBLE, weights_a + q * V_LD * V_LD, V_LD, column);
+      store_tile(sum, count, visible_change, V_LD, column);
+    });
+    FOR_TILES(H_LD, {
+      load_tile(sum, count, hidden_change, H_LD, column);
+      add_products(sum, count, v, V_LD, VISIBLE, weights_b + q * V_LD * H_LD, H_LD, column);
+      store_tile(sum, count, hidden_change, H_LD, column);
+    });
+  }
+
+  take_frames(v, frames, at, 0);
+  for (int column = get_local_id(0) * VEC; column < V_LD; column += GROUP * VEC)
+    for (int r = 0; r < ROWS; ++r)
+      storeN(loadN(r * V_LD + column, v), r * V_LD + column, visible_data);
+
+  for (int step = 0; step <= gibbs_steps; ++step) {
+    const bool last = step == gibbs_steps;
+    if (step > 0) {
+      FOR_TILES(V_LD, {
+        load_tile(sum, count, visible_change, V_LD, column);
+        add_products(sum, count, s, H_LD, HIDDEN, w_transposed, V_LD, column);
+#if !GAUSSIAN
+        apply_sigmoid(sum, count, column, VISIBLE);
+#endif
+        keep_tile(sum, count, v, V_LD, column);
+        if (last) {
+          store_tile(sum, count, visible, V_LD, column);
+          store_change(sum, count, visible_data, visible_change, V_LD, column);
+        }
+      });
+      SYNC();
+    }
+    FOR_TILES(H_LD, {
+      load_tile(sum, count, hidden_change, H_LD, column);
+      add_products(sum, count, v, V_LD, VISIBLE, w, H_LD, column);
+      apply_sigmoid(sum, count, column, HIDDEN);
+      if (last) {
+        store_tile(sum, count, hidden, H_LD, column);
+        store_change(sum, count, hidden_data, hidden_change, H_LD, column);
+      } else {
+        if (step == 0) store_tile(sum, count, hidden_data, H_LD, column);
+        keep_tile(sum, count, s, H_LD, column);
+        for (int c = 0; c < count; ++c)
+          draw_rows(s, H_LD, column + c * VEC, row0, 1.0f,
+                    (uint4)(random.xyz, random.w + (uint)step));
+      }
+    });
+    SYNC();
+  }
+
+  for (int r = get_local_id(0); r < ROWS && row0 + r < rows; r += GROUP) {
+    floatN squares = (floatN)(0.0f);
+    for (int column = 0; column < V_LD; column += VEC) {
+      const floatN change = loadN(r * V_LD + column, visible_change);
+      squares = fma(change, change, squares);
+    }
+    loss[row0 + r] = sum_lanes(squares);
+  }
+}

@@ -1,0 +1,90 @@
+// The MRBM's chain with one modality clamped (Algorithm 5's inference) in one launch: `steps` times
+// the shared hidden units given both modalities (eq 21, 32), then the absent one given them (eq 22,
+// 23, 33). Rows are independent, so one work-group runs all of it for its ROWS rows. The absent
+// modality starts from zeros, so that the first hidden pass sees the present one alone, counted
+// twice with `doubled`. Sums are those of gemm.cl, bias last: the same bits as product by product.
+//
+// global: (blocks · GROUP), local: (GROUP). Compile-time: VISIBLE_0, VISIBLE_1, HIDDEN (units of the
+// present and of the absent modality, shared ones; mrbm_shape.clh), ROWS, COLUMNS, GROUP
+// (tile.clh). Row r of `present` is row index[first + r] + shift if `indexed`, else r, of rows
+// that are present_ld floats apart; row r of `absent` likewise, without index. `drive` is scratch,
+// [blocks · ROWS x H_LD]: what the present modality says to the hidden units.
+//
+// With a temperature other than 0 units are drawn as SAMPLE says, 1 or 3 (tile.clh), phase
+// 2 · step for the hidden ones and 2 · step + 1 for the absent ones; the last step's absent ones stay
+// probabilities.
+
+#if SAMPLE != 3
+#undef SAMPLE
+#define SAMPLE 1
+#endif
+#include "tile.clh"
+#include "mrbm_shape.clh"
+
+#define P_LD PADDED(VISIBLE_0)
+#define Q_LD PADDED(VISIBLE_1)
+#define X_LD (P_LD > Q_LD ? P_LD : Q_LD)
+
+// Probabilities of this tile become what lies between them and their draws.
+INLINE void draw_tile(local float* x, const int ld, const int count, int column, int row0,
+                      float temperature, uint4 random, int phase) {
+  if (temperature == 0.0f) return;
+  random.w += (uint)phase;
+  for (int c = 0; c < count; ++c) draw_rows(x, ld, column + c * VEC, row0, temperature, random);
+}
+
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
+    global const float* present, int present_offset, int present_ld, global const int* index,
+    int indexed, int first, int shift, int rows, global const float* w_p, global const float* b,
+    global const float* w_q, global const float* wt_q, global const float* a_q,
+    global float* drive, global float* absent, int absent_offset, int absent_ld, int steps,
+    int doubled, float temperature, uint4 random) {
+  local float x[ROWS * X_LD];  // the present modality, then the absent one
+  local float h[ROWS * H_LD];
+  const int row0 = get_group_id(0) * ROWS;
+  for (int r = 0; r < ROWS; ++r) {
+    const int row = min(row0 + r, rows - 1);
+    const int at = present_offset + (indexed ? index[first + row] + shift : row) * present_ld;
+    for (int column = get_local_id(0) * VEC; column < P_LD; column += GROUP * VEC)
+      storeN(loadN(at + column, present), r * X_LD + column, x);
+  }
+  drive += row0 * H_LD;
+  absent += absent_offset + row0 * absent_ld;
+  floatN sum[ROWS][COLUMNS];
+  SYNC();
+
+  FOR_TILES(H_LD, {
+    clear_tile(sum, count);
+    add_products(sum, count, x, X_LD, VISIBLE_0, w_p, H_LD, column);
+    add_tile(sum, count, b, 0, column);
+    store_tile(sum, count, drive, H_LD, column);
+  });
+  for (int step = 0; step < steps; ++step) {
+    const bool last = step + 1 == steps;
+    // What is in x: the present modality at first, of which the drive has all that it says.
+    const int units = step > 0 ? VISIBLE_1 : doubled ? VISIBLE_0 : 0;
+    global const float* weights = step > 0 ? w_q : w_p;
+    FOR_TILES(H_LD, {
+      clear_tile(sum, count);
+      add_products(sum, count, x, X_LD, units, weights, H_LD, column);
+      add_tile(sum, count, drive, H_LD, column);
+      apply_sigmoid(sum, count, column, HIDDEN);
+      keep_tile(sum, count, h, H_LD, column);
+      draw_tile(h, H_LD, count, column, row0, temperature, random, 2 * step);
+    });
+    SYNC();
+    FOR_TILES(Q_LD, {
+      clear_tile(sum, count);
+      add_products(sum, count, h, H_LD, HIDDEN, wt_q, Q_LD, column);
+      add_tile(sum, count, a_q, 0, column);
+      apply_sigmoid(sum, count, column, VISIBLE_1);
+      if (last) {
+        store_first_rows(sum, count, absent, absent_ld, column, rows - row0);
+      } else {
+        keep_tile(sum, count, x, X_LD, column);
+        draw_tile(x, X_LD, count, column, row0, temperature, random, 2 * step + 1);
+      }
+    });
+    SYNC();
+  }
+}

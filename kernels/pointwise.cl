@@ -1,0 +1,139 @@
+// Pointwise work on whole matrices, row-major, leading dimensions in floats, padding columns zero.
+// global: (ceil(columns / VEC), rows) unless a kernel says otherwise.
+
+#include "units.clh"
+
+// What a product back end without epilogues (CLBlast) leaves to do; the meaning of BIAS, ACTIVATION
+// and SAMPLE is that of gemm.cl.
+#ifndef BIAS
+#define BIAS 0
+#endif
+#ifndef ACTIVATION
+#define ACTIVATION 0
+#endif
+kernel void epilogue(global float* c, int c_offset, int ldc, int n, global const float* bias,
+                     int bias_offset, int bias_ld, global const float* factor, int factor_offset,
+                     int factor_ld, global float* sample, int sample_offset, int sample_ld,
+                     float temperature, float kept_share, uint4 random) {
+  const int column = get_global_id(0) * VEC;
+  const int row = get_global_id(1);
+  if (column >= n) return;
+  const floatN mask = column_mask(column, n);
+  floatN value = loadN(c_offset + row * ldc + column, c);
+#if BIAS == 1
+  value += loadN(bias_offset + column, bias);
+#elif BIAS == 2
+  value += loadN(bias_offset + row * bias_ld + column, bias);
+#endif
+#if ACTIVATION == 1
+  value = sigmoidN(value);
+#elif ACTIVATION == 2
+  const floatN y = loadN(factor_offset + row * factor_ld + column, factor);
+  value *= y * (1.0f - y);
+#elif ACTIVATION == 3
+  value = relu(value);
+#elif ACTIVATION == 4
+  value = relu_gradient(value, loadN(factor_offset + row * factor_ld + column, factor));
+#elif ACTIVATION == 5
+  value = centered_sigmoid(value);
+#elif ACTIVATION == 6
+  value = centered_sigmoid_gradient(value, loadN(factor_offset + row * factor_ld + column, factor),
+                                    kept_share);
+#endif
+  value *= mask;
+  storeN(value, c_offset + row * ldc + column, c);
+#if SAMPLE
+  uintN draws[DRAW_WORDS];
+  draw_four_rows(draws, column, row / 4, random);
+  const floatN drawn = sample_units(value, draws, row);
+  storeN(mask * (value + temperature * (drawn - value)), sample_offset + row * sample_ld + column,
+         sample);
+#endif
+}
+
+// out[r, :] = frames[rows[first + r] + shift, :]   (columns may run on over several frames: eq 15)
+kernel void gather_rows(global const float* frames, int ld, global const int* rows, int first,
+                        int shift, int columns, global float* out, int out_offset, int out_ld) {
+  const int column = get_global_id(0) * VEC;
+  const int row = get_global_id(1);
+  if (column >= columns) return;
+  storeN(loadN((rows[first + row] + shift) * ld + column, frames), out_offset + row * out_ld + column,
+         out);
+}
+
+// out = scale · (x − y)
+kernel void scaled_difference(global const float* x, int x_offset, int x_ld, global const float* y,
+                              int y_offset, int y_ld, int columns, float scale, global float* out,
+                              int out_offset, int out_ld) {
+  const int column = get_global_id(0) * VEC;
+  const int row = get_global_id(1);
+  if (column >= columns) return;
+  storeN(scale * (loadN(x_offset + row * x_ld + column, x) - loadN(y_offset + row * y_ld + column, y)),
+         out_offset + row * out_ld + column, out);
+}
+
+#if SAMPLE == 1
+// Drop-out: keeps an entry, divided by the share that is kept, or makes it zero. Runs of `alike` rows
+// share their draws.
+kernel void dropout(global float* c, int c_offset, int ldc, int columns, int alike, float kept_share,
+                    uint4 random) {
+  const int column = get_global_id(0) * VEC;
+  const int row = get_global_id(1);
+  if (column >= columns) return;
+  const int draw = row / alike;
+  uintN draws[DRAW_WORDS];
+  draw_four_rows(draws, column, draw / 4, random);
+  const floatN kept = sample_units((floatN)(kept_share), draws, draw);
+  const int at = c_offset + row * ldc + column;
+  storeN(kept * (loadN(at, c) / kept_share), at, c);
+}
+#endif
+
+// out[c, r] = in[r, c]; global: (columns, rows)
+kernel void transpose(global const float* in, int ld, global float* out, int out_ld) {
+  const int column = get_global_id(0);
+  const int row = get_global_id(1);
+  out[column * out_ld + row] = in[row * ld + column];
+}
+
+// Weights of a history with the lags turned round: block j of `out` is block lags − 1 − j of `in`,
+// transposed, so that the frames after one stand in the order of its history. Blocks of ld_rows rows,
+// padding included; global: (columns, lags · ld_rows)
+kernel void transpose_lags(global const float* in, int ld_rows, int ld, global float* out,
+                           int out_ld_rows, int out_ld, int lags) {
+  const int column = get_global_id(0), row = get_global_id(1) % ld_rows,
+            lag = get_global_id(1) / ld_rows;
+  out[((lags - 1 - lag) * out_ld_rows + column) * out_ld + row] =
+      in[(lag * ld_rows + row) * ld + column];
+}
+
+// out[0, c] = beta · out[0, c] + scale · sum over rows of in[r, c], rows in ascending order;
+// global: (ceil(columns / VEC), 1)
+kernel void column_sum(global const float* in, int in_offset, int ld, int rows, int columns,
+                       float scale, float beta, global float* out) {
+  const int column = get_global_id(0) * VEC;
+  if (column >= columns) return;
+  floatN sum = (floatN)(0.0f);
+  for (int row = 0; row < rows; ++row) sum += loadN(in_offset + row * ld + column, in);
+  sum *= scale;
+  if (beta != 0.0f) sum = fma((floatN)(beta), loadN(column, out), sum);
+  storeN(sum, column, out);
+}
+
+// Philox words as they are, for the test against the published vectors: out[row, column];
+// global: (columns, rows)
+kernel void philox_words(global uint* out, int ld, uint4 random) {
+  const int column = get_global_id(0);
+  const int row = get_global_id(1);
+  uintN words[4];
+  words[0] = (uintN)((uint)column);
+  words[1] = (uintN)((uint)row / 4);
+  words[2] = (uintN)(random.z);
+  words[3] = (uintN)(random.w);
+  philoxN(words, random.x, random.y);
+#if VEC == 1
+  out[row * ld + column] = words[row & 3];
+#else
+  out[row * ld + column] = words[row & 3].s0;
+#endif
+}

@@ -1,0 +1,145 @@
+#include "mcdbn/camera/camera.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
+
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kRadians = std::numbers::pi / 180.0;
+/// How much of the image's half width and height the body may fill.
+constexpr double kFill = 0.92;
+
+void check(const CameraPlacement& placement) {
+  if (!(placement.field_of_view_deg > 0 && placement.field_of_view_deg < 180)) {
+    throw ConfigError(fmt::format("camera field of view {} degrees; give one between 0 and 180",
+                                  placement.field_of_view_deg));
+  }
+  if (placement.width_px <= 0 || placement.height_px <= 0) {
+    throw ConfigError(fmt::format("image size {}x{}; give pixels above 0", placement.width_px,
+                                  placement.height_px));
+  }
+  if (placement.distance && !(*placement.distance > 0)) {
+    throw ConfigError(
+        fmt::format("camera distance {}; give file units above 0", *placement.distance));
+  }
+}
+
+/// The least distance from `centre` at which every point is in view and well before the camera.
+/// @param points [frames x 3·joints] world
+double fitting_distance(const Camera& camera, const MatrixD& points,
+                        const Eigen::Vector3d& centre) {
+  const double slope_x = camera.fx_px / (kFill * camera.width_px / 2.0);
+  const double slope_y = camera.fy_px / (kFill * camera.height_px / 2.0);
+  double distance = 0, radius = 0;
+  for (Eigen::Index frame = 0; frame < points.rows(); ++frame) {
+    for (Eigen::Index column = 0; column < points.cols(); column += 3) {
+      const Eigen::Vector3d seen =
+          camera.camera_from_world * (points.row(frame).segment<3>(column).transpose() - centre);
+      distance = std::max({distance, std::abs(seen.x()) * slope_x - seen.z(),
+                           std::abs(seen.y()) * slope_y - seen.z()});
+      radius = std::max(radius, seen.norm());
+    }
+  }
+  // A wide field of view would let the camera stand inside the body.
+  distance = std::max(distance, 1.2 * radius);
+  return distance > 0 ? distance : 1.0;
+}
+
+}  // namespace
+
+Eigen::Matrix3d camera_rotation(double azimuth_deg, double elevation_deg) {
+  const double azimuth = azimuth_deg * kRadians, elevation = elevation_deg * kRadians;
+  const Eigen::Vector3d to_camera(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                                  std::cos(azimuth) * std::cos(elevation));
+  const Eigen::Vector3d right(std::cos(azimuth), 0, -std::sin(azimuth));
+  Eigen::Matrix3d rotation;
+  rotation.row(0) = right;
+  rotation.row(1) = right.cross(to_camera);
+  rotation.row(2) = -to_camera;
+  return rotation;
+}
+
+Camera place_camera(const Motion& motion, const CameraPlacement& placement) {
+  return place_camera(joint_positions(motion), placement);
+}
+
+Camera place_camera(const MatrixD& points, const CameraPlacement& placement) {
+  check(placement);
+  if (points.size() == 0) throw InputError("the clip has no frames; nothing to look at");
+  Camera camera;
+  camera.camera_from_world = camera_rotation(placement.azimuth_deg, placement.elevation_deg);
+  camera.width_px = placement.width_px;
+  camera.height_px = placement.height_px;
+  camera.cx_px = placement.width_px / 2.0;
+  camera.cy_px = placement.height_px / 2.0;
+  camera.fx_px = camera.fy_px =
+      placement.height_px / 2.0 / std::tan(placement.field_of_view_deg * kRadians / 2);
+
+  Eigen::Vector3d low = points.row(0).head<3>(), high = low;
+  for (Eigen::Index column = 0; column < points.cols(); ++column) {
+    low[column % 3] = std::min(low[column % 3], points.col(column).minCoeff());
+    high[column % 3] = std::max(high[column % 3], points.col(column).maxCoeff());
+  }
+  const Eigen::Vector3d centre = (low + high) / 2;
+  const double distance = placement.distance.value_or(fitting_distance(camera, points, centre));
+  camera.translation = Eigen::Vector3d(0, 0, distance) - camera.camera_from_world * centre;
+  return camera;
+}
+
+MatrixD project_points(const Camera& camera, const MatrixD& points) {
+  if (points.cols() % 3 != 0) {
+    throw ShapeError(fmt::format("project_points: {} columns, not three a joint", points.cols()));
+  }
+  const Eigen::Index joints = points.cols() / 3;
+  MatrixD pixels(points.rows(), 2 * joints);
+  if (pixels.size() == 0) return pixels;
+  cv::Mat camera_from_world, rotation;
+  cv::eigen2cv(camera.camera_from_world, camera_from_world);
+  cv::Rodrigues(camera_from_world, rotation);
+  const cv::Vec3d translation(camera.translation.x(), camera.translation.y(),
+                              camera.translation.z());
+  const cv::Matx33d intrinsics(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0,
+                               1);
+  // Row-major frames of x y z lie in memory as OpenCV wants its list of points; it only reads them.
+  const cv::Mat world(static_cast<int>(points.rows() * joints), 1, CV_64FC3,
+                      const_cast<double*>(points.data()));
+  cv::Mat image(world.rows, 1, CV_64FC2, pixels.data());
+  cv::projectPoints(world, rotation, translation, intrinsics, camera.distortion, image);
+  for (Eigen::Index frame = 0; frame < points.rows(); ++frame) {
+    for (Eigen::Index joint = 0; joint < joints; ++joint) {
+      const Eigen::Vector3d point = points.row(frame).segment<3>(3 * joint);
+      const double depth = camera.camera_from_world.row(2) * point + camera.translation.z();
+      if (!(depth > 0)) pixels.row(frame).segment<2>(2 * joint).setConstant(kNan);
+    }
+  }
+  return pixels;
+}
+
+Track2d project_motion(const Motion& motion, const Camera& camera) {
+  const MatrixD pixels = project_points(camera, joint_positions(motion));
+  Track2d track;
+  for (const Joint& joint : motion.skeleton.joints) track.joint_names.push_back(joint.name);
+  const auto joints = static_cast<Eigen::Index>(track.joint_names.size());
+  track.x_px = pixels(Eigen::all, Eigen::seqN(0, joints, 2));
+  track.y_px = pixels(Eigen::all, Eigen::seqN(1, joints, 2));
+  track.confidence = track.x_px.array().isNaN().select(MatrixD::Zero(motion.frames(), joints),
+                                                       MatrixD::Ones(motion.frames(), joints));
+  track.fps = motion.fps();
+  track.width_px = camera.width_px;
+  track.height_px = camera.height_px;
+  return track;
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,155 @@
+#include "camera/track_noise.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+void hide(Track2d& track, Eigen::Index frame, Eigen::Index joint) {
+  track.x_px(frame, joint) = track.y_px(frame, joint) = std::numeric_limits<double>::quiet_NaN();
+  track.confidence(frame, joint) = 0;
+}
+
+/// What hangs below each joint: its children, and the length of the longest chain of bones.
+struct Branches {
+  std::vector<std::vector<int>> children;
+  std::vector<double> reach;
+
+  explicit Branches(const Skeleton& skeleton)
+      : children(skeleton.joints.size()), reach(skeleton.joints.size(), 0) {
+    for (int j = skeleton.joint_count() - 1; j > 0; --j) {
+      const int parent = skeleton.joints[j].parent;
+      children[parent].insert(children[parent].begin(), j);
+      reach[parent] = std::max(reach[parent], reach[j] + skeleton.joints[j].offset.norm());
+    }
+  }
+};
+
+/// The joint that the arms hang from, or -1.
+int chest_of(const Branches& branches) {
+  int first = -1, chest = -1;
+  for (int j = 0; j < static_cast<int>(branches.children.size()); ++j) {
+    if (branches.children[j].size() < 2) continue;
+    if (first < 0) {
+      first = j;
+    } else if (chest < 0 || branches.reach[j] > branches.reach[chest]) {
+      chest = j;
+    }
+  }
+  return chest < 0 ? first : chest;
+}
+
+void add_with_all_below(const Branches& branches, int joint, std::vector<int>& joints) {
+  joints.push_back(joint);
+  for (const int child : branches.children[joint]) add_with_all_below(branches, child, joints);
+}
+
+/// The track's columns of the joint and all below it.
+std::vector<int> columns_from(const Track2d& track, const Skeleton& skeleton,
+                              const Branches& branches, int joint) {
+  std::vector<int> joints, columns;
+  add_with_all_below(branches, joint, joints);
+  for (const int below : joints)
+    if (const int column = track.find(skeleton.joints[below].name); column >= 0)
+      columns.push_back(column);
+  return columns;
+}
+
+}  // namespace
+
+void add_pixel_noise(Track2d& track, double deviation_px, std::uint64_t seed) {
+  if (!std::isfinite(deviation_px) || deviation_px < 0) {
+    throw ConfigError(fmt::format("pixel noise is {}; give 0 or more pixels", deviation_px));
+  }
+  if (deviation_px == 0) return;
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> noise_px(0.0, deviation_px);
+  for (MatrixD* coordinate_px : {&track.x_px, &track.y_px}) {
+    *coordinate_px =
+        coordinate_px->unaryExpr([&](double value) { return value + noise_px(generator); });
+  }
+}
+
+void drop_joints(Track2d& track, double share, std::uint64_t seed) {
+  if (!(share >= 0 && share <= 1)) {
+    throw ConfigError(fmt::format("the share of missing joints is {}; give 0 to 1", share));
+  }
+  if (share == 0) return;
+  std::mt19937_64 generator(seed);
+  std::bernoulli_distribution missing(share);
+  for (Eigen::Index frame = 0; frame < track.frames(); ++frame) {
+    for (Eigen::Index joint = 0; joint < track.joint_count(); ++joint) {
+      if (missing(generator)) hide(track, frame, joint);
+    }
+  }
+}
+
+std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, double seconds,
+                                  std::uint64_t seed) {
+  if (!std::isfinite(seconds) || seconds < 0) {
+    throw ConfigError(fmt::format("an arm is to be hidden for {} s; give 0 or more", seconds));
+  }
+  const Branches branches(skeleton);
+  const int chest = chest_of(branches);
+  if (seconds == 0 || chest < 0) return {};
+  std::vector<int> limbs = branches.children[chest];
+  std::stable_sort(limbs.begin(), limbs.end(),
+                   [&](int a, int b) { return branches.reach[a] > branches.reach[b]; });
+  const int shoulder = limbs[std::mt19937_64(seed)() % 2];
+  const auto frames = std::min<Eigen::Index>(track.frames(), std::lround(seconds * track.fps));
+  const Eigen::Index first = (track.frames() - frames) / 2;
+  std::vector<std::string> names;
+  for (const int child : branches.children[shoulder])
+    for (const int column : columns_from(track, skeleton, branches, child)) {
+      names.push_back(track.joint_names[static_cast<std::size_t>(column)]);
+      for (Eigen::Index frame = first; frame < first + frames; ++frame) hide(track, frame, column);
+    }
+  return names;
+}
+
+void hide_limbs(Track2d& track, const Skeleton& skeleton, std::uint64_t seed) {
+  constexpr double kEvery_s = 2.0, kShortest_s = 0.3, kLongest_s = 1.5;
+  const Branches branches(skeleton);
+  std::vector<std::vector<int>> limbs;  // as columns of the track
+  for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
+    std::vector<int> columns = columns_from(track, skeleton, branches, joint);
+    if (!columns.empty() && 3 * static_cast<int>(columns.size()) <= track.joint_count())
+      limbs.push_back(std::move(columns));
+  }
+  if (limbs.empty()) return;
+  std::mt19937_64 generator(seed);
+  const auto uniform = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(generator);
+  };
+  const double duration_s = track.frames() / track.fps;
+  const auto times = static_cast<int>(std::lround(std::max(1.0, duration_s / kEvery_s)));
+  for (int i = 0; i < times; ++i) {
+    const auto limb = static_cast<std::size_t>(uniform(0.0, static_cast<double>(limbs.size())));
+    const double from_s = uniform(-kShortest_s, duration_s);
+    const double to_s = from_s + uniform(kShortest_s, kLongest_s);
+    const auto last = std::min<Eigen::Index>(track.frames(), std::lround(to_s * track.fps));
+    for (auto frame = std::max<Eigen::Index>(0, std::lround(from_s * track.fps)); frame < last;
+         ++frame)
+      for (const int column : limbs[std::min(limb, limbs.size() - 1)]) hide(track, frame, column);
+  }
+}
+
+void damage_track(Track2d& track, const Skeleton& skeleton, const TrackDamage& damage,
+                  std::uint64_t seed) {
+  // Seeds that nothing else uses: whoever sees the track must not draw the same numbers.
+  std::seed_seq sequence{seed & 0xffffffffU, seed >> 32U, std::uint64_t{0x74726163}};
+  std::uint32_t seeds[3];
+  sequence.generate(std::begin(seeds), std::end(seeds));
+  add_pixel_noise(track, damage.noise_px, seeds[0]);
+  drop_joints(track, damage.missing_share, seeds[1]);
+  hide_arm(track, skeleton, damage.hidden_s, seeds[2]);
+}
+
+}  // namespace mcdbn

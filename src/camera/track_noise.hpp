@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/motion/skeleton.hpp"
+
+namespace mcdbn {
+
+/// Adds independent Gaussian noise to every joint's x and y, as a 2D pose estimator does; missing
+/// joints stay missing. The same seed gives the same noise.
+/// @param deviation_px standard deviation in pixels, 0 changes nothing
+/// @throws ConfigError if it is negative or not finite
+void add_pixel_noise(Track2d& track, double deviation_px, std::uint64_t seed);
+
+/// Lets every joint of every frame go missing (NaN, confidence 0), each independently of the others
+/// with probability `share`. The same seed loses the same ones.
+/// @throws ConfigError if the share is not within 0 and 1
+void drop_joints(Track2d& track, double share, std::uint64_t seed);
+
+/// Hides an arm for `seconds` in the middle of the track: from the shoulder's child down, so that
+/// the shoulder stays. Joint names are not asked: arms are the two longest chains of bones that
+/// hang from the chest, the joint with the longest chains of all below the first at which the body
+/// branches. The seed says which of the two.
+/// @return the joints that were hidden; none if the body does not branch
+/// @throws ConfigError if the time is negative or not finite
+std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, double seconds,
+                                  std::uint64_t seed);
+
+/// Lets limbs go out of sight as behind the body or a table: every two seconds or so a joint with
+/// all that hangs from it, at most a third of the joints, for 0.3 to 1.5 s. The same seed hides the
+/// same.
+void hide_limbs(Track2d& track, const Skeleton& skeleton, std::uint64_t seed);
+
+/// What may go wrong with a track.
+struct TrackDamage {
+  double noise_px = 0;       ///< add_pixel_noise
+  double missing_share = 0;  ///< drop_joints
+  double hidden_s = 0;       ///< hide_arm
+};
+
+/// All three, each from its own stream of the seed.
+/// @throws ConfigError as they do
+void damage_track(Track2d& track, const Skeleton& skeleton, const TrackDamage& damage,
+                  std::uint64_t seed);
+
+}  // namespace mcdbn

@@ -1,0 +1,241 @@
+#include "comparison/comparison_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <regex>
+
+#include "comparison/baseline.hpp"
+#include "comparison/mlp_window.hpp"
+#include "evaluation/bone_length.hpp"
+#include "evaluation/foot_slide.hpp"
+#include "fitting/track_smoothing.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/evaluation/pearson.hpp"
+#include "motion/body_size.hpp"
+#include "motion/foot_joints.hpp"
+
+namespace mcdbn {
+namespace {
+
+bool was_trained_on(const Model& model, const std::filesystem::path& file) {
+  const std::string fingerprint = identify_clip(file).fingerprint;
+  return std::any_of(model.training_clips.begin(), model.training_clips.end(),
+                     [&](const TrainingClip& clip) { return clip.fingerprint == fingerprint; });
+}
+
+/// The person of a clip if a training clip shows the same one; else empty.
+std::string known_person(const Model& model, const std::filesystem::path& file) {
+  const std::string person = person_of(file);
+  const bool known =
+      std::any_of(model.training_clips.begin(), model.training_clips.end(),
+                  [&](const TrainingClip& clip) { return person_of(clip.path) == person; });
+  return known ? person : "";
+}
+
+/// Joints worth judging: not the root, not those that stand where their parent stands.
+std::vector<int> distinct_joints(const Skeleton& skeleton, int root) {
+  std::vector<int> joints;
+  const TrackFeatures tracked = TrackFeatures::for_skeleton(skeleton, root);
+  for (const std::string& name : tracked.joint_names()) joints.push_back(skeleton.find(name));
+  return joints;
+}
+
+/// Root first, then the distinct joints, root-relative in mm. @return [frames x 3·joints]
+MatrixD judged_positions(const Motion& motion, int root) {
+  const MatrixD all = root_relative_positions_mm(motion, root);
+  const std::vector<int> joints = distinct_joints(motion.skeleton, root);
+  MatrixD positions(all.rows(), 3 * static_cast<Eigen::Index>(joints.size() + 1));
+  positions.leftCols(3) = all.middleCols(3 * root, 3);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    positions.middleCols(3 * static_cast<Eigen::Index>(i + 1), 3) =
+        all.middleCols(3 * joints[i], 3);
+  return positions;
+}
+
+/// @param positions [frames x 3·joints]  @return the same along other axes
+MatrixD turned(MatrixD positions, const Eigen::Matrix3d& axes_from_world) {
+  for (Eigen::Index joint = 0; joint < positions.cols(); joint += 3)
+    positions.middleCols(joint, 3) = positions.middleCols(joint, 3) * axes_from_world.transpose();
+  return positions;
+}
+
+std::vector<EncodedClip> encode_training_clips(const Model& model, const TestRunOptions& options) {
+  std::vector<EncodedClip> clips;
+  for (const TrainingClip& clip : model.training_clips) {
+    if (!std::filesystem::exists(clip.path))
+      throw InputError(fmt::format(
+          "{}: a training clip of the model is gone; baselines are fitted on it, so put "
+          "it back or leave them out",
+          clip.path));
+    clips.push_back(encode_clip(clip.path, model.modalities, model.modalities.camera,
+                                options.keep_first_frame));
+  }
+  return clips;
+}
+
+/// From here on the clip's track is what a tracker would have made of it.
+void look_through_damage(EncodedClip& clip, const Model& model, const TrackDamage& damage,
+                         std::uint64_t seed) {
+  damage_track(clip.track, clip.motion.skeleton, damage, seed);
+  clip.track_features = model.modalities.encode_track(smooth_track(clip.track));
+}
+
+/// Reading is the first tenth of a run, regenerating up to seven tenths, then baselines.
+class Progress {
+ public:
+  explicit Progress(const TestRunOptions& options) : options_(options) {}
+  void show(const std::string& what, double from, std::size_t done, std::size_t of) const {
+    if (!options_.progress) return;
+    const double to = from == kRegeneration ? kBaselines : from == kBaselines ? 1.0 : kRegeneration;
+    options_.progress(what,
+                      from + (to - from) * static_cast<double>(done) / static_cast<double>(of));
+  }
+  static constexpr double kRegeneration = 0.1, kBaselines = 0.7;
+
+ private:
+  const TestRunOptions& options_;
+};
+
+ClipPlacement placement_of(const EncodedClip& truth, const TestRunOptions& options) {
+  return {truth.camera, truth.motion.skeleton, options.fit};
+}
+
+/// What a method sees of the clip; what it does not it is left to fill in itself.
+MatrixF seen_features(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
+                      const std::function<MatrixF(const MatrixF&)>& answer) {
+  return fill_gaps(model.modalities, truth.track_features, truth.track,
+                   placement_of(truth, options), answer);
+}
+
+Regeneration answer(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
+                    const MatrixF& pose) {
+  Regeneration result;
+  result.motion =
+      motion_from_features(model.modalities, pose, truth.track, placement_of(truth, options));
+  result.score = score_clip(truth, result.motion, model.modalities.root_name());
+  return result;
+}
+
+/// Clips go to the device some at a time, so that memory does not grow with the test.
+void regenerate_clips(const Model& model, const TestRunOptions& options, const Progress& progress,
+                      std::vector<ClipResult>& results) {
+  constexpr std::size_t kSequencesAtOnce = 64;
+  const std::size_t samples = options.regeneration.samples;
+  const std::size_t at_once = std::max<std::size_t>(1, kSequencesAtOnce / samples);
+  for (std::size_t first = 0; first < results.size(); first += at_once) {
+    progress.show("regenerating", Progress::kRegeneration, first, results.size());
+    const std::size_t last = std::min(results.size(), first + at_once);
+    std::vector<MatrixF> tracks;
+    for (std::size_t i = first; i < last; ++i) {
+      tracks.push_back(seen_features(model, options, results[i].truth, [&](const MatrixF& track) {
+        return single_answer(model.network, track);
+      }));
+    }
+    RegenerationOptions regeneration = options.regeneration;
+    regeneration.seed += first;  // other random numbers for other clips
+    const auto poses = regenerate(model.network, tracks, regeneration);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      ClipResult& result = results[first + i / samples];
+      result.samples.push_back(answer(model, options, result.truth, poses[i]));
+    }
+    if (regeneration.temperature <= 0) continue;
+    regeneration.temperature = 0;
+    regeneration.samples = 1;
+    const auto single = regenerate(model.network, tracks, regeneration);
+    for (std::size_t i = 0; i < single.size(); ++i)
+      results[first + i].others[kMeanField] =
+          answer(model, options, results[first + i].truth, single[i]);
+  }
+}
+
+void run_baselines(const Model& model, const TestRunOptions& options, const Progress& progress,
+                   std::vector<ClipResult>& results) {
+  std::vector<MatrixF> tracks, poses;
+  for (EncodedClip& clip : encode_training_clips(model, options)) {
+    tracks.push_back(std::move(clip.track_features));
+    poses.push_back(std::move(clip.pose_features));
+  }
+  auto baselines = default_baselines();
+  const bool has_views = !options.view_tracks.empty();
+  baselines.push_back(std::make_unique<MlpWindow>(
+      model.network.mrbm.device(),
+      has_views ? MlpWindow::Settings::for_views() : MlpWindow::Settings()));
+  for (std::size_t i = 0; i < baselines.size(); ++i) {
+    const std::string name = baselines[i]->name();
+    progress.show("baseline " + name, Progress::kBaselines, i, baselines.size());
+    if (has_views && i + 1 == baselines.size())
+      baselines[i]->fit(options.view_tracks, options.view_poses);
+    else
+      baselines[i]->fit(tracks, poses);
+    for (ClipResult& result : results) {
+      const auto predict = [&](const MatrixF& track) { return baselines[i]->predict(track); };
+      result.others[name] = answer(model, options, result.truth,
+                                   predict(seen_features(model, options, result.truth, predict)));
+    }
+  }
+}
+
+}  // namespace
+
+std::string person_of(const std::filesystem::path& file) {
+  static const std::regex cmu("(\\d+)_\\d+.*"), synthesized(".*_(s\\d+)_\\d+");
+  const std::string name = file.stem().string();
+  std::smatch found;
+  const bool tells =
+      std::regex_match(name, found, cmu) || std::regex_match(name, found, synthesized);
+  return tells ? found[1].str() : "";
+}
+
+ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
+                     const std::string& root_name) {
+  const int root = truth.motion.skeleton.find(root_name);
+  const MatrixD real = judged_positions(truth.motion, root),
+                other = judged_positions(regenerated, root);
+  ClipScore score;
+  // The root's own columns are zero on both sides: they would flatter the flattened figure.
+  const auto joints = real.cols() - 3;
+  score.pcc_flat = pearson_flat(real.rightCols(joints), other.rightCols(joints));
+  // Along the camera's axes (DESIGN section 2): along the world's own a walk straight ahead has
+  // channels in which next to nothing moves.
+  const Eigen::Matrix3d& axes = truth.camera.camera_from_world;
+  score.pcc_channel = pearson_per_channel(turned(real.rightCols(joints), axes),
+                                          turned(other.rightCols(joints), axes));
+  score.error = joint_error(real, other, truth.motion.fps(), 0);
+  const MatrixD path = joint_positions(regenerated).middleCols(3 * root, 3);
+  const double mm = 1000.0 / file_units_per_metre(truth.motion.skeleton);
+  score.root_mm = mm * (path - truth.root_position).rowwise().norm().mean();
+  const MatrixD world = world_positions_mm(regenerated);
+  score.foot_slide = foot_slide(world_positions_mm(truth.motion), world,
+                                foot_joints(truth.motion.skeleton), truth.motion.fps());
+  score.bone_length_spread_mm = bone_length_spread_mm(world, regenerated.skeleton);
+  return score;
+}
+
+std::vector<ClipResult> run_test(const Model& model,
+                                 const std::vector<std::filesystem::path>& files,
+                                 const TestRunOptions& options) {
+  const Progress progress(options);
+  std::vector<ClipResult> results;
+  for (const auto& file : files) {
+    progress.show("reading clips", 0.0, results.size(), files.size());
+    const bool trained_on = was_trained_on(model, file);
+    if (trained_on && !options.include_training)
+      throw InputError(
+          fmt::format("{}: the model was trained on this clip; test on others, or say "
+                      "--include-training",
+                      file.string()));
+    ClipResult result;
+    result.truth = encode_clip(file, model.modalities, options.camera, options.keep_first_frame);
+    look_through_damage(result.truth, model, options.damage,
+                        options.regeneration.seed + results.size());
+    result.trained_on = trained_on;
+    result.known_person = known_person(model, file);
+    results.push_back(std::move(result));
+  }
+  regenerate_clips(model, options, progress, results);
+  if (options.baselines) run_baselines(model, options, progress, results);
+  return results;
+}
+
+}  // namespace mcdbn

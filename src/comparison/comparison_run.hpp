@@ -1,0 +1,73 @@
+// The room comparison: baselines, and the run that scores the model beside them.
+// It uses motion_model, evaluation.
+// Add here: a baseline: a class behind Baseline and a line in baseline.cpp.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camera/track_noise.hpp"
+#include "corpus/encoded_clip.hpp"
+#include "evaluation/clip_score.hpp"
+#include "evaluation/report_clip.hpp"
+#include "mcdbn/motion_model/clip_regeneration.hpp"
+#include "mcdbn/motion_model/model_file.hpp"
+
+namespace mcdbn {
+
+/// What a test run is made of, and what it costs to know the answer's skeleton and camera: both are
+/// the test clip's; its motion is not shown to anyone.
+struct TestRunOptions {
+  CameraPlacement camera;
+  RegenerationOptions regeneration;
+  /// What the MLP is fitted on where there are any, in place of the training clips: the views that
+  /// the model's joint stage saw, [frames x dimension] each, so that both learnt from the same.
+  std::vector<MatrixF> view_tracks, view_poses;
+  std::optional<TrackFitSettings> fit =
+      TrackFitSettings{};  ///< of every method's answer; unset: none
+  TrackDamage damage;      ///< done to the test clips' tracks before anyone sees them
+  bool keep_first_frame = false;
+  bool include_training = false;  ///< else a clip that was trained on is refused
+  bool baselines = true;
+  /// Called now and then with what is being done and how much of the run is done; may throw to
+  /// stop.
+  std::function<void(const std::string& what, double fraction)> progress;
+};
+
+/// One answer to a clip.
+struct Regeneration {
+  Motion motion;
+  ClipScore score;
+};
+
+struct ClipResult {
+  EncodedClip truth;
+  bool trained_on = false;
+  std::string known_person;  ///< as person_of says, if a training clip shows the same one
+  std::vector<Regeneration> samples;
+  /// The baselines by name, and kMeanField, the model's single answer, if samples were drawn.
+  std::map<std::string, Regeneration> others;
+};
+
+/// Who a clip shows, where its name tells: `08` of CMU's 08_01.bvh, `s02` of walk_s02_01.bvh as
+/// `synthesize` names them. Empty where it does not.
+std::string person_of(const std::filesystem::path& file);
+
+/// @throws InputError if a clip was trained on, or a training clip that the baselines need is gone
+std::vector<ClipResult> run_test(const Model& model,
+                                 const std::vector<std::filesystem::path>& files,
+                                 const TestRunOptions& options);
+
+ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
+                     const std::string& root_name);
+
+/// How clips are put under actions: `by_folder` by the name of the folder that they lie in; else
+/// all under "all clips".
+/// @return what a report needs, clips named by their file
+std::vector<ReportClip> report_clips(const Model& model, const std::vector<ClipResult>& results,
+                                     bool by_folder);
+
+}  // namespace mcdbn

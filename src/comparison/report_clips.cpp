@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <set>
+
+#include "comparison/comparison_run.hpp"
+#include "motion/body_size.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// Which joints of a clip's skeleton a report shows, and what hangs below them.
+class Figure {
+ public:
+  /// @param names of the joints, the root first; the same for every clip of a model
+  Figure(const Skeleton& skeleton, const std::vector<std::string>& names) : skeleton_(skeleton) {
+    for (const std::string& name : names) {
+      joints_.push_back(skeleton.find(name));
+      names_.push_back(name);
+    }
+    for (const int joint : joints_) parents_.push_back(shown_ancestor(joint));
+    for (int joint = 0; joint < skeleton.joint_count(); ++joint)
+      for (const Eigen::Vector3d& end : skeleton.joints[static_cast<std::size_t>(joint)].end_sites)
+        add_end(joint, end);
+  }
+
+  const std::vector<std::string>& names() const { return names_; }
+  const std::vector<int>& parents() const { return parents_; }
+  int joint_count() const { return static_cast<int>(joints_.size()); }
+  const std::vector<int>& joints() const { return joints_; }
+
+  /// @return [frames x 3·points], mm on a 1.7 m body
+  MatrixD points_mm(const Motion& motion) const {
+    const double mm = 1000.0 / file_units_per_metre(motion.skeleton);
+    MatrixD points(motion.frames(), 3 * static_cast<Eigen::Index>(names_.size()));
+    for (int frame = 0; frame < motion.frames(); ++frame) {
+      const WorldPose pose = forward_kinematics(motion.skeleton, motion.channels.row(frame));
+      Eigen::Index column = 0;
+      const auto put = [&](const Eigen::Vector3d& point) {
+        points.block<1, 3>(frame, column) = mm * point.transpose();
+        column += 3;
+      };
+      for (const int joint : joints_) put(pose.position[static_cast<std::size_t>(joint)]);
+      for (const End& end : ends_) {
+        const auto joint = static_cast<std::size_t>(end.joint);
+        put(pose.position[joint] + pose.world_from_joint[joint] * end.offset);
+      }
+    }
+    return points;
+  }
+
+ private:
+  struct End {
+    int joint;
+    Eigen::Vector3d offset;
+  };
+
+  int index_of(int joint) const {
+    const auto found = std::find(joints_.begin(), joints_.end(), joint);
+    return found == joints_.end() ? -1 : static_cast<int>(found - joints_.begin());
+  }
+  int shown_ancestor(int joint) const {
+    do joint = skeleton_.joints[static_cast<std::size_t>(joint)].parent;
+    while (joint >= 0 && index_of(joint) < 0);
+    return joint < 0 ? -1 : index_of(joint);
+  }
+  void add_end(int joint, const Eigen::Vector3d& offset) {
+    const int parent = index_of(joint) >= 0 ? index_of(joint) : shown_ancestor(joint);
+    if (parent < 0 || offset.norm() == 0) return;
+    ends_.push_back({joint, offset});
+    names_.push_back(skeleton_.joints[static_cast<std::size_t>(joint)].name + " end");
+    parents_.push_back(parent);
+  }
+
+  const Skeleton& skeleton_;
+  std::vector<int> joints_;
+  std::vector<End> ends_;
+  std::vector<std::string> names_;
+  std::vector<int> parents_;
+};
+
+MatrixD track_px(const Track2d& track, const std::vector<std::string>& names) {
+  MatrixD pixels(track.frames(), 2 * static_cast<Eigen::Index>(names.size()));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const int joint = track.find(names[i]);
+    pixels.col(2 * static_cast<Eigen::Index>(i)) = track.x_px.col(joint);
+    pixels.col(2 * static_cast<Eigen::Index>(i) + 1) = track.y_px.col(joint);
+  }
+  return pixels;
+}
+
+/// Its file's name, with the folder's before it where another clip has the same.
+std::string unique_name(const std::filesystem::path& file, std::set<std::string>& taken) {
+  std::string name = file.stem().string();
+  for (std::filesystem::path folder = std::filesystem::weakly_canonical(file).parent_path();
+       !taken.insert(name).second; folder = folder.parent_path())
+    name = folder.has_filename() ? folder.filename().string() + "/" + name : name + "'";
+  return name;
+}
+
+}  // namespace
+
+std::vector<ReportClip> report_clips(const Model& model, const std::vector<ClipResult>& results,
+                                     bool by_folder) {
+  std::vector<std::string> names = {model.modalities.root_name()};
+  const auto& tracked = model.modalities.track_features.joint_names();
+  names.insert(names.end(), tracked.begin(), tracked.end());
+  std::set<std::string> taken;
+  std::vector<ReportClip> clips;
+  for (const ClipResult& result : results) {
+    const Figure figure(result.truth.motion.skeleton, names);
+    ReportClip clip;
+    clip.name = unique_name(result.truth.file, taken);
+    clip.action =
+        by_folder
+            ? std::filesystem::weakly_canonical(result.truth.file).parent_path().filename().string()
+            : "all clips";
+    clip.trained_on = result.trained_on;
+    clip.known_person = result.known_person;
+    clip.fps = result.truth.motion.fps();
+    clip.point_names = figure.names();
+    clip.parents = figure.parents();
+    clip.joints = figure.joint_count();
+    clip.truth_mm = figure.points_mm(result.truth.motion);
+    clip.track_px = track_px(result.truth.track, names);
+    clip.width_px = result.truth.track.width_px;
+    clip.height_px = result.truth.track.height_px;
+    for (const Regeneration& sample : result.samples)
+      clip.samples.push_back({figure.points_mm(sample.motion), sample.score});
+    for (const auto& [name, other] : result.others)
+      clip.others[name] = {figure.points_mm(other.motion), other.score};
+    clips.push_back(std::move(clip));
+  }
+  return clips;
+}
+
+}  // namespace mcdbn

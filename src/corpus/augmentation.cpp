@@ -1,0 +1,106 @@
+#include "mcdbn/corpus/augmentation.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "camera/track_noise.hpp"
+#include "motion/body_size.hpp"
+#include "motion/mirror.hpp"
+#include "motion/resample.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// Which number of a view a draw decides; the column counts joints and axes.
+enum Draw : std::uint32_t { kSpeed, kPhase, kMirror, kCamera, kNoise, kBones, kTurns, kMissing };
+
+double uniform(const RandomKey& key, Draw draw, std::uint32_t column = 0) {
+  return static_cast<double>(random_uniform(key, draw, column));
+}
+double within(const RandomKey& key, Draw draw, std::uint32_t column, double most) {
+  return most * (2.0 * uniform(key, draw, column) - 1.0);
+}
+
+/// Bones longer or shorter, alike on both sides where the skeleton has sides. Longer legs stand
+/// higher and take longer steps.
+void change_bones(Motion& motion, double deviation, const RandomKey& key) {
+  Skeleton& skeleton = motion.skeleton;
+  const double size = body_height(skeleton);
+  const std::vector<int> opposite = opposite_joints(skeleton);
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const int pair = opposite.empty() ? j : std::min(j, opposite[j]);
+    skeleton.joints[j].offset *=
+        std::exp(deviation * random_normal(key, kBones, static_cast<std::uint32_t>(pair)));
+  }
+  const int root = moving_root({&motion});
+  const Joint& joint = skeleton.joints[root];
+  for (std::size_t k = 0; k < joint.channels.size(); ++k)
+    if (!is_rotation(joint.channels[k]))
+      motion.channels.col(skeleton.first_channel(root) + static_cast<int>(k)) *=
+          body_height(skeleton) / size;
+}
+
+/// Every joint below the root that turns at all is turned by a fixed small rotation of its own.
+void change_carriage(Motion& motion, double deviation_deg, const RandomKey& key) {
+  const double deviation = deviation_deg * EIGEN_PI / 180.0;
+  for (int j = 1; j < motion.skeleton.joint_count(); ++j) {
+    const Joint& joint = motion.skeleton.joints[j];
+    const int first = motion.skeleton.first_channel(j);
+    const auto count = static_cast<Eigen::Index>(joint.channels.size());
+    const auto own = motion.channels.middleCols(first, count);
+    if (count == 0 || (own.rowwise() - own.row(0)).cwiseAbs().maxCoeff() < 1e-9) continue;
+    Eigen::Vector3d turn;
+    for (int axis = 0; axis < 3; ++axis)
+      turn[axis] = deviation * random_normal(key, kTurns, static_cast<std::uint32_t>(3 * j + axis));
+    const Eigen::Matrix3d rotation =
+        Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+    for (int t = 0; t < motion.frames(); ++t) {
+      double* channels = motion.channels.row(t).data() + first;
+      set_local_rotation(joint, local_rotation(joint, channels) * rotation,
+                         t > 0 ? motion.channels.row(t - 1).data() + first : nullptr, channels);
+    }
+  }
+}
+
+Motion other_timing(const Motion& raw, double fps, double speed, const RandomKey& key) {
+  Motion faster = raw;
+  faster.frame_time_s /= 1.0 + within(key, kSpeed, 0, speed);
+  return resample(faster, fps, 0.999 * uniform(key, kPhase));
+}
+
+/// RMS distance of the joints from their centre, over all frames that show any.
+double size_px(const Track2d& track) {
+  const MatrixD x = track.x_px.colwise() - track.x_px.rowwise().mean(),
+                y = track.y_px.colwise() - track.y_px.rowwise().mean();
+  const double size = std::sqrt((x.array().square() + y.array().square()).mean());
+  return std::isfinite(size) ? size : 0.0;
+}
+
+}  // namespace
+
+AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacement& placement,
+                             const AugmentationSettings& settings, const RandomKey& key) {
+  AugmentedView view;
+  view.motion = other_timing(raw, fps, settings.speed, key);
+  if (settings.mirror && uniform(key, kMirror) < 0.5)
+    if (auto other = mirrored(view.motion)) view.motion = std::move(*other);
+  if (settings.bone > 0) change_bones(view.motion, settings.bone, key);
+  if (settings.turn_deg > 0) change_carriage(view.motion, settings.turn_deg, key);
+  CameraPlacement moved = placement;
+  moved.azimuth_deg += within(key, kCamera, 0, settings.azimuth_deg);
+  moved.elevation_deg += within(key, kCamera, 1, settings.elevation_deg);
+  view.camera = place_camera(view.motion, moved);
+  view.camera.translation.z() *= std::exp(settings.distance * random_normal(key, kCamera, 2));
+  view.track = project_motion(view.motion, view.camera);
+  constexpr double kUsualSize_px = 200.0;  // of a figure that fills the image
+  add_pixel_noise(
+      view.track,
+      2.0 * uniform(key, kNoise) * settings.noise_px * size_px(view.track) / kUsualSize_px,
+      key.seed + key.step);
+  if (uniform(key, kMissing) < settings.missing)
+    hide_limbs(view.track, view.motion.skeleton, key.seed + key.step);
+  return view;
+}
+
+}  // namespace mcdbn

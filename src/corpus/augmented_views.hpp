@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "mcdbn/corpus/training_set.hpp"
+
+namespace mcdbn {
+
+/// Views of the training clips (augmented_view), standardized, for the joint stage:
+/// config.augment.views of each clip, fewer where that would be more than some two hours.
+/// @param files as make_training_set read them  @throws InputError
+TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files,
+                                 const Modalities& modalities, const CorpusSettings& settings,
+                                 std::uint64_t seed);
+
+}  // namespace mcdbn

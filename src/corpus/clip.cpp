@@ -1,0 +1,92 @@
+#include "mcdbn/corpus/clip.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+#include "base/text_file.hpp"
+#include "base/user_cache.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "motion/resample.hpp"
+
+namespace fs = std::filesystem;
+
+namespace mcdbn {
+namespace {
+
+/// Files print their frame time rounded; rates closer than this are the same one.
+constexpr double kSameRate_hz = 0.01;
+
+bool is_bvh(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char letter) { return std::tolower(letter); });
+  return extension == ".bvh";
+}
+
+std::vector<fs::path> clips_below(const fs::path& folder) {
+  std::vector<fs::path> clips;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file() && is_bvh(entry.path())) clips.push_back(entry.path());
+  }
+  if (clips.empty()) {
+    throw InputError(
+        fmt::format("{}: no .bvh file in this folder; name one that holds some", folder.string()));
+  }
+  std::ranges::sort(clips);
+  return clips;
+}
+
+}  // namespace
+
+Motion load_clip(const fs::path& path, const ClipOptions& options,
+                 std::vector<std::string>* notices) {
+  if (!std::isfinite(options.fps) || options.fps < 0) {
+    throw ConfigError(fmt::format("fps is {}; give a rate, or 0 for the file's own", options.fps));
+  }
+  Motion motion = read_bvh(path, notices);
+  if (!options.keep_first_frame && has_leading_calibration_pose(motion)) {
+    motion = without_first_frame(motion);
+    if (notices) {
+      notices->push_back(fmt::format(
+          "{}: dropped the calibration pose of the first frame (--keep-first-frame keeps it)",
+          path.string()));
+    }
+  }
+  if (motion.frames() == 0) {
+    throw InputError(fmt::format("{}: has no frame; use a file with motion", path.string()));
+  }
+  const bool resampling = options.fps > 0 && std::abs(options.fps - motion.fps()) > kSameRate_hz;
+  return resampling ? resample(motion, options.fps) : motion;
+}
+
+std::vector<fs::path> find_clips(const std::vector<fs::path>& paths) {
+  std::vector<fs::path> clips;
+  std::set<fs::path> seen;
+  const auto add = [&](const fs::path& clip) {
+    if (seen.insert(fs::weakly_canonical(clip)).second) clips.push_back(clip);
+  };
+  for (const fs::path& path : paths) {
+    if (!fs::exists(path)) {
+      throw InputError(fmt::format("{}: no such file or folder", path.string()));
+    }
+    if (fs::is_directory(path)) {
+      std::ranges::for_each(clips_below(path), add);
+    } else {
+      add(path);
+    }
+  }
+  if (clips.empty()) throw InputError("no motion given; name BVH files or folders of them");
+  return clips;
+}
+
+TrainingClip identify_clip(const std::filesystem::path& path) {
+  return {std::filesystem::absolute(path).lexically_normal().string(),
+          fmt::format("{:016x}", fnv1a(read_text_file(path)))};
+}
+
+}  // namespace mcdbn

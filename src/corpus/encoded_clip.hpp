@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/features/modalities.hpp"
+
+namespace mcdbn {
+
+/// One BVH clip as a trained model sees it: resampled, projected, encoded and standardized.
+struct EncodedClip {
+  std::filesystem::path file;
+  Motion motion;  ///< at the model's rate
+  Camera camera;
+  MatrixD root_position;  ///< [frames x 3] world, file units
+  Track2d track;
+  MatrixF track_features, pose_features;  ///< [frames x dimension], standardized
+};
+
+/// @throws InputError
+EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& modalities,
+                        const CameraPlacement& placement, bool keep_first_frame = false,
+                        std::vector<std::string>* notices = nullptr);
+
+}  // namespace mcdbn

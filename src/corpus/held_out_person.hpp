@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mcdbn/corpus/training_set.hpp"
+
+namespace mcdbn {
+
+/// The person who is missed least: of those with several clips (of all, if nobody has) the one with
+/// the fewest frames. Nobody of fewer than `fewest_people`, or if that is 0.
+/// @param views with `people` and `clips` for each of `poses`
+std::optional<std::size_t> person_to_hold_out(const TrainingSet& views, std::size_t fewest_people);
+
+/// The views of that person alone, or of everybody else.
+TrainingSet views_of(const TrainingSet& views, std::size_t person);
+TrainingSet views_without(const TrainingSet& views, std::size_t person);
+
+/// File names of a set's clips, each once.
+std::vector<std::string> clip_names(const TrainingSet& views);
+
+}  // namespace mcdbn

@@ -1,0 +1,112 @@
+#include "mcdbn/corpus/training_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/setting_checks.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/corpus/clip.hpp"
+#include "motion/resample.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// One view of one clip, before scaling.
+struct Pair {
+  MatrixD track, pose;
+};
+
+std::vector<Motion> resampled_phases(const Motion& raw, const CorpusSettings& settings) {
+  // More grids than source frames in a target frame would only repeat the interpolation.
+  const auto most =
+      static_cast<std::size_t>(std::max(1.0, std::floor(raw.fps() / settings.fps + 1e-6)));
+  const std::size_t phases = std::clamp<std::size_t>(settings.phases, 1, most);
+  std::vector<Motion> clips;
+  for (std::size_t i = 0; i < phases; ++i)
+    clips.push_back(
+        resample(raw, settings.fps, static_cast<double>(i) / static_cast<double>(phases)));
+  return clips;
+}
+
+std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair::*member) {
+  std::vector<const MatrixD*> blocks;
+  for (const Pair& pair : pairs) blocks.push_back(&(pair.*member));
+  return blocks;
+}
+
+constexpr std::uint16_t kStream = 196;  // of random numbers
+
+/// Views as fine-tuning will see them, for the scaling: what hardly moves in the clips may move
+/// in their views (the left arm of somebody who waves with the right one, seen in a mirror), and
+/// what counts for fifty deviations there hides everything else.
+void add_views(const Motion& raw, const CorpusSettings& settings, RandomKey& key,
+               std::vector<AugmentedView>& views) {
+  constexpr std::size_t kViews = 4;  // with and without mirror
+  AugmentationSettings all_in_sight = settings.augment;
+  all_in_sight.missing = 0;
+  for (std::size_t i = 0; i < std::min(kViews, settings.augment.views); ++i, ++key.step)
+    views.push_back(augmented_view(raw, settings.fps, settings.camera, all_in_sight, key));
+}
+
+}  // namespace
+
+void CorpusSettings::validate() const {
+  require_positive("fps", fps);
+  require_positive("phases", phases);
+  require_positive("augment.views", augment.views);
+  require_positive("camera.fov", camera.field_of_view_deg);
+}
+
+std::size_t TrainingSet::frames() const {
+  std::size_t sum = 0;
+  for (const MatrixF& pose : poses) sum += static_cast<std::size_t>(pose.rows());
+  return sum;
+}
+
+TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
+                              const CorpusSettings& settings, std::uint64_t seed, bool with_views,
+                              std::vector<std::string>* notices) {
+  if (files.empty())
+    throw InputError("no training clips; name BVH files or folders that hold some");
+  std::vector<TrainingClip> recorded;
+  std::vector<Motion> motions;
+  std::vector<AugmentedView> views;
+  RandomKey key{seed, 0, kStream, 0};
+  for (const auto& file : files) {
+    const Motion raw =
+        load_clip(file, {.fps = 0, .keep_first_frame = settings.keep_first_frame}, notices);
+    for (Motion& motion : resampled_phases(raw, settings)) motions.push_back(std::move(motion));
+    if (with_views) add_views(raw, settings, key, views);
+    recorded.push_back(identify_clip(file));
+  }
+  std::vector<const Motion*> all;
+  for (const Motion& motion : motions) all.push_back(&motion);
+  PoseFeatures pose_features = PoseFeatures::fit(all);
+  TrackFeatures track_features =
+      TrackFeatures::for_skeleton(pose_features.skeleton(), pose_features.root());
+  std::vector<Pair> pairs;
+  for (const Motion& motion : motions) {
+    const Camera camera = place_camera(motion, settings.camera);
+    pairs.push_back({track_features.encode(project_motion(motion, camera)),
+                     pose_features.encode(motion, camera.camera_from_world)});
+  }
+  const std::size_t clips = pairs.size();
+  for (const AugmentedView& view : views)
+    pairs.push_back({track_features.encode(view.track),
+                     pose_features.encode(view.motion, view.camera.camera_from_world)});
+  TrainingSet set{{std::move(pose_features), std::move(track_features),
+                   Standardizer::fit(members(pairs, &Pair::pose)),
+                   Standardizer::fit(members(pairs, &Pair::track)), settings.fps, settings.camera},
+                  {},
+                  {},
+                  std::move(recorded),
+                  {}};
+  pairs.resize(clips);
+  for (const Pair& pair : pairs) {
+    set.tracks.push_back(set.modalities.track_scale.apply(pair.track));
+    set.poses.push_back(set.modalities.pose_scale.apply(pair.pose));
+  }
+  return set;
+}
+
+}  // namespace mcdbn

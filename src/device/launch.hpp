@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "device/program.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+
+struct LaunchSize {
+  std::array<std::size_t, 2> global{1, 1};
+  /// Zeros: a GPU's driver chooses, on a CPU local_size_for.
+  std::array<std::size_t, 2> local{0, 0};
+};
+
+/// Work-groups on a CPU, for work-items of a few instructions: up to 64 items, in powers of two
+/// that divide the range. Left to itself PoCL compiles a kernel anew for every size of the range,
+/// each other length of clip, and may make one group, which one core runs, of it all.
+std::array<std::size_t, 2> local_size_for(const std::array<std::size_t, 2>& global);
+
+/// Enqueues one kernel with its arguments set in order; returns at once.
+/// @throws DeviceError naming the kernel
+template <typename... Arguments>
+void launch(Device& device, cl::Kernel& kernel, const LaunchSize& size,
+            const Arguments&... arguments) {
+  try {
+    cl_uint index = 0;
+    (kernel.setArg(index++, arguments), ...);
+    auto group = size.local;
+    if (group[0] == 0 && !device.info().is_gpu) group = local_size_for(size.global);
+    const cl::NDRange local = group[0] == 0 ? cl::NullRange : cl::NDRange(group[0], group[1]);
+    device.queue().enqueueNDRangeKernel(kernel, cl::NullRange,
+                                        cl::NDRange(size.global[0], size.global[1]), local);
+    device.count_launch();
+  } catch (const cl::Error& error) {
+    throw DeviceError("kernel " + kernel.getInfo<CL_KERNEL_FUNCTION_NAME>() + " on " +
+                      device.info().name + ": " + error.what() + " returned " +
+                      std::to_string(error.err()));
+  }
+}
+
+}  // namespace mcdbn

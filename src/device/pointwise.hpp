@@ -1,0 +1,29 @@
+#pragma once
+
+#include "device/gemm.hpp"
+#include "mcdbn/device/matrix.hpp"
+
+namespace mcdbn {
+
+/// Bias, activation and sampling of GemmOptions on values that are already in `c`.
+void apply_epilogue(const Rows& c, const GemmOptions& options);
+/// Copies indexed rows (history windows too) into consecutive ones. @param out [rows.count x
+/// rows.columns]
+void gather(const Rows& rows, const Rows& out);
+/// out = scale · (x − y), all of one shape, none indexed.
+void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& out);
+/// Drop-out, in place: an entry is divided by `kept_share` with that probability, else zero.
+/// @param alike runs of so many rows share their draws
+void dropout(const Rows& c, float kept_share, const RandomKey& key, std::size_t alike = 1);
+/// @param out [in.columns x in.rows]
+void transpose(const Matrix& in, Matrix& out);
+/// Weights from histories to frames become weights from the frames that follow: for each lag the
+/// transposed block, the nearest frame first where `in` has the oldest first.
+/// @param in [lags·padded(m) x n], padding zero  @param out [lags·padded(n) x m]
+void transpose_lags(const Matrix& in, std::size_t lags, Matrix& out);
+/// out = beta · out + scale · (sum over rows). @param out [1 x in.columns]
+void column_sum(const Rows& in, float scale, float beta, Matrix& out);
+/// out = sum of the blocks of out.count rows that make up `in`. @param in [blocks·rows x columns]
+void block_sum(const Matrix& in, const Rows& out);
+
+}  // namespace mcdbn

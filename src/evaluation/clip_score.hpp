@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "evaluation/foot_slide.hpp"
+#include "mcdbn/evaluation/joint_error.hpp"
+
+namespace mcdbn {
+
+/// How close one regenerated clip is to the truth: over forward kinematics on the test clip's own
+/// skeleton, root-relative, joints that do not coincide with their parent, on a 1.7 m body.
+struct ClipScore {
+  double pcc_flat = 0;     ///< the paper's figure
+  double pcc_channel = 0;  ///< mean over channels: the strict one
+  JointError error;
+  double root_mm = 0;  ///< mean distance of the regenerated root from the true one, in the world
+  FootSlide foot_slide;
+  double bone_length_spread_mm = 0;
+};
+
+/// Mean over clips (and samples) of each figure; a figure that is NaN somewhere (the foot slide of
+/// a clip without a planted foot) is averaged over the others. NaN throughout without a score.
+ClipScore mean_score(const std::vector<ClipScore>& scores);
+
+/// One figure of a score, as tables and JSON name it.
+struct ScoreFigure {
+  const char* name;   ///< with its unit: mpjpe_mm
+  const char* title;  ///< as people read it: MPJPE (mm)
+  double (*of)(const ClipScore&);
+  bool smaller_is_better;
+};
+
+/// Every figure of a score, in the order of reports.
+const std::vector<ScoreFigure>& score_figures();
+
+}  // namespace mcdbn

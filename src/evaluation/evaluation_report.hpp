@@ -1,0 +1,45 @@
+// The room evaluation: how good motion is: measures, distribution fits, the report.
+// It uses camera.
+// Add here: a measure: a pair of files, a member of ClipScore, a column in report_tables.cpp.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "camera/track_noise.hpp"
+#include "evaluation/action_report.hpp"
+
+namespace mcdbn {
+
+/// A sentence for people, and whether it is good news.
+struct Verdict {
+  enum class Kind { good, bad, note };
+  Kind kind = Kind::note;
+  std::string text;
+};
+
+/// A whole evaluation: what summary.json, the tables and report.html are made from.
+struct EvaluationReport {
+  std::string model;     ///< file name
+  std::string protocol;  ///< subject, paper
+  double temperature = 0;
+  std::string fit = "none";  ///< track: every method's answer was fitted to the 2D track
+  TrackDamage damage;        ///< done to the tracks before any method saw them
+  std::vector<ReportClip> clips;
+  std::vector<ActionReport> actions;  ///< analyse_actions of the clips
+};
+
+/// Mean scores over every clip, whatever its action: `model` (all samples) first, then the others
+/// by name. A report without clips has none.
+std::vector<MethodReport> overall_methods(const EvaluationReport& report);
+
+/// What the figures say, in words: whether a baseline beats the model, whether the flattened
+/// correlation says anything, how alike the regenerations are, whether training clips flatter.
+std::vector<Verdict> verdicts(const EvaluationReport& report);
+
+/// {"clips", "frames", "model": {pcc_flat, …}, "baselines": {name: {…}}, …}; figures that are not
+/// finite are null. Without the clips' motion.
+nlohmann::ordered_json summary_json(const EvaluationReport& report);
+
+}  // namespace mcdbn

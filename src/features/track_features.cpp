@@ -1,0 +1,229 @@
+#include "mcdbn/features/track_features.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr int kPlaceFeatures = 3;  ///< x and y of the root, log size
+
+/// Pixels of the joints in use, the root last; NaN where missing. Each [frames x joints + 1].
+struct Pixels {
+  MatrixD x, y;
+};
+
+Pixels select_joints(const Track2d& track, const std::vector<std::string>& joint_names,
+                     const std::string& root_name) {
+  std::vector<int> columns;
+  std::string missing;
+  const auto select = [&](const std::string& name) {
+    columns.push_back(track.find(name));
+    if (columns.back() < 0) missing += (missing.empty() ? "" : ", ") + name;
+  };
+  for (const std::string& name : joint_names) select(name);
+  select(root_name);
+  if (!missing.empty()) {
+    throw InputError(fmt::format(
+        "the 2D track has no columns for the joints {}; name its joints as the model does",
+        missing));
+  }
+  Pixels pixels{MatrixD(track.frames(), columns.size()), MatrixD(track.frames(), columns.size())};
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto seen = track.confidence.col(columns[k]).array() > 0 &&
+                      !track.x_px.col(columns[k]).array().isNaN() &&
+                      !track.y_px.col(columns[k]).array().isNaN();
+    pixels.x.col(k) = seen.select(track.x_px.col(columns[k]).array(), kNan);
+    pixels.y.col(k) = seen.select(track.y_px.col(columns[k]).array(), kNan);
+  }
+  return pixels;
+}
+
+/// Fills rows first..last-1 of one column from the numbers on both sides, or on the one side that
+/// there is.
+void fill_gap(MatrixD& values, Eigen::Index column, Eigen::Index first, Eigen::Index last) {
+  const bool has_left = first > 0, has_right = last < values.rows();
+  const double left = values(has_left ? first - 1 : last, column);
+  const double right = values(has_right ? last : first - 1, column);
+  const double step = (right - left) / static_cast<double>(last - first + 1);
+  for (Eigen::Index row = first; row < last; ++row) {
+    values(row, column) = left + step * static_cast<double>(row - first + 1);
+  }
+}
+
+TrackFeatures::FillCount fill_short_gaps(Pixels& pixels, double fps) {
+  TrackFeatures::FillCount count;
+  const auto longest = static_cast<Eigen::Index>(TrackFeatures::kLongestGap_s * fps + 1e-6);
+  const Eigen::Index frames = pixels.x.rows();
+  for (Eigen::Index column = 0; column < pixels.x.cols(); ++column) {
+    for (Eigen::Index first = 0; first < frames; ++first) {
+      if (!std::isnan(pixels.x(first, column))) continue;
+      Eigen::Index last = first;
+      while (last < frames && std::isnan(pixels.x(last, column))) ++last;
+      const int gap = static_cast<int>(last - first);
+      if (gap <= longest && gap < frames) {
+        fill_gap(pixels.x, column, first, last);
+        fill_gap(pixels.y, column, first, last);
+        count.interpolated += gap;
+      } else {
+        count.missing += gap;
+      }
+      first = last;
+    }
+  }
+  return count;
+}
+
+/// Squared distances from the root, NaN where unknown. [frames x joints]
+MatrixD squared_distances(const MatrixD& x, const MatrixD& y) {
+  return x.array().square() + y.array().square();
+}
+
+/// RMS distance of a frame's joints from the root; joints that are missing are stood in for by the
+/// others, each weighing as much as it usually makes up of the sum. NaN where less than half of the
+/// usual sum is there. @return [frames]
+std::vector<double> frame_sizes(const MatrixD& squared) {
+  RowVectorD share = RowVectorD::Zero(squared.cols());
+  for (Eigen::Index joint = 0; joint < squared.cols(); ++joint) {
+    const auto known = !squared.col(joint).array().isNaN();
+    if (known.any()) {
+      share[joint] =
+          known.select(squared.col(joint).array(), 0.0).sum() / static_cast<double>(known.count());
+    }
+  }
+  const double whole = share.sum();
+  std::vector<double> sizes(static_cast<std::size_t>(squared.rows()), kNan);
+  for (Eigen::Index frame = 0; frame < squared.rows(); ++frame) {
+    const auto known = !squared.row(frame).array().isNaN();
+    const double part = known.select(share.array(), 0.0).sum();
+    const double sum = known.select(squared.row(frame).array(), 0.0).sum();
+    if (part > 0 && part >= 0.5 * whole) {
+      sizes[frame] = std::sqrt(sum / part * whole / static_cast<double>(squared.cols()));
+    }
+  }
+  return sizes;
+}
+
+/// The logarithm of the sizes, smoothed: around every frame a line is fitted with weights that fall
+/// to zero at `half_width` frames. A line follows a walk towards the camera to the very ends of the
+/// clip, where a mean or median would lag. NaN where the window holds no number.
+std::vector<double> smooth_log_sizes(const std::vector<double>& sizes, int half_width) {
+  const int frames = static_cast<int>(sizes.size());
+  std::vector<double> result(sizes.size(), kNan);
+  for (int frame = 0; frame < frames; ++frame) {
+    double w = 0, wt = 0, wtt = 0, wv = 0, wtv = 0;
+    const int end = std::min(frames, frame + half_width);
+    for (int other = std::max(0, frame - half_width + 1); other < end; ++other) {
+      if (!(sizes[other] > 0)) continue;
+      const double time = other - frame, value = std::log(sizes[other]);
+      const double weight = 1.0 - std::abs(time) / half_width;
+      w += weight;
+      wt += weight * time;
+      wtt += weight * time * time;
+      wv += weight * value;
+      wtv += weight * time * value;
+    }
+    const double determinant = w * wtt - wt * wt;
+    if (determinant > 1e-9 * w * w) {
+      result[frame] = (wtt * wv - wt * wtv) / determinant;
+    } else if (w > 0) {
+      result[frame] = wv / w;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+TrackFeatures::TrackFeatures(std::vector<std::string> joint_names, std::string root_name)
+    : joint_names_(std::move(joint_names)), root_name_(std::move(root_name)) {
+  std::vector<std::string> sorted = joint_names_;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end()) {
+    throw InputError(fmt::format("joint {} is listed twice; list it once", *twice));
+  }
+  std::erase(joint_names_, root_name_);
+}
+
+TrackFeatures TrackFeatures::for_skeleton(const Skeleton& skeleton, int root) {
+  std::vector<std::string> names;
+  std::vector<bool> in_body(skeleton.joints.size(), false);
+  for (int j = root; j < skeleton.joint_count(); ++j) {
+    const Joint& joint = skeleton.joints[j];
+    in_body[j] = j == root || (joint.parent >= 0 && in_body[joint.parent]);
+    const bool moves = std::any_of(joint.channels.begin(), joint.channels.end(),
+                                   [](Channel channel) { return !is_rotation(channel); });
+    if (in_body[j] && j != root && (moves || joint.offset.norm() > 1e-9)) {
+      names.push_back(joint.name);
+    }
+  }
+  return TrackFeatures(std::move(names), skeleton.joints[root].name);
+}
+
+int TrackFeatures::dimension() const {
+  return 2 * static_cast<int>(joint_names_.size()) + kPlaceFeatures;
+}
+
+std::vector<std::string> TrackFeatures::feature_names() const {
+  std::vector<std::string> names;
+  for (const std::string& joint : joint_names_) {
+    names.push_back(joint + "_x");
+    names.push_back(joint + "_y");
+  }
+  for (const char* name : {"root_image_x", "root_image_y", "log_body_size"}) {
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+MatrixD TrackFeatures::encode(const Track2d& track, FillCount* filled) const {
+  Pixels pixels = select_joints(track, joint_names_, root_name_);
+  const FillCount count = fill_short_gaps(pixels, track.fps);
+  if (filled) *filled = count;
+
+  const auto joints = static_cast<Eigen::Index>(joint_names_.size());
+  const Eigen::VectorXd root_x = pixels.x.col(joints), root_y = pixels.y.col(joints);
+  const MatrixD x = pixels.x.leftCols(joints).colwise() - root_x;
+  const MatrixD y = pixels.y.leftCols(joints).colwise() - root_y;
+  const int half_width = std::max(2, static_cast<int>(std::lround(kSizeWindow_s * track.fps)));
+  const std::vector<double> log_size =
+      smooth_log_sizes(frame_sizes(squared_distances(x, y)), half_width);
+
+  MatrixD features(track.frames(), dimension());
+  for (Eigen::Index frame = 0; frame < features.rows(); ++frame) {
+    const double scale = std::exp(log_size[frame]);
+    for (Eigen::Index joint = 0; joint < joints; ++joint) {
+      features(frame, 2 * joint) = x(frame, joint) / scale;
+      features(frame, 2 * joint + 1) = y(frame, joint) / scale;
+    }
+    const bool rootless = std::isnan(root_x[frame]);
+    features(frame, 2 * joints) = (root_x[frame] - track.width_px / 2.0) / track.height_px;
+    features(frame, 2 * joints + 1) = (root_y[frame] - track.height_px / 2.0) / track.height_px;
+    features(frame, 2 * joints + 2) = rootless ? kNan : log_size[frame] - std::log(track.height_px);
+  }
+  return features;
+}
+
+nlohmann::json TrackFeatures::to_json() const {
+  return {{"joints", joint_names_}, {"root", root_name_}};
+}
+
+TrackFeatures TrackFeatures::from_json(const nlohmann::json& json) {
+  try {
+    return TrackFeatures(json.at("joints").get<std::vector<std::string>>(),
+                         json.at("root").get<std::string>());
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("track features: {}; the model file is damaged", error.what()));
+  }
+}
+
+}  // namespace mcdbn

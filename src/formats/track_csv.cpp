@@ -1,0 +1,251 @@
+#include "mcdbn/formats/track_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "base/text_file.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::string_view kSpace = " \t\r";
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(kSpace);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const auto end = text.find(separator);
+    parts.push_back(trimmed(text.substr(0, end)));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+/// The number that the whole of `text` is, if it is one; `nan` is one, infinity is not.
+std::optional<double> number(std::string_view text) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || std::isinf(value)) return {};
+  return value;
+}
+
+/// Where a column's numbers go.
+enum class Quantity { time, x, y, confidence };
+struct Column {
+  Quantity quantity;
+  int joint;
+};
+
+class TrackReader {
+ public:
+  explicit TrackReader(std::string name) : name_(std::move(name)) {}
+
+  Track2d read(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    for (const std::string_view line : split(text, '\n')) {
+      ++line_;
+      if (line.empty()) continue;
+      if (line.front() == '#') {
+        read_comment(line.substr(1));
+      } else if (columns_.empty()) {
+        read_header(split(line, ','));
+      } else {
+        read_row(split(line, ','));
+      }
+    }
+    if (columns_.empty()) fail("no header line; name the columns joint_x_px, joint_y_px, ...");
+    if (rows_.empty()) fail("no frames below the header; give one line a frame");
+    fill_track();
+    return std::move(track_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}", name_, line_, what));
+  }
+
+  /// `fps=30 width_px=1920 height_px=1080` among any other words.
+  void read_comment(std::string_view comment) {
+    for (const std::string_view word : split(comment, ' ')) {
+      const auto equals = word.find('=');
+      if (equals == std::string_view::npos) continue;
+      const std::string_view key = word.substr(0, equals);
+      if (key != "fps" && key != "width_px" && key != "height_px") continue;
+      const double value = number(word.substr(equals + 1)).value_or(kNan);
+      if (!(value > 0) || (key != "fps" && (value != std::floor(value) || value > 1e6))) {
+        fail(fmt::format("{} has no usable value; write a number above 0, as in {}=30", word, key));
+      }
+      if (key == "fps") track_.fps = value;
+      if (key == "width_px") track_.width_px = static_cast<int>(value);
+      if (key == "height_px") track_.height_px = static_cast<int>(value);
+    }
+  }
+
+  void read_header(const std::vector<std::string_view>& names) {
+    const auto is_number = [](std::string_view cell) { return cell.empty() || number(cell); };
+    if (std::all_of(names.begin(), names.end(), is_number)) {
+      fail("numbers where the header is expected; name the columns joint_x_px, joint_y_px, ...");
+    }
+    for (const std::string_view name : names) {
+      const Column column = parse_column_name(name);
+      const auto same = [&](const Column& other) {
+        return other.quantity == column.quantity && other.joint == column.joint;
+      };
+      if (std::any_of(columns_.begin(), columns_.end(), same)) {
+        fail(fmt::format("column {} comes twice; remove one", name));
+      }
+      columns_.push_back(column);
+    }
+    for (int joint = 0; joint < track_.joint_count(); ++joint) require_both_axes(joint);
+    if (track_.joint_names.empty()) fail("no joint columns; name them joint_x_px, joint_y_px, ...");
+  }
+
+  Column parse_column_name(std::string_view name) {
+    if (name == "time_s") {
+      if (!columns_.empty()) fail("time_s is not the first column; put it first");
+      return {Quantity::time, -1};
+    }
+    constexpr std::pair<std::string_view, Quantity> kEndings[] = {
+        {"_x_px", Quantity::x}, {"_y_px", Quantity::y}, {"_confidence", Quantity::confidence}};
+    for (const auto& [ending, quantity] : kEndings) {
+      if (name.size() <= ending.size() || !name.ends_with(ending)) continue;
+      const std::string joint(name.substr(0, name.size() - ending.size()));
+      int index = track_.find(joint);
+      if (index < 0) {
+        index = track_.joint_count();
+        track_.joint_names.push_back(joint);
+      }
+      return {quantity, index};
+    }
+    fail(fmt::format("unknown column '{}'; columns end in _x_px, _y_px or _confidence", name));
+  }
+
+  bool has_column(Quantity quantity, int joint) const {
+    return std::any_of(columns_.begin(), columns_.end(), [&](const Column& column) {
+      return column.quantity == quantity && column.joint == joint;
+    });
+  }
+
+  void require_both_axes(int joint) const {
+    const std::string& name = track_.joint_names[joint];
+    for (const auto& [quantity, ending] :
+         {std::pair{Quantity::x, "_x_px"}, std::pair{Quantity::y, "_y_px"}}) {
+      if (!has_column(quantity, joint)) {
+        fail(fmt::format("joint {0} has no column {0}{1}; add it or remove the joint", name,
+                         ending));
+      }
+    }
+  }
+
+  void read_row(const std::vector<std::string_view>& cells) {
+    if (cells.size() != columns_.size()) {
+      fail(fmt::format("{} cells where the header has {} columns; complete the line", cells.size(),
+                       columns_.size()));
+    }
+    RowVectorD row(static_cast<Eigen::Index>(cells.size()));
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const std::optional<double> value = cells[k].empty() ? kNan : number(cells[k]);
+      if (!value) {
+        fail(
+            fmt::format("'{}' in column {} is not a number; leave the cell empty where the joint "
+                        "was not seen",
+                        cells[k], k + 1));
+      }
+      row[static_cast<Eigen::Index>(k)] = *value;
+      if (columns_[k].quantity == Quantity::confidence && *value < 0) {
+        fail(fmt::format("confidence {} is below 0; use 0 for a joint that was not seen", *value));
+      }
+    }
+    if (columns_.front().quantity == Quantity::time) require_later(row[0]);
+    rows_.push_back(std::move(row));
+  }
+
+  void require_later(double time_s) const {
+    if (std::isnan(time_s) || (!rows_.empty() && time_s <= rows_.back()[0])) {
+      fail("time_s does not rise from line to line; sort the lines by time");
+    }
+  }
+
+  void fill_track() {
+    const auto frames = static_cast<Eigen::Index>(rows_.size());
+    const int joints = track_.joint_count();
+    track_.x_px = track_.y_px = MatrixD::Constant(frames, joints, kNan);
+    track_.confidence = MatrixD::Ones(frames, joints);
+    for (Eigen::Index frame = 0; frame < frames; ++frame) {
+      for (std::size_t k = 0; k < columns_.size(); ++k) {
+        const double value = rows_[frame][static_cast<Eigen::Index>(k)];
+        const int joint = columns_[k].joint;
+        if (columns_[k].quantity == Quantity::x) track_.x_px(frame, joint) = value;
+        if (columns_[k].quantity == Quantity::y) track_.y_px(frame, joint) = value;
+        if (columns_[k].quantity == Quantity::confidence && !std::isnan(value)) {
+          track_.confidence(frame, joint) = value;
+        }
+      }
+    }
+    const auto missing = track_.x_px.array().isNaN() || track_.y_px.array().isNaN() ||
+                         track_.confidence.array() == 0;
+    // Evaluated first: the expression reads what the next lines change.
+    const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> gone = missing;
+    track_.x_px = gone.select(kNan, track_.x_px);
+    track_.y_px = gone.select(kNan, track_.y_px);
+    track_.confidence = gone.select(0.0, track_.confidence);
+    if (columns_.front().quantity == Quantity::time && frames > 1) {
+      track_.fps = static_cast<double>(frames - 1) / (rows_.back()[0] - rows_.front()[0]);
+    }
+  }
+
+  std::string name_;
+  int line_ = 0;
+  Track2d track_;
+  std::vector<Column> columns_;
+  std::vector<RowVectorD> rows_;
+};
+
+std::string cell(double value) {
+  return std::isnan(value) ? std::string() : fmt::format("{}", value);
+}
+
+}  // namespace
+
+Track2d read_track_csv(const std::filesystem::path& path) {
+  return TrackReader(path.string()).read(read_text_file(path));
+}
+
+void write_track_csv(const std::filesystem::path& path, const Track2d& track) {
+  std::string text = fmt::format("# fps={} width_px={} height_px={}\n", track.fps, track.width_px,
+                                 track.height_px);
+  for (int joint = 0; joint < track.joint_count(); ++joint) {
+    const std::string& name = track.joint_names[joint];
+    if (name.find_first_of(",\n\r#") != std::string::npos || trimmed(name) != name) {
+      throw InputError(
+          fmt::format("joint name '{}' cannot stand in a CSV header; rename the joint", name));
+    }
+    text += fmt::format("{1}{0}_x_px,{0}_y_px,{0}_confidence", name, joint == 0 ? "" : ",");
+  }
+  text += '\n';
+  for (int frame = 0; frame < track.frames(); ++frame) {
+    for (int joint = 0; joint < track.joint_count(); ++joint) {
+      text += fmt::format("{}{},{},{}", joint == 0 ? "" : ",", cell(track.x_px(frame, joint)),
+                          cell(track.y_px(frame, joint)), cell(track.confidence(frame, joint)));
+    }
+    text += '\n';
+  }
+  write_text_file(path, text);
+}
+
+}  // namespace mcdbn

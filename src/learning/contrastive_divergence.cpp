@@ -1,0 +1,135 @@
+#include "learning/contrastive_divergence.hpp"
+
+#include <fmt/format.h>
+
+#include "device/gemm.hpp"
+#include "device/kernel_arguments.hpp"
+#include "device/pointwise.hpp"
+
+namespace mcdbn {
+std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& shape,
+                                         std::size_t batch) {
+  return choose_row_tile(
+      device, padded(shape.visible) + padded(shape.hidden), batch,
+      fmt::format("Gibbs chain of {} visible, {} hidden units", shape.visible, shape.hidden));
+}
+
+ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch)
+    : ContrastiveDivergence(crbm, largest_batch,
+                            choose_chain_tile(crbm.device(), crbm.shape(), largest_batch)) {}
+
+ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch,
+                                             std::optional<RowTile> tile)
+    : crbm_(crbm),
+      tile_(tile),
+      visible_data_(crbm.device(), whole_blocks(largest_batch, tile), crbm.shape().visible),
+      visible_(Matrix::like(visible_data_)),
+      visible_bias_(Matrix::like(visible_data_)),
+      hidden_data_(crbm.device(), visible_data_.rows(), crbm.shape().hidden),
+      hidden_(Matrix::like(hidden_data_)),
+      hidden_bias_(Matrix::like(hidden_data_)),
+      row_losses_(crbm.device(), 1, visible_data_.rows()),
+      velocity_W_(Matrix::like(crbm.W)),
+      velocity_A_(Matrix::like(crbm.A)),
+      velocity_B_(Matrix::like(crbm.B)),
+      velocity_a_(Matrix::like(crbm.a)),
+      velocity_b_(Matrix::like(crbm.b)) {
+  if (tile_) return;
+  hidden_sample_ = Matrix::like(hidden_data_);
+  gradient_W_ = Matrix::like(crbm.W);
+  gradient_A_ = Matrix::like(crbm.A);
+  gradient_B_ = Matrix::like(crbm.B);
+  gradient_a_ = Matrix::like(crbm.a);
+  gradient_b_ = Matrix::like(crbm.b);
+}
+
+void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const RandomKey& key,
+                                 LossAccumulator& losses) {
+  require(rows.index != nullptr && rows.columns == crbm_.shape().visible,
+          "CD: wants indexed frames, one each");
+  require(rows.count > 0 && rows.count <= visible_data_.rows(),
+          "CD: the mini-batch is larger than it was made for");
+  require(rule.gibbs_steps > 0, "CD: wants at least one Gibbs step");
+  if (!tile_) {
+    composed_step(rows, rule, key, losses);
+    return;
+  }
+  fused_chain(rows, rule.gibbs_steps, key);
+  fused_update(rows, rule, losses);
+}
+
+void ContrastiveDivergence::composed_step(const Rows& rows, const CdRule& rule,
+                                          const RandomKey& key, LossAccumulator& losses) {
+  clamp_data(rows, key);
+  gibbs_chain(rows.count, rule.gibbs_steps, key);
+  const Rows data(visible_data_, 0, rows.count), reconstruction(visible_, 0, rows.count);
+  losses.add_squared_error(0, data, reconstruction,
+                           1.0F / static_cast<float>(rows.count * crbm_.shape().visible));
+  update(rows, rule);
+}
+
+void ContrastiveDivergence::clamp_data(const Rows& rows, const RandomKey& key) {
+  const Rows data(visible_data_, 0, rows.count);
+  const Rows visible_bias(visible_bias_, 0, rows.count), hidden_bias(hidden_bias_, 0, rows.count);
+  const Rows hidden_sample(hidden_sample_, 0, rows.count);
+  gather(rows, data);
+  crbm_.dynamic_visible_bias(rows, visible_bias);
+  crbm_.dynamic_hidden_bias(rows, hidden_bias);
+  GemmOptions hidden;
+  hidden.bias = &hidden_bias_;
+  hidden.activation = Activation::sigmoid;
+  hidden.sampling = Sampling::bernoulli;
+  hidden.sample = &hidden_sample;
+  hidden.random = key;
+  gemm(data, crbm_.W, Rows(hidden_data_, 0, rows.count), hidden);
+}
+
+void ContrastiveDivergence::gibbs_chain(std::size_t count, std::size_t gibbs_steps, RandomKey key) {
+  const Rows visible_rows(visible_, 0, count), hidden_sample(hidden_sample_, 0, count);
+  GemmOptions visible;
+  visible.bias = &visible_bias_;
+  if (crbm_.shape().kind == VisibleKind::binary) visible.activation = Activation::sigmoid;
+  for (std::size_t k = 1; k <= gibbs_steps; ++k) {
+    gemm(hidden_sample, crbm_.W_transposed, visible_rows, visible);
+    GemmOptions hidden;
+    hidden.bias = &hidden_bias_;
+    hidden.activation = Activation::sigmoid;
+    if (k < gibbs_steps) {
+      hidden.sampling = Sampling::bernoulli;
+      hidden.sample = &hidden_sample;
+      key.phase = static_cast<std::uint16_t>(k);
+      hidden.random = key;
+    }
+    gemm(visible_rows, crbm_.W, Rows(hidden_, 0, count), hidden);
+  }
+}
+
+void ContrastiveDivergence::update(const Rows& rows, const CdRule& rule) {
+  const std::size_t n = rows.count;
+  const float mean = 1.0F / static_cast<float>(n);
+  const Rows visible_data(visible_data_, 0, n), hidden_data(hidden_data_, 0, n);
+  const Rows visible(visible_, 0, n), hidden(hidden_, 0, n);
+  // eq 37
+  gemm_transposed_a(visible_data, hidden_data, gradient_W_, mean);
+  gemm_transposed_a(visible, hidden, gradient_W_, -mean, 1.0F);
+  // What the directed weights and biases learn from: data − reconstruction (eq 38 to 41, errata).
+  scaled_difference(visible_data, visible, mean, visible);
+  scaled_difference(hidden_data, hidden, mean, hidden);
+  column_sum(visible, 1.0F, 0.0F, gradient_a_);
+  column_sum(hidden, 1.0F, 0.0F, gradient_b_);
+  MomentumRule biases = rule.W;
+  biases.weight_decay = 0.0F;
+  if (crbm_.shape().order > 0) {
+    const Rows history = crbm_.history(rows);
+    gemm_transposed_a(history, visible, gradient_A_);
+    gemm_transposed_a(history, hidden, gradient_B_);
+    momentum_update(crbm_.A, velocity_A_, gradient_A_, rule.A);
+    momentum_update(crbm_.B, velocity_B_, gradient_B_, rule.B);
+  }
+  momentum_update(crbm_.W, velocity_W_, gradient_W_, rule.W);
+  momentum_update(crbm_.a, velocity_a_, gradient_a_, biases);
+  momentum_update(crbm_.b, velocity_b_, gradient_b_, biases);
+  crbm_.refresh_transposed();
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "device/losses.hpp"
+#include "device/row_tile.hpp"
+#include "device/updates.hpp"
+#include "mcdbn/machines/crbm.hpp"
+
+namespace mcdbn {
+
+/// What one mini-batch of CD-k does to the parameters.
+struct CdRule {
+  std::size_t gibbs_steps = 1;
+  MomentumRule W;  ///< the biases take the same without decay
+  MomentumRule A, B;
+};
+
+/// The tile for CD-k, and for multi-prediction with the larger modality's units: a block's local
+/// memory holds its visible and its hidden units. Unset where they do not fit (choose_row_tile).
+std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& shape,
+                                         std::size_t batch);
+
+/// Contrastive divergence for one CRBM or RBM (Algorithm 2 with its errata: the data are clamped
+/// once, then k Gibbs steps, then one update; DESIGN section 2). Hidden units are sampled,
+/// reconstructions of the visible ones are means, the last hidden step keeps probabilities.
+///
+/// A mini-batch is two launches (contrastive_divergence.cl, contrastive_divergence_update.cl) where
+/// the chain's state fits the device, else one product after the other; both draw the same numbers.
+class ContrastiveDivergence {
+ public:
+  ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch);
+  /// With a tile of the caller's, or without the fused kernels.
+  ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch, std::optional<RowTile> tile);
+
+  /// One mini-batch: enqueues and returns. The draws are those of `key` with phase = Gibbs step.
+  /// Adds the mean squared reconstruction error of a unit to `losses` slot 0.
+  /// @param rows the current frames, indexed, at most `largest_batch` of them  @throws ShapeError
+  void step(const Rows& rows, const CdRule& rule, const RandomKey& key, LossAccumulator& losses);
+
+  /// Unset where mini-batches are composed.
+  const std::optional<RowTile>& tile() const { return tile_; }
+
+ private:
+  void composed_step(const Rows& rows, const CdRule& rule, const RandomKey& key,
+                     LossAccumulator& losses);
+  void clamp_data(const Rows& rows, const RandomKey& key);
+  void gibbs_chain(std::size_t count, std::size_t gibbs_steps, RandomKey key);
+  void update(const Rows& rows, const CdRule& rule);
+
+  void fused_chain(const Rows& rows, std::size_t gibbs_steps, const RandomKey& key);
+  void fused_update(const Rows& rows, const CdRule& rule, LossAccumulator& losses);
+
+  Crbm& crbm_;
+  std::optional<RowTile> tile_;
+  // Dynamic biases while the chain runs; the fused chain leaves data − reconstruction there.
+  Matrix visible_data_, visible_, visible_bias_;  // [batch x visible]
+  Matrix hidden_data_, hidden_, hidden_bias_;     // [batch x hidden]
+  Matrix row_losses_;                             // [1 x batch], fused
+  // Composed only.
+  Matrix hidden_sample_;
+  Matrix gradient_W_, gradient_A_, gradient_B_, gradient_a_, gradient_b_;
+  Matrix velocity_W_, velocity_A_, velocity_B_, velocity_a_, velocity_b_;
+};
+
+}  // namespace mcdbn

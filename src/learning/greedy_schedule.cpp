@@ -1,0 +1,312 @@
+#include "mcdbn/learning/greedy_schedule.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "device/pointwise.hpp"
+#include "learning/contrastive_divergence.hpp"
+#include "learning/divergence_guard.hpp"
+#include "learning/minibatch.hpp"
+#include "learning/multi_prediction.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// Phases of a layer's random numbers that Gibbs steps do not use (those count from 0).
+enum RandomPhase : std::uint16_t { kShufflePhase = 0x7000, kWeightPhase = 0x7100 };
+
+/// The random streams of Algorithm 1's parts.
+enum RandomStream : std::uint16_t { kPoseStream = 0, kTrackStream = 64, kMrbmStream = 128 };
+
+RandomKey key_of(const LearningSettings& learning, std::uint16_t stream, std::uint32_t step,
+                 std::uint16_t phase) {
+  return {learning.seed, step, stream, phase};
+}
+
+class EpochClock {
+ public:
+  double windows_per_s(std::size_t windows) {
+    const auto now = std::chrono::steady_clock::now();
+    const double elapsed_s = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return static_cast<double>(windows) / elapsed_s;
+  }
+  void restart() { last_ = std::chrono::steady_clock::now(); }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+bool is_health_epoch(std::size_t epoch, std::size_t epochs) {
+  constexpr std::size_t kEvery = 5;
+  return epoch == 1 || epoch == epochs || epoch % kEvery == 0;
+}
+
+/// Runs one stage's epochs: shuffle, all mini-batches, one read of the losses, guard, report.
+/// @param health called now and then for the report
+/// @param mini_batch called with (epoch, first index entry, global step)
+template <typename Health, typename MiniBatch>
+void run_epochs(const std::string& stage, std::size_t epochs, MinibatchSchedule& schedule,
+                LossAccumulator& losses, DivergenceGuard guard, const RandomKey& shuffle_key,
+                const EpochObserver& observer, const Health& health, const MiniBatch& mini_batch) {
+  EpochClock clock;
+  std::uint32_t step = 0;
+  for (std::size_t epoch = 1; epoch <= epochs; ++epoch) {
+    RandomKey key = shuffle_key;
+    key.step = static_cast<std::uint32_t>(epoch);
+    schedule.shuffle(key);
+    for (std::size_t i = 0; i < schedule.batch_count(); ++i)
+      mini_batch(epoch, schedule.first_of(i), step++);
+    double loss = 0;
+    const auto sums = losses.read_and_reset();
+    for (const float sum : sums)
+      loss += sum / static_cast<double>(schedule.batch_count() * sums.size());
+    guard.check(epoch, loss);
+    if (observer) {
+      EpochReport report;
+      report.stage = stage;
+      report.epoch = epoch;
+      report.epochs = epochs;
+      report.loss = loss;
+      report.windows_per_s = clock.windows_per_s(schedule.batch_count() * schedule.batch());
+      report.stage_progress = static_cast<double>(epoch) / static_cast<double>(epochs);
+      if (is_health_epoch(epoch, epochs)) report.health = health();
+      observer(report);
+      clock.restart();
+    }
+  }
+}
+
+CdRule rule_for(const CdSettings& settings, std::size_t epoch) {
+  const auto momentum =
+      static_cast<float>(epoch > settings.momentum_from_epoch ? settings.momentum : 0.0);
+  const auto decay = static_cast<float>(settings.weight_decay);
+  CdRule rule;
+  rule.gibbs_steps = settings.gibbs_steps;
+  rule.W = {static_cast<float>(settings.rate), momentum, decay};
+  rule.A = {static_cast<float>(settings.rate_A), momentum, decay};
+  rule.B = {static_cast<float>(settings.rate_B), momentum, decay};
+  return rule;
+}
+
+/// Adam's rate over the run: flat, then falling, so that the last epochs average out the noise.
+double falling_rate(double rate, double progress) {
+  constexpr double kFlat = 0.5, kEnd = 0.02;
+  return progress < kFlat ? rate : rate * (1.0 - (1.0 - kEnd) * (progress - kFlat) / (1.0 - kFlat));
+}
+
+/// Mean over the rows that have a code. @return [1 x dimension]
+MatrixF mean_of(const Sequences& sequences) {
+  RowVectorD sum = RowVectorD::Zero(static_cast<Eigen::Index>(sequences.values.columns()));
+  const MatrixF values = sequences.values.to_host();
+  const auto rows = sequences.window_rows(0);
+  for (const std::int32_t row : rows) sum += values.row(row).cast<double>();
+  return (sum / static_cast<double>(std::max<std::size_t>(rows.size(), 1))).cast<float>();
+}
+
+/// Work of a stage in multiply-adds, to show progress over all of them.
+double crbm_cost(const CrbmShape& shape, const CdSettings& settings) {
+  const double v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
+  const double histories = 2.0 * static_cast<double>(shape.order) * v * (v + h);
+  return static_cast<double>(settings.epochs) *
+         (histories + (2.0 * static_cast<double>(settings.gibbs_steps) + 3.0) * v * h);
+}
+
+double mrbm_cost(std::size_t track, std::size_t pose, const LearningSettings& learning) {
+  return static_cast<double>(learning.mrbm.epochs) * 6.0 *
+         static_cast<double>(learning.mrbm.mean_field_steps) *
+         static_cast<double>((track + pose) * learning.mrbm_hidden);
+}
+
+/// Turns each stage's progress into that of the whole run.
+class OverallProgress {
+ public:
+  OverallProgress(EpochObserver observer, double total)
+      : observer_(std::move(observer)), total_(total) {}
+
+  EpochObserver stage(double cost) {
+    const double before = done_;
+    done_ += cost;
+    if (!observer_) return {};
+    return [this, before, cost](EpochReport report) {
+      report.overall_progress = (before + cost * report.stage_progress) / total_;
+      observer_(report);
+    };
+  }
+
+ private:
+  EpochObserver observer_;
+  double total_;
+  double done_ = 0;
+};
+
+std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings& learning) {
+  std::vector<CrbmShape> shapes{{visible, learning.hidden, learning.order, VisibleKind::gaussian}};
+  while (shapes.size() < learning.layers)
+    shapes.push_back({learning.hidden, learning.hidden, learning.order, VisibleKind::binary});
+  return shapes;
+}
+
+const CdSettings& settings_for(const CrbmShape& shape, const LearningSettings& learning) {
+  return shape.kind == VisibleKind::gaussian ? learning.gaussian : learning.binary;
+}
+
+struct TrainedCdbn {
+  Cdbn cdbn;
+  Sequences code;
+};
+
+CrbmParameters small_weights(const CrbmShape& shape, const LearningSettings& learning,
+                             std::uint16_t stream) {
+  return CrbmParameters::random(shape, settings_for(shape, learning).initial_deviation,
+                                key_of(learning, stream, 0, kWeightPhase));
+}
+
+/// @param start weights to start from; nothing: small random ones
+TrainedCdbn train_cdbn(Device& device, std::span<const MatrixF> clips,
+                       const LearningSettings& learning, const Cdbn* start,
+                       std::uint16_t first_stream, const std::string& name,
+                       OverallProgress& progress) {
+  TrainedCdbn trained;
+  trained.code = Sequences::from_host(device, clips);
+  std::uint16_t stream = first_stream;
+  for (const CrbmShape& shape : layer_shapes(trained.code.values.columns(), learning)) {
+    const CdSettings& settings = settings_for(shape, learning);
+    const std::size_t layer = trained.cdbn.layers.size();
+    trained.cdbn.layers.push_back(train_crbm(
+        device, trained.code,
+        start ? start->layers.at(layer).to_host() : small_weights(shape, learning, stream),
+        settings, learning, stream, progress.stage(crbm_cost(shape, settings)),
+        fmt::format("{}.{}", name, layer)));
+    ++stream;
+    trained.code = up_pass(trained.cdbn.layers.back(), trained.code);
+  }
+  return trained;
+}
+
+MatrixF logit(const MatrixF& p) {
+  const auto safe = p.array().max(1e-4F).min(1.0F - 1e-4F);
+  return (safe / (1.0F - safe)).log().matrix();
+}
+
+MrbmParameters small_weights(const Sequences& track, const Sequences& pose,
+                             const LearningSettings& learning) {
+  MrbmParameters initial = MrbmParameters::random(
+      track.values.columns(), pose.values.columns(), learning.mrbm_hidden,
+      learning.mrbm.initial_deviation, key_of(learning, kMrbmStream, 0, kWeightPhase));
+  // So that the mean field starts near the codes' own means rather than at one half.
+  initial.a = {logit(mean_of(track)), logit(mean_of(pose))};
+  return initial;
+}
+
+/// Rows t such that both the 3D code of t and the 2D code of t + look_ahead exist.
+std::vector<std::int32_t> paired_rows(const Sequences& codes, std::size_t look_ahead) {
+  std::vector<std::int32_t> rows;
+  for (const auto& clip : codes.clips)
+    for (std::size_t t = codes.valid_from; t + look_ahead < clip.frames; ++t)
+      rows.push_back(static_cast<std::int32_t>(clip.first + t));
+  return rows;
+}
+
+/// A hundred pairs of codes at most, for mrbm_health. @return [rows x dimension] of each modality
+std::pair<MatrixF, MatrixF> some_pairs(const Sequences& track, const Sequences& pose,
+                                       std::size_t look_ahead) {
+  constexpr std::size_t kMost = 100;
+  const auto rows = paired_rows(pose, look_ahead);
+  std::vector<std::int32_t> some(std::min(kMost, rows.size()));
+  for (std::size_t i = 0; i < some.size(); ++i) some[i] = rows[i * rows.size() / some.size()];
+  Device& device = pose.values.device();
+  const IndexBuffer index(device, some);
+  const auto gathered = [&](const Matrix& values, int shift) {
+    Matrix out(device, some.size(), values.columns());
+    gather(Rows::indexed(values, index, 0, some.size(), shift), out);
+    return out.to_host();
+  };
+  return {gathered(track.values, static_cast<int>(look_ahead)), gathered(pose.values, 0)};
+}
+
+}  // namespace
+
+Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
+                const CdSettings& settings, const LearningSettings& learning, std::uint16_t stream,
+                const EpochObserver& observer, const std::string& stage) {
+  const CrbmShape shape = initial.shape;
+  initial.visible_mean = mean_of(visible);
+  Crbm crbm(device, initial);
+  MinibatchSchedule schedule(device, visible.window_rows(shape.order), learning.batch,
+                             learning.least_batches);
+  ContrastiveDivergence cd(crbm, schedule.batch());
+  LossAccumulator losses(device, 1, schedule.batch());
+  const std::vector<MatrixF> windows =
+      observer ? health_windows(visible, shape.order + kFreeRunFrames) : std::vector<MatrixF>{};
+  const std::string kind = shape.kind == VisibleKind::gaussian ? "gaussian" : "binary";
+  DivergenceGuard guard(
+      stage,
+      fmt::format("lower --{0}-rate (now {1:g}), --{0}-rate-A ({2:g}), --{0}-rate-B ({3:g}) or "
+                  "--{0}-initial-deviation ({4:g})",
+                  kind, settings.rate, settings.rate_A, settings.rate_B,
+                  settings.initial_deviation));
+  run_epochs(
+      stage, settings.epochs, schedule, losses, guard, key_of(learning, stream, 0, kShufflePhase),
+      observer, [&] { return crbm_health(crbm.to_host(), windows); },
+      [&](std::size_t epoch, std::size_t first, std::uint32_t step) {
+        const Rows rows = Rows::indexed(visible.values, schedule.index(), first, schedule.batch());
+        cd.step(rows, rule_for(settings, epoch), key_of(learning, stream, step, 0), losses);
+      });
+  return crbm;
+}
+
+Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
+                const MrbmParameters& initial, const LearningSettings& learning,
+                std::uint16_t stream, const EpochObserver& observer) {
+  const MultiPredictionSettings& settings = learning.mrbm;
+  Mrbm mrbm(device, initial);
+  MinibatchSchedule schedule(device, paired_rows(pose, learning.look_ahead), learning.batch,
+                             learning.least_batches);
+  MultiPrediction multi_prediction(mrbm, settings.mean_field_steps, schedule.batch());
+  LossAccumulator losses(device, 2, schedule.batch());
+  DivergenceGuard guard(
+      "mrbm", fmt::format("lower --mrbm-rate (now {:g}) or --mrbm-initial-deviation (now {:g})",
+                          settings.rate, settings.initial_deviation));
+  const auto [track_rows, pose_rows] = some_pairs(track, pose, learning.look_ahead);
+  AdamRule rule;
+  rule.weight_decay = static_cast<float>(settings.weight_decay);
+  run_epochs(
+      "mrbm", settings.epochs, schedule, losses, guard, key_of(learning, stream, 0, kShufflePhase),
+      observer, [&] { return mrbm_health(mrbm.to_host(), track_rows, pose_rows); },
+      [&](std::size_t, std::size_t first, std::uint32_t step) {
+        const double progress = static_cast<double>(step) /
+                                static_cast<double>(settings.epochs * schedule.batch_count());
+        rule.rate = static_cast<float>(falling_rate(settings.rate, progress));
+        const auto ahead = static_cast<int>(learning.look_ahead);
+        multi_prediction.step(
+            Rows::indexed(track.values, schedule.index(), first, schedule.batch(), ahead),
+            Rows::indexed(pose.values, schedule.index(), first, schedule.batch()), rule, losses);
+      });
+  return mrbm;
+}
+
+Mcdbn train_greedy(Device& device, const PairedClips& clips, const LearningSettings& learning,
+                   const EpochObserver& observer, const Mcdbn* start) {
+  learning.validate();
+  const double last_cost = mrbm_cost(learning.hidden, learning.hidden, learning);
+  double total = last_cost;
+  for (const Eigen::Index dimension : {clips.poses.front().cols(), clips.tracks.front().cols()})
+    for (const CrbmShape& shape : layer_shapes(static_cast<std::size_t>(dimension), learning))
+      total += crbm_cost(shape, settings_for(shape, learning));
+  OverallProgress progress(observer, total);
+  TrainedCdbn pose = train_cdbn(device, clips.poses, learning, start ? &start->pose : nullptr,
+                                kPoseStream, "pose", progress);
+  TrainedCdbn track = train_cdbn(device, clips.tracks, learning, start ? &start->track : nullptr,
+                                 kTrackStream, "track", progress);
+  Mrbm mrbm =
+      train_mrbm(device, track.code, pose.code,
+                 start ? start->mrbm.to_host() : small_weights(track.code, pose.code, learning),
+                 learning, kMrbmStream, progress.stage(last_cost));
+  return {std::move(track.cdbn), std::move(pose.cdbn), std::move(mrbm), learning.look_ahead,
+          learning.mrbm.mean_field_steps};
+}
+
+}  // namespace mcdbn

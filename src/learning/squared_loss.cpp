@@ -1,0 +1,40 @@
+#include "learning/squared_loss.hpp"
+
+#include <algorithm>
+
+#include "device/kernel_arguments.hpp"
+#include "device/pointwise.hpp"
+
+namespace mcdbn {
+
+void require_windows(const SequenceWindows& windows, const Matrix& prediction, const Matrix& target,
+                     const Matrix& error) {
+  require(prediction.rows() >= windows.rows() && target.rows() >= windows.rows() &&
+              error.rows() >= windows.rows() && prediction.columns() == target.columns() &&
+              error.columns() == target.columns(),
+          "window loss: shapes differ");
+}
+
+SquaredLoss::SquaredLoss(Device& device, const SequenceWindows& windows, double weight)
+    : windows_(windows), weight_(weight), losses_(device, windows.rows(), 1), sum_(device, 1, 1) {}
+
+void SquaredLoss::differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) {
+  require_windows(windows_, prediction, target, error);
+  Device& device = error.device();
+  const Defines defines{{"DIMENSION", to_int(target.columns())}, {"LD", to_int(target.stride())}};
+  launch(device, device.programs().kernel("squared_loss.cl", "squared_loss", defines),
+         {{windows_.rows(), 1}}, prediction.buffer(), target.buffer(), to_int(windows_.count),
+         to_int(windows_.frames), to_int(windows_.lead), static_cast<float>(weight_),
+         error.buffer(), losses_.buffer(), to_int(losses_.stride()));
+  column_sum(losses_, 1.0F, 1.0F, sum_);
+  ++steps_;
+}
+
+double SquaredLoss::read_and_reset() {
+  const double sum = sum_.to_host()(0) / static_cast<double>(std::max(steps_, 1UL));
+  sum_.set_zero();
+  steps_ = 0;
+  return sum;
+}
+
+}  // namespace mcdbn

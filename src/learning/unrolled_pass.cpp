@@ -1,0 +1,259 @@
+#include "learning/unrolled_pass.hpp"
+
+#include <algorithm>
+
+#include "device/gemm.hpp"
+#include "device/pointwise.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+std::size_t longest_order(const std::deque<UnrolledNetwork::Layer>& layers) {
+  std::size_t order = 0;
+  for (const auto& layer : layers) order = std::max(order, layer.crbm.shape().order);
+  return order;
+}
+
+std::size_t total_order(const std::deque<UnrolledNetwork::Layer>& layers) {
+  std::size_t order = 0;
+  for (const auto& layer : layers) order += layer.crbm.shape().order;
+  return order;
+}
+
+/// `count` rows from `first` on, each with the `order` frames that follow it.
+Rows following(const Matrix& errors, std::size_t first, std::size_t count, std::size_t step,
+               std::size_t order) {
+  Rows rows = Rows::strided(errors, first + 1, count, step, order);
+  rows.columns = order * errors.stride();
+  return rows;
+}
+
+GemmOptions added() {
+  GemmOptions options;
+  options.beta = 1.0F;
+  return options;
+}
+
+GemmOptions through_units(const Rows* units, float kept_share = 1.0F) {
+  GemmOptions options;
+  options.activation = Activation::centered_sigmoid_gradient;
+  options.factor = units;
+  options.kept_share = kept_share;
+  return options;
+}
+
+}  // namespace
+
+UnrolledPass::UnrolledPass(UnrolledNetwork& network, Modality present,
+                           const SequenceWindows& windows)
+    : network_(network),
+      present_(present),
+      windows_(windows),
+      rows_(windows.rows()),
+      steps_(network.mean_field_steps()),
+      up_layers_(network.layers(present)),
+      down_layers_(network.layers(other(present))) {
+  if (windows.first < std::max(total_order(up_layers_), longest_order(down_layers_)) ||
+      windows.lead < windows.first || windows.lead >= windows.frames)
+    throw ShapeError("joint pass: the windows are too short for the layers' histories");
+  Device& device = network.device();
+  const std::size_t code = up_layers_.back().crbm.shape().hidden,
+                    absent_code = down_layers_.back().crbm.shape().hidden,
+                    shared = network.mrbm().hidden();
+  input_ = Matrix(device, rows_, up_layers_.front().crbm.shape().visible);
+  for (const auto& layer : up_layers_) {
+    up_.emplace_back(device, rows_, layer.crbm.shape().hidden);
+    // Rows past the end stay zero: no error comes from behind a window.
+    up_errors_.emplace_back(device, rows_ + layer.crbm.shape().order, layer.crbm.shape().hidden);
+  }
+  drive_ = Matrix(device, rows_, shared);
+  drive_error_ = Matrix(device, rows_, shared);
+  // Block 0 is the start of the mean field, zeros, which is −½ about zero.
+  values_ =
+      Matrix::from_host(device, MatrixF::Constant(static_cast<Eigen::Index>((steps_ + 1) * rows_),
+                                                  static_cast<Eigen::Index>(absent_code), -0.5F));
+  value_errors_ = Matrix(device, steps_ * rows_, absent_code);
+  hidden_ = Matrix(device, steps_ * rows_, shared);
+  hidden_errors_ = Matrix(device, steps_ * rows_, shared);
+  for (const auto& layer : down_layers_) {
+    states_.push_back(Matrix::filled_with_row(layer.crbm.visible_mean, rows_));
+    state_errors_.emplace_back(device, rows_ + layer.crbm.shape().order,
+                               layer.crbm.shape().visible);
+  }
+  if (code != network.mrbm().visible(present))
+    throw ShapeError("joint pass: the MRBM does not fit the CDBN's code");
+}
+
+void UnrolledPass::forward(const Rows& present, float kept_share, const RandomKey& key) {
+  kept_share_ = kept_share;
+  drop_out_key_ = key;
+  gather(present, input_);
+  up_pass();
+  mean_field();
+  down_pass();
+}
+
+void UnrolledPass::drop_out(const Rows& units, std::size_t alike) {
+  if (kept_share_ < 1.0F) dropout(units, kept_share_, drop_out_key_, alike);
+}
+
+void UnrolledPass::up_pass() {
+  const Matrix* below = &input_;
+  for (std::size_t i = 0; i < up_layers_.size(); ++i) {
+    const Crbm& layer = up_layers_[i].crbm;
+    const std::size_t order = layer.shape().order;
+    ++drop_out_key_.phase;
+    const Rows units = from(up_[i], order);
+    GemmOptions options;
+    options.bias = &layer.b;
+    options.activation = order == 0 ? Activation::centered_sigmoid : Activation::none;
+    gemm(from(*below, order), layer.W, units, options);
+    if (order > 0) {
+      options = added();
+      options.activation = Activation::centered_sigmoid;
+      gemm(layer.history(from(*below, order)), layer.B, units, options);
+    }
+    drop_out(Rows(up_[i], 0, rows_), windows_.frames);
+    below = &up_[i];
+  }
+}
+
+void UnrolledPass::mean_field() {
+  const Mrbm& mrbm = network_.mrbm();
+  const std::size_t p = index_of(present_), q = index_of(other(present_));
+  GemmOptions bias;
+  bias.bias = &mrbm.b;
+  gemm(up_.back(), mrbm.W[p], drive_, bias);
+  ++drop_out_key_.phase;
+  for (std::size_t t = 1; t <= steps_; ++t) {
+    GemmOptions up, down;
+    up.bias = &drive_;
+    up.activation = down.activation = Activation::centered_sigmoid;
+    gemm(value(t - 1), mrbm.W[q], hidden(t), up);
+    drop_out(hidden(t), windows_.frames);  // the same units in every step
+    down.bias = &mrbm.a[q];
+    gemm(hidden(t), mrbm.W_transposed[q], value(t), down);
+  }
+}
+
+void UnrolledPass::down_pass() {
+  for (std::size_t i = down_layers_.size(); i-- > 0;) {
+    const Crbm& layer = down_layers_[i].crbm;
+    const bool is_top = i + 1 == down_layers_.size();
+    const bool is_binary = layer.shape().kind == VisibleKind::binary;
+    const Activation activation = is_binary ? Activation::centered_sigmoid : Activation::none;
+    const std::size_t order = layer.shape().order;
+    ++drop_out_key_.phase;
+    for (std::size_t frame = windows_.first; frame < windows_.frames; ++frame) {
+      const Rows state = at(states_[i], frame);
+      const Rows above =
+          is_top ? Rows::strided(values_, steps_ * rows_ + frame, windows_.count, windows_.frames)
+                 : at(states_[i + 1], frame);
+      GemmOptions options;
+      options.bias = &layer.a;
+      if (order == 0) options.activation = activation;
+      gemm(above, layer.W_transposed, state, options);
+      if (order > 0) {
+        options = added();
+        options.activation = activation;
+        gemm(layer.history(state), layer.A, state, options);
+      }
+      if (is_binary) drop_out(state, 1);  // the same units in every frame
+    }
+  }
+}
+
+void UnrolledPass::backward() {
+  down_pass_backward();
+  mean_field_backward();
+  up_pass_backward();
+}
+
+void UnrolledPass::down_pass_backward() {
+  const std::size_t first = windows_.first;
+  for (std::size_t i = 0; i < down_layers_.size(); ++i) {
+    UnrolledNetwork::Layer& layer = down_layers_[i];
+    const std::size_t order = layer.crbm.shape().order;
+    const bool is_binary = layer.crbm.shape().kind == VisibleKind::binary;
+    Matrix& errors = state_errors_[i];
+    // Through time: what a frame did to those that had it as history.
+    for (std::size_t frame = windows_.frames; frame-- > first;) {
+      const Rows state = at(states_[i], frame), error = at(errors, frame);
+      GemmOptions options = is_binary ? through_units(&state, kept_share_) : GemmOptions{};
+      options.beta = 1.0F;
+      if (order > 0)
+        gemm(following(errors, frame, windows_.count, windows_.frames, order), layer.A_following,
+             error, options);
+      else if (is_binary)
+        apply_epilogue(error, options);
+    }
+    const Rows error = Rows(errors, first, rows_ - first);
+    const bool is_top = i + 1 == down_layers_.size();
+    const Rows above =
+        is_top ? Rows(values_, steps_ * rows_ + first, rows_ - first) : from(states_[i + 1], first);
+    gemm_transposed_a(error, above, layer.W.gradient, 1.0F, 1.0F);
+    if (order > 0)
+      gemm_transposed_a(layer.crbm.history(from(states_[i], first)), error, layer.A.gradient, 1.0F,
+                        1.0F);
+    column_sum(error, 1.0F, 1.0F, layer.a.gradient);
+    if (is_top)
+      gemm(error, layer.crbm.W, Rows(value_errors_, (steps_ - 1) * rows_ + first, rows_ - first),
+           through_units(&above));
+    else
+      gemm(error, layer.crbm.W, Rows(state_errors_[i + 1], first, rows_ - first));
+  }
+}
+
+void UnrolledPass::mean_field_backward() {
+  Mrbm& mrbm = network_.mrbm();
+  const Modality absent = other(present_);
+  const std::size_t p = index_of(present_), q = index_of(absent);
+  const auto value_error = [&](std::size_t t) {
+    return Rows(value_errors_, (t - 1) * rows_, rows_);
+  };
+  const auto hidden_error = [&](std::size_t t) {
+    return Rows(hidden_errors_, (t - 1) * rows_, rows_);
+  };
+  for (std::size_t t = steps_; t >= 1; --t) {
+    const Rows h = hidden(t), v = value(t - 1);
+    gemm(value_error(t), mrbm.W[q], hidden_error(t), through_units(&h, kept_share_));
+    if (t > 1) gemm(hidden_error(t), mrbm.W_transposed[q], value_error(t - 1), through_units(&v));
+  }
+  block_sum(hidden_errors_, drive_error_);
+  Matrix& gradient = network_.mrbm_W(absent).gradient;
+  gemm_transposed_a(value_errors_, hidden_, gradient, 1.0F, 1.0F);
+  gemm_transposed_a(Rows(values_, 0, steps_ * rows_), hidden_errors_, gradient, 1.0F, 1.0F);
+  column_sum(value_errors_, 1.0F, 1.0F, network_.mrbm_a(absent).gradient);
+  gemm_transposed_a(up_.back(), drive_error_, network_.mrbm_W(present_).gradient, 1.0F, 1.0F);
+  column_sum(drive_error_, 1.0F, 1.0F, network_.mrbm_b().gradient);
+  const Rows code(up_.back());
+  gemm(drive_error_, mrbm.W_transposed[p], Rows(up_errors_.back(), 0, rows_),
+       through_units(&code, kept_share_));
+}
+
+void UnrolledPass::up_pass_backward() {
+  for (std::size_t i = up_layers_.size(); i-- > 0;) {
+    UnrolledNetwork::Layer& layer = up_layers_[i];
+    const std::size_t order = layer.crbm.shape().order;
+    const Matrix& below = i > 0 ? up_[i - 1] : input_;
+    const Rows error(up_errors_[i], order, rows_ - order);
+    gemm_transposed_a(from(below, order), error, layer.W.gradient, 1.0F, 1.0F);
+    if (order > 0)
+      gemm_transposed_a(layer.crbm.history(from(below, order)), error, layer.B.gradient, 1.0F,
+                        1.0F);
+    column_sum(error, 1.0F, 1.0F, layer.b.gradient);
+    if (i == 0) break;
+    const Rows units(below), error_below(up_errors_[i - 1], 0, rows_);
+    GemmOptions options = through_units(&units, kept_share_);
+    if (order == 0) {
+      gemm(Rows(up_errors_[i], 0, rows_), layer.crbm.W_transposed, error_below, options);
+      continue;
+    }
+    gemm(Rows(up_errors_[i], 0, rows_), layer.crbm.W_transposed, error_below);
+    options.beta = 1.0F;
+    gemm(following(up_errors_[i], 0, rows_, 1, order), layer.B_following, error_below, options);
+  }
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,71 @@
+#include "learning/window_sampler.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace mcdbn {
+namespace {
+
+std::int32_t row_of(const Sequences::Clip& clip, std::int64_t frame) {
+  const auto last = static_cast<std::int64_t>(clip.frames) - 1;
+  return static_cast<std::int32_t>(static_cast<std::int64_t>(clip.first) +
+                                   std::clamp<std::int64_t>(frame, 0, last));
+}
+
+}  // namespace
+
+WindowSampler::WindowSampler(const PairedClips& clips, const SequenceWindows& windows,
+                             const LearningSettings& learning)
+    : windows_(windows), look_ahead_(learning.look_ahead), seed_(learning.seed) {
+  const auto group = [&](std::size_t clip) {
+    return clips.groups.empty() ? 0 : clips.groups[clip];
+  };
+  std::map<std::size_t, double> frames_of;
+  for (std::size_t i = 0; i < clips.poses.size(); ++i)
+    frames_of[group(i)] += static_cast<double>(clips.poses[i].rows());
+  std::size_t first = 0;
+  double end = 0;
+  for (std::size_t i = 0; i < clips.poses.size(); ++i) {
+    const auto frames = static_cast<std::size_t>(clips.poses[i].rows());
+    clips_.push_back({first, frames});
+    first += frames;
+    end += static_cast<double>(frames) *
+           std::pow(frames_of[group(i)], learning.fine_tuning.people_power - 1.0);
+    ends_.push_back(end);
+  }
+}
+
+std::vector<std::int32_t> WindowSampler::rows(std::size_t step) const {
+  std::vector<std::int32_t> rows(2 * windows_.rows());
+  for (std::size_t i = 0; i < windows_.count; ++i) {
+    const RandomKey key{seed_, static_cast<std::uint32_t>(step), kStream, 0};
+    const auto row = static_cast<std::uint32_t>(i);
+    const Sequences::Clip& clip = draw_clip(random_uniform(key, row, 0));
+    const auto judged = windows_.frames - windows_.lead;
+    const double starts = clip.frames > judged ? static_cast<double>(clip.frames - judged) : 0.0;
+    // Now and then the clip's very first frame: there is no history, and every clip has it.
+    constexpr float kFromStart = 0.1F;
+    const double where = random_uniform(key, row, 1) < kFromStart
+                             ? 0.0
+                             : std::floor((starts + 1.0) * random_uniform(key, row, 2));
+    const auto lead = static_cast<std::int64_t>(windows_.lead);
+    for (std::size_t t = 0; t < windows_.frames; ++t) {
+      const std::int64_t frame =
+          static_cast<std::int64_t>(where) + static_cast<std::int64_t>(t) - lead;
+      const std::size_t at = i * windows_.frames + t;
+      rows[at] = row_of(clip, frame);
+      rows[windows_.rows() + at] = row_of(clip, frame + static_cast<std::int64_t>(look_ahead_));
+    }
+  }
+  return rows;
+}
+
+const Sequences::Clip& WindowSampler::draw_clip(float uniform) const {
+  const double at = static_cast<double>(uniform) * ends_.back();
+  const auto found = std::upper_bound(ends_.begin(), ends_.end(), at);
+  return clips_[std::min<std::size_t>(static_cast<std::size_t>(found - ends_.begin()),
+                                      clips_.size() - 1)];
+}
+
+}  // namespace mcdbn

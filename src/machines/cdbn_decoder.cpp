@@ -1,0 +1,121 @@
+#include "machines/cdbn_decoder.hpp"
+
+#include <algorithm>
+
+#include "device/gemm.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+Activation activation_of(const Crbm& layer) {
+  return layer.shape().kind == VisibleKind::binary ? Activation::sigmoid : Activation::none;
+}
+
+}  // namespace
+
+CdbnDecoder::CdbnDecoder(const Cdbn& cdbn, const Matrix& code, std::size_t sequences)
+    : cdbn_(cdbn),
+      code_(code),
+      sequences_(sequences),
+      frames_(sequences ? code.rows() / sequences : 0) {
+  if (sequences == 0 || code.rows() % sequences != 0 || code.columns() != cdbn.code_dimension())
+    throw ShapeError("decoder: the code does not fit the CDBN");
+  for (const Crbm& layer : cdbn.layers)
+    states_.push_back(Matrix::filled_with_row(layer.visible_mean, code.rows()));
+}
+
+void CdbnDecoder::decode(std::size_t first, std::size_t last, const RegenerationOptions& options,
+                         bool fused) {
+  for (const Crbm& layer : cdbn_.layers)
+    if (first < layer.shape().order) throw ShapeError("decoder: the first frame has no history");
+  const bool sampled = options.drawn_share() > 0.0 && options.sampling.gibbs_steps > 0;
+  last = std::min(last, frames_);
+  if (first >= last) return;
+  const auto tiles = fused ? fused_tiles(sampled) : std::nullopt;
+  if (tiles) {
+    fused_decode(first, last, options, *tiles);
+    return;
+  }
+  if (!sampled) drive_layer(states_.size() - 1, first, last);
+  for (std::size_t frame = first; frame < last; ++frame) {
+    if (sampled) sample_top_layer(frame, options);
+    down_pass(frame, !sampled);
+  }
+}
+
+void CdbnDecoder::drive_layer(std::size_t layer, std::size_t first, std::size_t last) {
+  const Crbm& crbm = cdbn_.layers[layer];
+  const bool is_top = layer + 1 == cdbn_.layers.size();
+  GemmOptions drive;
+  drive.bias = &crbm.a;
+  for (std::size_t i = 0; i < sequences_; ++i) {
+    const std::size_t begin = i * frames_ + first;
+    gemm(Rows(is_top ? code_ : states_[layer + 1], begin, last - first), crbm.W_transposed,
+         Rows(states_[layer], begin, last - first), drive);
+  }
+}
+
+void CdbnDecoder::down_pass(std::size_t frame, bool top_is_driven) {
+  for (std::size_t i = cdbn_.layers.size(); i-- > 0;) {
+    const Crbm& layer = cdbn_.layers[i];
+    const Rows state = at(states_[i], frame);
+    const bool is_top = i + 1 == cdbn_.layers.size();
+    if (is_top && !top_is_driven) continue;  // sampled already
+    GemmOptions options;
+    if (is_top) {
+      // The state holds a + code·Wᵀ: what is left is the history's part.
+      options.beta = 1.0F;
+      options.activation = activation_of(layer);
+      gemm(layer.history(state), layer.A, state, options);
+      continue;
+    }
+    options.bias = &layer.a;
+    gemm(layer.history(state), layer.A, state, options);
+    GemmOptions from_above;
+    from_above.beta = 1.0F;
+    from_above.activation = activation_of(layer);
+    gemm(at(states_[i + 1], frame), layer.W_transposed, state, from_above);
+  }
+}
+
+void CdbnDecoder::sample_top_layer(std::size_t frame, const RegenerationOptions& options) {
+  const Crbm& top = cdbn_.layers.back();
+  if (top_.empty()) {
+    for (Matrix* matrix : {&top_, &top_sample_, &top_bias_})
+      *matrix = Matrix(top.device(), sequences_, top.shape().hidden);
+    for (Matrix* matrix : {&below_sample_, &below_bias_})
+      *matrix = Matrix(top.device(), sequences_, top.shape().visible);
+  }
+  const Rows state = at(states_.back(), frame);
+  const Rows below_sample(below_sample_), top_sample(top_sample_);
+  top.dynamic_visible_bias(state, below_bias_);
+  top.dynamic_hidden_bias(state, top_bias_);
+  RandomKey key{options.seed, static_cast<std::uint32_t>(frame), kStream, 0};
+  GemmOptions down, up;
+  down.bias = &below_bias_;
+  down.activation = activation_of(top);
+  down.sampling =
+      top.shape().kind == VisibleKind::binary ? Sampling::bernoulli : Sampling::gaussian;
+  down.sample = &below_sample;
+  up.bias = &top_bias_;
+  up.activation = Activation::sigmoid;
+  up.sampling = Sampling::bernoulli;
+  up.sample = &top_sample;
+  down.temperature = up.temperature = static_cast<float>(options.drawn_share());
+  for (std::size_t k = 0; k < options.sampling.gibbs_steps; ++k) {
+    key.phase = static_cast<std::uint16_t>(2 * k);
+    down.random = key;
+    gemm(k == 0 ? at(code_, frame) : top_sample, top.W_transposed, state, down);
+    key.phase = static_cast<std::uint16_t>(2 * k + 1);
+    up.random = key;
+    gemm(below_sample, top.W, top_, up);
+  }
+  // The state keeps the last means: the down-pass below is mean field (Algorithm 5, line 7).
+  GemmOptions last = down;
+  last.sampling = Sampling::none;
+  last.sample = nullptr;
+  gemm(top_sample, top.W_transposed, state, last);
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,199 @@
+#include "mcdbn/motion_model/model_file.hpp"
+
+#include <fmt/format.h>
+
+#include "base/safetensors.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "motion_model/modalities_json.hpp"
+
+namespace mcdbn {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFormatVersion = 1;
+
+json shape_json(const CrbmShape& shape) {
+  return {{"visible", shape.visible},
+          {"hidden", shape.hidden},
+          {"order", shape.order},
+          {"kind", shape.kind == VisibleKind::gaussian ? "gaussian" : "binary"}};
+}
+
+CrbmShape shape_from(const json& entry) {
+  return {entry.at("visible"), entry.at("hidden"), entry.at("order"),
+          entry.at("kind") == "gaussian" ? VisibleKind::gaussian : VisibleKind::binary};
+}
+
+json put_cdbn(Safetensors& file, const std::string& name, const Cdbn& cdbn) {
+  json shapes = json::array();
+  for (std::size_t i = 0; i < cdbn.layers.size(); ++i) {
+    const CrbmParameters parameters = cdbn.layers[i].to_host();
+    const std::string prefix = fmt::format("{}.{}.", name, i);
+    file.put(prefix + "W", parameters.W);
+    file.put(prefix + "A", parameters.A);
+    file.put(prefix + "B", parameters.B);
+    file.put(prefix + "a", parameters.a);
+    file.put(prefix + "b", parameters.b);
+    file.put(prefix + "visible_mean", parameters.visible_mean);
+    shapes.push_back(shape_json(parameters.shape));
+  }
+  return shapes;
+}
+
+Cdbn get_cdbn(Device& device, const Safetensors& file, const std::string& path,
+              const std::string& name, const json& shapes) {
+  Cdbn cdbn;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    CrbmParameters parameters = CrbmParameters::zeros(shape_from(shapes[i]));
+    const std::string prefix = fmt::format("{}.{}.", name, i);
+    const auto fill = [&](const char* letter, MatrixF& matrix) {
+      matrix = file.get(prefix + letter, path, matrix.rows(), matrix.cols());
+    };
+    fill("W", parameters.W);
+    fill("A", parameters.A);
+    fill("B", parameters.B);
+    fill("a", parameters.a);
+    fill("b", parameters.b);
+    fill("visible_mean", parameters.visible_mean);
+    cdbn.layers.emplace_back(device, parameters);
+  }
+  if (cdbn.layers.empty())
+    throw InputError(path + ": a CDBN without layers; train the model again");
+  return cdbn;
+}
+
+constexpr std::array<const char*, 2> kModalityNames{"track", "pose"};
+
+void put_mrbm(Safetensors& file, const Mrbm& mrbm) {
+  const MrbmParameters parameters = mrbm.to_host();
+  for (std::size_t m = 0; m < 2; ++m) {
+    file.put(fmt::format("mrbm.W_{}", kModalityNames[m]), parameters.W[m]);
+    file.put(fmt::format("mrbm.a_{}", kModalityNames[m]), parameters.a[m]);
+  }
+  file.put("mrbm.b", parameters.b);
+}
+
+Mrbm get_mrbm(Device& device, const Safetensors& file, const std::string& path,
+              const std::array<std::size_t, 2>& visible, std::size_t hidden) {
+  const auto h = static_cast<Eigen::Index>(hidden);
+  MrbmParameters parameters;
+  for (std::size_t m = 0; m < 2; ++m) {
+    const auto v = static_cast<Eigen::Index>(visible[m]);
+    parameters.W[m] = file.get(fmt::format("mrbm.W_{}", kModalityNames[m]), path, v, h);
+    parameters.a[m] = file.get(fmt::format("mrbm.a_{}", kModalityNames[m]), path, 1, v);
+  }
+  parameters.b = file.get("mrbm.b", path, 1, h);
+  return {device, parameters};
+}
+
+json sampling_json(const SamplingRule& rule) {
+  return {{"gibbs_steps", rule.gibbs_steps},
+          {"mrbm_gibbs_steps", rule.mrbm_gibbs_steps},
+          {"steady", rule.steady},
+          {"scale", rule.scale}};
+}
+
+/// Algorithm 5's rule for models that say none.
+SamplingRule sampling_from(const json& about) {
+  if (!about.contains("sampling")) return {};
+  const json& entry = about.at("sampling");
+  return {entry.at("gibbs_steps"), entry.at("mrbm_gibbs_steps"), entry.at("steady"),
+          entry.at("scale")};
+}
+
+json parsed_description(const Safetensors& file, const std::string& path) {
+  const auto text = file.metadata.find("mcdbn");
+  if (text == file.metadata.end()) throw InputError(path + ": not a model of mcdbn-cl");
+  json about = json::parse(text->second);
+  if (about.at("format_version") != kFormatVersion)
+    throw InputError(
+        fmt::format("{}: model format {}, this program reads {}; train the model again", path,
+                    about.at("format_version").dump(), kFormatVersion));
+  return about;
+}
+
+/// What `read` makes of a description, whose errors say which file is damaged.
+template <typename Read>
+auto reading_description(const std::filesystem::path& path, Read&& read) {
+  try {
+    return read();
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: damaged model description: {}", path.string(), error.what()));
+  }
+}
+
+Model model_from(Device& device, const Safetensors& file, const std::string& path) {
+  const json about = parsed_description(file, path);
+  Cdbn track = get_cdbn(device, file, path, "track", about.at("track"));
+  Cdbn pose = get_cdbn(device, file, path, "pose", about.at("pose"));
+  Mrbm mrbm = get_mrbm(device, file, path, {track.code_dimension(), pose.code_dimension()},
+                       about.at("mrbm_hidden"));
+  Model model{{std::move(track), std::move(pose), std::move(mrbm), about.at("look_ahead"),
+               about.at("mean_field_steps"), sampling_from(about), about.value("fills_gaps", true)},
+              modalities_from(about.at("modalities")),
+              {},
+              about.at("config")};
+  for (const json& clip : about.at("training_clips"))
+    model.training_clips.push_back({clip.at("path"), clip.at("fingerprint")});
+  if (about.contains("early_stopping")) {
+    const json& stopped = about.at("early_stopping");
+    model.early_stopping =
+        EarlyStopping{stopped.at("held_out"), stopped.at("steps"), stopped.at("loss")};
+  }
+  return model;
+}
+
+}  // namespace
+
+void save_model(const std::filesystem::path& path, const Model& model) {
+  Safetensors file;
+  json about;
+  about["format_version"] = kFormatVersion;
+  about["track"] = put_cdbn(file, "track", model.network.track);
+  about["pose"] = put_cdbn(file, "pose", model.network.pose);
+  put_mrbm(file, model.network.mrbm);
+  about["mrbm_hidden"] = model.network.mrbm.hidden();
+  about["look_ahead"] = model.network.look_ahead;
+  about["mean_field_steps"] = model.network.mean_field_steps;
+  about["fills_gaps"] = model.network.fills_gaps;
+  about["sampling"] = sampling_json(model.network.sampling);
+  about["modalities"] = modalities_json(model.modalities);
+  about["config"] = model.config;
+  about["training_clips"] = json::array();
+  for (const TrainingClip& clip : model.training_clips)
+    about["training_clips"].push_back({{"path", clip.path}, {"fingerprint", clip.fingerprint}});
+  if (const auto& stopped = model.early_stopping)
+    about["early_stopping"] = {
+        {"held_out", stopped->held_out}, {"steps", stopped->steps}, {"loss", stopped->loss}};
+  file.metadata["mcdbn"] = about.dump();
+  write_safetensors(path, file);
+}
+
+Model load_model(Device& device, const std::filesystem::path& path) {
+  const Safetensors file = read_safetensors(path);
+  return reading_description(path, [&] { return model_from(device, file, path.string()); });
+}
+
+nlohmann::json describe_model(const std::filesystem::path& path) {
+  const Safetensors file = read_safetensors(path);
+  return reading_description(path, [&] {
+    const json about = parsed_description(file, path.string());
+    const json& config = about.at("config");
+    std::size_t numbers = 0;
+    for (const auto& [name, tensor] : file.tensors) numbers += tensor.values.size();
+    json clips = json::array();
+    for (const json& clip : about.at("training_clips"))
+      clips.push_back(
+          std::filesystem::path(clip.at("path").get<std::string>()).filename().string());
+    json description = {{"training_clips", clips}, {"parameters", numbers}};
+    for (const char* name : {"fps", "order", "layers", "hidden", "mrbm-hidden", "camera.azimuth",
+                             "camera.elevation", "seed"})
+      if (config.contains(name)) description[name] = config.at(name);
+    for (const char* name : {"look_ahead", "mean_field_steps", "early_stopping"})
+      if (about.contains(name)) description[name] = about.at(name);
+    return description;
+  });
+}
+
+}  // namespace mcdbn

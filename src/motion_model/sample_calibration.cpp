@@ -1,0 +1,82 @@
+#include "motion_model/sample_calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/machines/regeneration.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr double kMost_s = 600.0;
+/// As far as the answers are off themselves, the best of ten samples of strangers is 2 mm worse
+/// than the single answer; half as far, it is better, and samples differ as real walks do in both.
+constexpr double kShareOfError = 0.5;
+
+/// Joints about the root at rest, file units. @return for each clip [frames x 3·joints]
+std::vector<MatrixD> joints_about_root(const Modalities& modalities,
+                                       const std::vector<MatrixF>& poses) {
+  const PoseFeatures& features = modalities.pose_features;
+  std::vector<MatrixD> result;
+  for (const MatrixF& pose : poses)
+    result.push_back(joint_positions(
+        features.decode(modalities.pose_scale.invert(pose), Eigen::Matrix3d::Identity(),
+                        features.skeleton(), modalities.fps, MatrixD::Zero(pose.rows(), 3))));
+  return result;
+}
+
+/// Σ distances of joints in `many` from where `single` has them, for each of the copies in `many`.
+double distance(const std::vector<MatrixD>& many, const std::vector<MatrixD>& single) {
+  const std::size_t copies = many.size() / single.size();
+  double sum = 0;
+  for (std::size_t i = 0; i < many.size(); ++i) {
+    const MatrixD difference = many[i] - single[i / copies];
+    for (Eigen::Index joint = 0; joint < difference.cols(); joint += 3)
+      sum += difference.middleCols<3>(joint).rowwise().norm().sum();
+  }
+  return sum / static_cast<double>(copies);
+}
+
+/// Every so many clips, so that memory does not grow with the corpus: ten minutes say enough.
+std::vector<MatrixF> ten_minutes(const std::vector<MatrixF>& clips, double fps) {
+  double frames = 0;
+  for (const MatrixF& clip : clips) frames += static_cast<double>(clip.rows());
+  const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil(frames / (kMost_s * fps))));
+  std::vector<MatrixF> some;
+  for (std::size_t i = 0; i < clips.size(); i += every) some.push_back(clips[i]);
+  return some;
+}
+
+}  // namespace
+
+SamplingRule calibrated_sampling(const Mcdbn& network, const Modalities& modalities,
+                                 const std::vector<MatrixF>& all_tracks,
+                                 const std::vector<MatrixF>& all_poses) {
+  if (all_tracks.size() != all_poses.size())
+    throw ShapeError("calibration: as many tracks as poses are wanted");
+  const std::vector<MatrixF> tracks = ten_minutes(all_tracks, modalities.fps),
+                             poses = ten_minutes(all_poses, modalities.fps);
+  constexpr std::size_t kSamples = 4, kHalvings = 6;
+  RegenerationOptions options;
+  const std::vector<MatrixD> answers =
+      joints_about_root(modalities, regenerate(network, tracks, options));
+  const double wanted = kShareOfError * distance(answers, joints_about_root(modalities, poses));
+  options.samples = kSamples;
+  options.temperature = 1.0;
+  options.sampling = {.gibbs_steps = 0,
+                      .mrbm_gibbs_steps = std::max<std::size_t>(network.mean_field_steps, 1),
+                      .steady = true};
+  double low = 0.0, high = 2.0;
+  for (std::size_t i = 0; i < kHalvings; ++i) {
+    options.sampling.scale = 0.5 * (low + high);
+    const bool strays =
+        distance(joints_about_root(modalities, regenerate(network, tracks, options)), answers) >
+        wanted;
+    (strays ? high : low) = options.sampling.scale;
+  }
+  options.sampling.scale = 0.5 * (low + high);
+  return options.sampling;
+}
+
+}  // namespace mcdbn

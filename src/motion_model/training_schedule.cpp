@@ -1,0 +1,75 @@
+#include "mcdbn/motion_model/training_schedule.hpp"
+
+#include "corpus/augmented_views.hpp"
+#include "corpus/held_out_person.hpp"
+#include "learning/random_start.hpp"
+#include "mcdbn/learning/fine_tuning.hpp"
+#include "mcdbn/learning/greedy_schedule.hpp"
+#include "motion_model/pose_loss.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// An observer of one stage that shows it as the part `from` … `to` of the run.
+EpochObserver part_of_run(const EpochObserver& observer, double from, double to) {
+  if (!observer) return {};
+  return [=](EpochReport report) {
+    report.overall_progress = from + (to - from) * report.overall_progress;
+    observer(report);
+  };
+}
+
+SequenceLossMaker pose_loss_maker(const Modalities& modalities, const PoseLossWeights& weights) {
+  return [&modalities, weights](Device& device, const SequenceWindows& windows) {
+    return std::make_unique<PoseLoss>(device, modalities, windows, weights);
+  };
+}
+
+}  // namespace
+
+TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
+                              const TrainingConfig& config, std::vector<std::string>* notices) {
+  return make_training_set(files, config, config.seed, config.fine_tuning.steps > 0, notices);
+}
+
+TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files,
+                                 const Modalities& modalities, const TrainingConfig& config) {
+  return make_augmented_views(files, modalities, config, config.seed);
+}
+
+PairedClips paired_clips(const TrainingSet& set) {
+  return {set.tracks, set.poses, set.people};
+}
+
+TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& views,
+                         const TrainingConfig& config, const EpochObserver& observer) {
+  const SequenceLossMaker make_loss = pose_loss_maker(views.modalities, config.pose_loss);
+  const auto person = person_to_hold_out(views, config.hold_out_among);
+  if (!person)
+    return {fine_tune(device, start, paired_clips(views), {}, config, make_loss, observer).network,
+            {}};
+  const TrainingSet others = views_without(views, *person), stranger = views_of(views, *person);
+  FineTuned tuned = fine_tune(device, start, paired_clips(others), paired_clips(stranger), config,
+                              make_loss, observer);
+  return {std::move(tuned.network),
+          EarlyStopping{clip_names(stranger), tuned.kept->steps, tuned.kept->loss}};
+}
+
+TrainedNetwork train_network(Device& device, const TrainingSet& data,
+                             const std::vector<std::filesystem::path>& files,
+                             const TrainingConfig& config, const EpochObserver& observer) {
+  if (config.fine_tuning.steps == 0)
+    return {train_greedy(device, paired_clips(data), config, observer), {}};
+  const TrainingSet views = make_augmented_views(files, data.modalities, config);
+  Mcdbn start = random_start(device, static_cast<std::size_t>(data.tracks.front().cols()),
+                             static_cast<std::size_t>(data.poses.front().cols()), config);
+  double greedy_share = 0.0;  // of the time, about
+  if (config.fine_tuning.from_greedy) {
+    greedy_share = 0.1;
+    start = train_greedy(device, paired_clips(views), config,
+                         part_of_run(observer, 0.0, greedy_share), &start);
+  }
+  return fine_tune(device, start, views, config, part_of_run(observer, greedy_share, 1.0));
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,17 @@
+# mcdbn_room(NAME [USES ROOM…] [LIBRARIES TARGET…]): the sources of src/NAME as the library mcdbn_NAME.
+# A room may include the headers of the rooms that it uses and of all behind those, and links them;
+# `scripts/lint rooms` reads these declarations and fails on any other include.
+function(mcdbn_room name)
+  cmake_parse_arguments(ROOM "" "" "USES;LIBRARIES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS src/${name}/*.cpp)
+  list(TRANSFORM ROOM_USES PREPEND mcdbn_)
+  add_library(mcdbn_${name} STATIC ${sources})
+  target_include_directories(mcdbn_${name} PUBLIC ${CMAKE_SOURCE_DIR}/include ${CMAKE_SOURCE_DIR}/src
+                                           PRIVATE ${CMAKE_SOURCE_DIR}/kernels)
+  target_link_libraries(mcdbn_${name} PUBLIC ${ROOM_USES} ${ROOM_LIBRARIES} Eigen3::Eigen
+                                             nlohmann_json::nlohmann_json fmt::fmt spdlog::spdlog
+                                      PRIVATE mcdbn_warnings)
+  set_target_properties(mcdbn_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  mcdbn_precompile(mcdbn_${name} mcdbn_base)
+  set(MCDBN_ROOMS ${MCDBN_ROOMS} ${name} PARENT_SCOPE)
+endfunction()

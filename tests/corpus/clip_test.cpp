@@ -1,0 +1,91 @@
+#include "mcdbn/corpus/clip.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/scratch_folder.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "motion/synthetic_motion.hpp"
+
+using namespace mcdbn;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A clip at 60 frames a second whose first frame is a calibration pose.
+Motion calibrated() {
+  Motion motion = test::swinging(test::small_body(), 41, 60);
+  motion.channels.row(0).setZero();
+  return motion;
+}
+
+fs::path write(const test::ScratchFolder& folder, const std::string& name, const Motion& motion) {
+  fs::create_directories((folder / name).parent_path());
+  write_bvh(folder / name, motion);
+  return folder / name;
+}
+
+std::vector<fs::path> canonical(std::vector<fs::path> paths) {
+  for (fs::path& path : paths) path = fs::weakly_canonical(path);
+  return paths;
+}
+
+}  // namespace
+
+TEST_CASE("clip: the calibration pose goes, then the rate becomes the one asked for") {
+  const test::ScratchFolder folder;
+  const fs::path path = write(folder, "a.bvh", calibrated());
+  const Motion file = read_bvh(path);
+  std::vector<std::string> notices;
+  const Motion own = load_clip(path, {.fps = 0}, &notices);
+  CHECK(own.fps() == doctest::Approx(60));
+  CHECK(own.channels == file.channels.bottomRows(40));
+  REQUIRE(notices.size() == 1);
+  CHECK(notices[0].find("a.bvh: dropped the calibration pose") != std::string::npos);
+
+  notices.clear();
+  const Motion kept = load_clip(path, {.fps = 0, .keep_first_frame = true}, &notices);
+  CHECK(kept.channels == file.channels);
+  CHECK(notices.empty());
+
+  CHECK(load_clip(path).fps() == doctest::Approx(30));
+  CHECK(load_clip(path).frames() == 20);
+  const Motion faster = load_clip(path, {.fps = 120, .keep_first_frame = true});
+  CHECK(faster.fps() == doctest::Approx(120));
+  CHECK(faster.frames() == 81);
+  // Rates that files print rounded are the same one.
+  CHECK(load_clip(path, {.fps = 60.005}).channels == own.channels);
+  CHECK(load_clip(path, {.fps = 59}).frames() == 39);
+}
+
+TEST_CASE("clip: rates that are none and clips without frames are refused") {
+  const test::ScratchFolder folder;
+  const fs::path path = write(folder, "a.bvh", calibrated());
+  for (const double fps : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+    CHECK_THROWS_AS(load_clip(path, {.fps = fps}), ConfigError);
+  Motion empty = calibrated();
+  empty.channels.resize(0, empty.channels.cols());
+  const fs::path no_frames = write(folder, "empty.bvh", empty);
+  CHECK_THROWS_AS(load_clip(no_frames), InputError);
+  CHECK_THROWS_AS(load_clip(folder / "none.bvh"), InputError);
+}
+
+TEST_CASE("clips of a command line: files in its order, folders by path, each once") {
+  const test::ScratchFolder folder;
+  const Motion motion = calibrated();
+  const fs::path last = write(folder, "z.bvh", motion), b = write(folder, "in/b.bvh", motion),
+                 deep = write(folder, "in/a/deep.BVH", motion),
+                 a = write(folder, "in/c.bvh", motion);
+  folder.write("in/notes.txt", "no clip");
+  CHECK(canonical(find_clips({last, folder / "in"})) == canonical({last, deep, b, a}));
+  CHECK(canonical(find_clips({a, folder / "in", last, a})) == canonical({a, deep, b, last}));
+  // A file is taken as it is, whatever its name.
+  CHECK(find_clips({folder / "in/notes.txt"}).size() == 1);
+  CHECK_THROWS_AS(find_clips({folder / "none"}), InputError);
+  CHECK_THROWS_AS(find_clips({}), InputError);
+  fs::create_directories(folder / "bare");
+  CHECK_THROWS_AS(find_clips({folder / "bare"}), InputError);
+}

@@ -1,0 +1,185 @@
+#include "mcdbn/corpus/training_set.hpp"
+#include "corpus/corpus_config.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "corpus/augmented_views.hpp"
+#include "corpus/training_files.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/corpus/clip.hpp"
+#include "motion/resample.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+/// 120 and 60 frames a second.
+const std::vector<WalkFile> kWalks{{1, 1, 120.0}, {2, 1, 60.0}, {1, 2, 60.0, 1.2}};
+
+CorpusConfig settings() {
+  CorpusConfig config;
+  config.seed = 41;
+  config.fps = 24.0;
+  config.camera.azimuth_deg = -35.0;
+  config.camera.elevation_deg = 3.0;
+  config.augment.views = 3;
+  config.augment.missing = 0.6;
+  config.augment.noise_px = 2.0;
+  config.augment.azimuth_deg = 10.0;
+  config.augment.turn_deg = 4.0;
+  return config;
+}
+
+Motion raw_clip(const std::filesystem::path& file) {
+  return load_clip(file, {.fps = 0, .keep_first_frame = false});
+}
+
+/// Clips of all files on `phases` grids each.
+std::vector<Motion> clips_of(const TrainingFiles& walks, const CorpusConfig& config,
+                             const std::vector<int>& phases) {
+  std::vector<Motion> clips;
+  for (std::size_t i = 0; i < walks.files().size(); ++i)
+    for (int phase = 0; phase < phases[i]; ++phase)
+      clips.push_back(
+          resample(raw_clip(walks.files()[i]), config.fps, static_cast<double>(phase) / phases[i]));
+  return clips;
+}
+
+struct Columns {
+  MatrixD values;
+  void add(const MatrixD& rows) {
+    const MatrixD before = values;
+    values.resize(before.rows() + rows.rows(), rows.cols());
+    if (before.rows() > 0) values.topRows(before.rows()) = before;
+    values.bottomRows(rows.rows()) = rows;
+  }
+};
+
+/// Mean and deviation of every column over all rows that were added.
+void check_scale(const Standardizer& scale, const MatrixD& values) {
+  REQUIRE(scale.input_dimension() == values.cols());
+  for (Eigen::Index c = 0; c < values.cols(); ++c) {
+    double sum = 0, squares = 0, count = 0;
+    for (Eigen::Index r = 0; r < values.rows(); ++r)
+      if (!std::isnan(values(r, c))) {
+        sum += values(r, c);
+        ++count;
+      }
+    const double mean = sum / count;
+    for (Eigen::Index r = 0; r < values.rows(); ++r)
+      if (!std::isnan(values(r, c))) squares += (values(r, c) - mean) * (values(r, c) - mean);
+    const double deviation = std::sqrt(squares / count);
+    CAPTURE(c);
+    CHECK(std::abs(scale.mean()[c] - mean) <= 1e-9 * (1.0 + std::abs(mean)));
+    if (deviation > 1e-3) CHECK(scale.deviation()[c] == doctest::Approx(deviation).epsilon(1e-9));
+  }
+}
+
+/// The whole of make_training_set once more: what is encoded, and what the scaling knows.
+void check_set(const TrainingFiles& walks, const CorpusConfig& config,
+               const std::vector<int>& phases, int views) {
+  const TrainingSet set = make_training_set(walks.files(), config, nullptr);
+  const Modalities& own = set.modalities;
+  CHECK(own.fps == config.fps);
+  CHECK(own.camera == config.camera);
+  CHECK(set.people.empty());
+  const std::vector<Motion> clips = clips_of(walks, config, phases);
+  REQUIRE(set.tracks.size() == clips.size());
+  REQUIRE(set.poses.size() == clips.size());
+  Columns tracks, poses;
+  std::size_t frames = 0;
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    const Camera camera = place_camera(clips[i], config.camera);
+    const MatrixD track = own.track_features.encode(project_motion(clips[i], camera)),
+                  pose = own.pose_features.encode(clips[i], camera.camera_from_world);
+    CHECK(set.tracks[i] == own.track_scale.apply(track));
+    CHECK(set.poses[i] == own.pose_scale.apply(pose));
+    tracks.add(track);
+    poses.add(pose);
+    frames += static_cast<std::size_t>(clips[i].frames());
+  }
+  CHECK(set.frames() == frames);
+  AugmentationSettings in_sight = config.augment;
+  in_sight.missing = 0;
+  RandomKey key{config.seed, 0, 196, 0};
+  for (const auto& file : walks.files())
+    for (int i = 0; i < views; ++i, ++key.step) {
+      const AugmentedView view =
+          augmented_view(raw_clip(file), config.fps, config.camera, in_sight, key);
+      tracks.add(own.track_features.encode(view.track));
+      poses.add(own.pose_features.encode(view.motion, view.camera.camera_from_world));
+    }
+  check_scale(own.track_scale, tracks.values);
+  check_scale(own.pose_scale, poses.values);
+  REQUIRE(set.clips.size() == walks.files().size());
+  for (std::size_t i = 0; i < set.clips.size(); ++i) {
+    CHECK(set.clips[i].path == identify_clip(walks.files()[i]).path);
+    CHECK(set.clips[i].fingerprint == identify_clip(walks.files()[i]).fingerprint);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a training set: every clip encoded and scaled for itself and for its views") {
+  const TrainingFiles walks(kWalks);
+  CorpusConfig config = settings();
+  check_set(walks, config, {1, 1, 1}, 3);
+  config.augment.views = 9;  // four say enough about the scale
+  check_set(walks, config, {1, 1, 1}, 4);
+}
+
+TEST_CASE("a training set for the greedy stages alone is scaled by its clips alone") {
+  const TrainingFiles walks(kWalks);
+  CorpusConfig config = settings();
+  config.with_views = false;
+  check_set(walks, config, {1, 1, 1}, 0);
+}
+
+TEST_CASE("clips are taken on as many grids as were asked for and as their own rate allows") {
+  const TrainingFiles walks(kWalks);
+  CorpusConfig config = settings();
+  config.with_views = false;
+  config.phases = 3;  // 120 Hz has five source frames in one of 24 Hz, 60 Hz two
+  check_set(walks, config, {3, 2, 2}, 0);
+  config.phases = 5;
+  check_set(walks, config, {5, 2, 2}, 0);
+  config.fps = 30.0;  // exactly four and two
+  config.phases = 9;
+  check_set(walks, config, {4, 2, 2}, 0);
+}
+
+TEST_CASE("a leading calibration pose is dropped from clips and views, or kept") {
+  const ScratchFolder folder;
+  SynthesisOptions options;
+  options.seconds = 1.5;
+  Motion walk = synthesize(options);
+  walk.channels.row(0).tail(walk.channels.cols() - 3).setZero();  // a rest pose before the walk
+  REQUIRE(has_leading_calibration_pose(walk));
+  const std::vector<std::filesystem::path> files{folder / "walk.bvh"};
+  write_bvh(files.front(), walk);
+  CorpusConfig config;
+  config.augment = {.views = 2, .mirror = false};
+  std::vector<std::string> notices;
+  const TrainingSet without = make_training_set(files, config, &notices);
+  CHECK(notices.size() == 1);
+  const TrainingSet views_without = make_augmented_views(files, without.modalities, config);
+  config.keep_first_frame = true;
+  const TrainingSet with = make_training_set(files, config, nullptr);
+  const TrainingSet views_with = make_augmented_views(files, without.modalities, config);
+  CHECK(with.frames() == without.frames() + 1);
+  CHECK(views_with.frames() > views_without.frames());
+}
+
+TEST_CASE("another seed, another scaling; no clips, no training set") {
+  const TrainingFiles walks({{1, 1, 30.0}});
+  CorpusConfig config = settings();
+  const RowVectorD mean =
+      make_training_set(walks.files(), config, nullptr).modalities.pose_scale.mean();
+  CHECK(mean == make_training_set(walks.files(), config, nullptr).modalities.pose_scale.mean());
+  config.seed = 42;
+  CHECK(mean != make_training_set(walks.files(), config, nullptr).modalities.pose_scale.mean());
+  CHECK_THROWS_AS(make_training_set({}, config, nullptr), InputError);
+}

@@ -1,0 +1,168 @@
+// Where the greedy stages stop by themselves, and what they say then.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "learning/greedy_scene.hpp"
+#include "mcdbn/base/errors.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+struct Divergence {
+  std::string message;         ///< empty if there was none
+  std::vector<double> losses;  ///< of the epochs before, of the stage that diverged
+  double last_loss = 0;        ///< the one that stopped it, as the message has it
+};
+
+/// Runs a training that is to diverge. @param train given an observer
+template <typename Train>
+Divergence divergence_of(const Train& train) {
+  Divergence result;
+  std::string stage;
+  try {
+    train([&](const EpochReport& report) {
+      if (report.stage != stage) result.losses.clear();
+      stage = report.stage;
+      result.losses.push_back(report.loss);
+    });
+  } catch (const DivergenceError& error) {
+    result.message = error.what();
+    const std::string before_loss = "the loss is ";
+    const auto at = result.message.find(before_loss);
+    if (at != std::string::npos)
+      result.last_loss = std::strtod(result.message.c_str() + at + before_loss.size(), nullptr);
+  }
+  return result;
+}
+
+/// It was stopped because the loss grew to several times the best, not because it was no number.
+void check_growth(const Divergence& divergence) {
+  INFO(divergence.message);
+  REQUIRE(!divergence.message.empty());
+  REQUIRE(!divergence.losses.empty());
+  const double best = *std::min_element(divergence.losses.begin(), divergence.losses.end());
+  CHECK(std::isfinite(divergence.last_loss));
+  CHECK(divergence.last_loss > 4 * best);
+  CHECK(*std::max_element(divergence.losses.begin(), divergence.losses.end()) <= 4 * best);
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Frames of waves, each column standardized.
+MatrixF waves(Eigen::Index frames, Eigen::Index dimension) {
+  MatrixF values(frames, dimension);
+  for (Eigen::Index t = 0; t < frames; ++t)
+    for (Eigen::Index d = 0; d < dimension; ++d)
+      values(t, d) = std::sqrt(2.0F) *
+                     std::sin(0.2F * static_cast<float>(t) * (1.0F + 0.1F * static_cast<float>(d)) +
+                              static_cast<float>(d));
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("a loss that grows while it is finite stops the greedy training at that epoch") {
+  GreedyScene scene = scene_of_different_sizes();
+  scene.plan.gaussian = {.gibbs_steps = 3,
+                         .rate = 0.07,
+                         .rate_A = 0.7,
+                         .rate_B = 0.021,
+                         .momentum = 0.3,
+                         .momentum_from_epoch = 9,
+                         .weight_decay = 0,
+                         .initial_deviation = 0.31,
+                         .epochs = 8};
+  scene.plan.least_batches = 1;
+  const std::vector<double> losses = train_on_host(scene).stages.front().losses;
+  std::size_t stop = 0;  // losses[stop] is the first that is too large
+  for (double best = losses[0]; stop < losses.size() && losses[stop] <= 4 * best; ++stop)
+    best = std::min(best, losses[stop]);
+  REQUIRE(stop > 0);
+  REQUIRE(stop < losses.size());
+  REQUIRE(std::isfinite(losses[stop]));
+  on_every_device([&](Device& device) {
+    const Divergence divergence = divergence_of(
+        [&](const EpochObserver& observer) { train_on_device(device, scene, observer); });
+    check_growth(divergence);
+    CHECK(divergence.losses.size() == stop);
+    CHECK(contains(divergence.message, "in stage pose.0 at epoch " + std::to_string(stop + 1)));
+    CHECK(contains(divergence.message,
+                   "; lower --gaussian-rate (now 0.07), --gaussian-rate-A (0.7), "
+                   "--gaussian-rate-B (0.021) or --gaussian-initial-deviation (0.31)"));
+  });
+}
+
+TEST_CASE("the paper's own rates and weights make the loss grow, which stops them") {
+  LearningSettings settings = LearningSettings::paper();
+  settings.batch = 20;  // a few clips only
+  const CrbmShape shape{12, 20, settings.order, VisibleKind::gaussian};
+  const RandomKey key{.seed = 1};
+  on_every_device([&](Device& device) {
+    const Sequences frames = Sequences::from_host(device, {waves(90, 12), waves(60, 12)});
+    const Divergence divergence = divergence_of([&](const EpochObserver& observer) {
+      train_crbm(device, frames,
+                 CrbmParameters::random(shape, settings.gaussian.initial_deviation, key),
+                 settings.gaussian, settings, 0, observer);
+    });
+    check_growth(divergence);
+    CHECK(contains(divergence.message, "in stage crbm at epoch "));
+    CHECK(contains(divergence.message, "lower --gaussian-rate (now 0.1)"));
+  });
+}
+
+TEST_CASE("the greedy training names the modality, the kind of layer and the flags to lower") {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  GreedyScene scene = scene_of_different_sizes();
+  scene.tracks.back()(5, 1) = kNan;
+  on_every_device([&](Device& device) {
+    const Divergence track = divergence_of(
+        [&](const EpochObserver& observer) { train_on_device(device, scene, observer); });
+    INFO(track.message);
+    CHECK(contains(track.message, "in stage track.0 at epoch 1: the loss is "));
+    CHECK(contains(track.message, "nan; lower --gaussian-rate (now 0.03)"));
+
+    const LearningSettings settings = settings_of(scene.plan);
+    MatrixF codes = waves(20, 4).cwiseAbs() / 2;
+    codes(7, 2) = kNan;
+    const CrbmShape shape{4, 4, 2, VisibleKind::binary};
+    const Divergence binary = divergence_of([&](const EpochObserver& observer) {
+      train_crbm(device, Sequences::from_host(device, {codes}),
+                 CrbmParameters::random(shape, 0.1, {}), settings.binary, settings, 1, observer,
+                 "upper");
+    });
+    INFO(binary.message);
+    CHECK(contains(binary.message, "in stage upper at epoch 1: the loss is "));
+    CHECK(contains(binary.message,
+                   "; lower --binary-rate (now 0.2), --binary-rate-A (0.07), --binary-rate-B (0.1) "
+                   "or --binary-initial-deviation (0.7)"));
+  });
+}
+
+TEST_CASE("an MRBM whose loss grows is stopped and says what to lower") {
+  LearningSettings settings = settings_of(tiny_plan());
+  settings.mrbm.rate = 40;
+  settings.mrbm.weight_decay = 0;
+  settings.mrbm.epochs = 3;
+  settings.least_batches = 1;  // one mini-batch an epoch: the first epoch's loss is still small
+  const MrbmParameters initial = MrbmParameters::random(4, 4, 6, 0.4, {.seed = 3});
+  const MatrixF codes = waves(settings.batch + settings.look_ahead, 4).cwiseAbs() / 2;
+  on_every_device([&](Device& device) {
+    const Sequences sequences = Sequences::from_host(device, {codes});
+    const Divergence divergence = divergence_of([&](const EpochObserver& observer) {
+      train_mrbm(device, sequences, sequences, initial, settings, 128, observer);
+    });
+    check_growth(divergence);
+    CHECK(contains(divergence.message, "in stage mrbm at epoch 2: the loss is "));
+    CHECK(contains(divergence.message,
+                   "; lower --mrbm-rate (now 40) or --mrbm-initial-deviation (now 0.4)"));
+  });
+}

@@ -1,0 +1,189 @@
+#include "learning/multi_prediction.hpp"
+
+#include <doctest/doctest.h>
+
+#include "device/every_device.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "reference/error_bounds.hpp"
+#include "reference/finite_difference.hpp"
+#include "reference/mrbm_error_bound.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+using reference::misfit;
+
+namespace {
+
+struct MrbmCase {
+  std::size_t track, pose, hidden, batch;
+  int steps;
+};
+const std::vector<MrbmCase> kSmallCases = {{1, 1, 1, 1, 1}, {4, 3, 7, 3, 5}, {17, 13, 9, 13, 3}};
+const std::vector<MrbmCase> kModelCases = {{300, 300, 150, 100, 5}};
+
+class Scene {
+ public:
+  explicit Scene(const MrbmCase& shape) : shape_(shape) {
+    const float scale = 1.0F / std::sqrt(static_cast<float>(shape.hidden));
+    parameters.W = {random_matrix(shape.track, shape.hidden, 1, scale),
+                    random_matrix(shape.pose, shape.hidden, 2, scale)};
+    parameters.a = {random_matrix(1, shape.track, 3), random_matrix(1, shape.pose, 4)};
+    parameters.b = random_matrix(1, shape.hidden, 5);
+    for (std::size_t m = 0; m < 2; ++m)
+      codes[m] = (random_matrix(shape.batch, m == 0 ? shape.track : shape.pose,
+                                6 + static_cast<unsigned>(m))
+                      .array() +
+                  1.0F) /
+                 2.0F;
+  }
+
+  reference::Mrbm model() const {
+    return {{parameters.W[0].cast<double>(), parameters.W[1].cast<double>()},
+            {parameters.a[0].cast<double>(), parameters.a[1].cast<double>()},
+            parameters.b.cast<double>()};
+  }
+  std::array<MatrixD, 2> batch() const {
+    return {codes[0].cast<double>(), codes[1].cast<double>()};
+  }
+  reference::MeanFieldOptions options() const { return {shape_.steps, false}; }
+
+  struct Trained {
+    MrbmParameters gradients, parameters;
+    std::vector<float> losses;
+  };
+  Trained train(Device& device, const AdamRule& rule, int steps = 1) const {
+    const Matrix track = Matrix::from_host(device, codes[0]);
+    const Matrix pose = Matrix::from_host(device, codes[1]);
+    std::vector<std::int32_t> backwards(shape_.batch);
+    for (std::size_t r = 0; r < shape_.batch; ++r)
+      backwards[r] = static_cast<std::int32_t>(shape_.batch - 1 - r);
+    const IndexBuffer index(device, backwards);
+    const auto every_row = [&](const Matrix& matrix) {
+      return Rows::indexed(matrix, index, 0, shape_.batch);
+    };
+    Mrbm mrbm(device, parameters);
+    MultiPrediction trainer(mrbm, static_cast<std::size_t>(shape_.steps), shape_.batch);
+    LossAccumulator losses(device, 2, shape_.batch);
+    for (int i = 0; i < steps; ++i) trainer.step(every_row(track), every_row(pose), rule, losses);
+    return {trainer.gradients(), mrbm.to_host(), losses.read_and_reset()};
+  }
+
+  MrbmParameters parameters;
+  std::array<MatrixF, 2> codes;
+
+ private:
+  MrbmCase shape_;
+};
+
+void check(const char* name, const MatrixF& got, const reference::Bounded& want) {
+  INFO("gradient of ", name);
+  CHECK(misfit(got, want.value, want.bound) == "");
+}
+
+void check_gradients(const std::vector<MrbmCase>& cases) {
+  for (const MrbmCase& shape : cases) {
+    const Scene scene(shape);
+    INFO(shape.track, " + ", shape.pose, " / ", shape.hidden, ", batch ", shape.batch, ", steps ",
+         shape.steps);
+    const auto want =
+        reference::bounded_multi_prediction(scene.model(), scene.batch(), shape.steps);
+    on_every_device([&](Device& device) {
+      const auto got = scene.train(device, AdamRule{}).gradients;
+      check("W of the track", got.W[0], want.weights[0]);
+      check("W of the pose", got.W[1], want.weights[1]);
+      check("a of the track", got.a[0], want.visible_bias[0]);
+      check("a of the pose", got.a[1], want.visible_bias[1]);
+      check("b", got.b, want.hidden_bias);
+    });
+  }
+}
+
+}  // namespace
+
+TEST_CASE("small: multi-prediction gradients are the double reference's within rounding") {
+  check_gradients(kSmallCases);
+}
+
+TEST_CASE("multi-prediction gradients at the model's sizes, within rounding") {
+  check_gradients(kModelCases);
+}
+
+TEST_CASE("the bounded gradients are the plain reference's") {
+  for (const MrbmCase& shape : kSmallCases) {
+    const Scene scene(shape);
+    const auto bounded =
+        reference::bounded_multi_prediction(scene.model(), scene.batch(), shape.steps);
+    const auto plain =
+        reference::multi_prediction(scene.model(), scene.batch(), scene.options()).gradient;
+    for (std::size_t m = 0; m < 2; ++m) {
+      CHECK((bounded.weights[m].value - plain.weights[m]).cwiseAbs().maxCoeff() < 1e-12);
+      CHECK((bounded.visible_bias[m].value - plain.visible_bias[m]).cwiseAbs().maxCoeff() < 1e-12);
+    }
+    CHECK((bounded.hidden_bias.value - plain.hidden_bias).cwiseAbs().maxCoeff() < 1e-12);
+  }
+}
+
+TEST_CASE("small: multi-prediction gradients on the device agree with finite differences") {
+  const MrbmCase shape{5, 4, 3, 6, 4};
+  const Scene scene(shape);
+  const reference::Mrbm model = scene.model();
+  const Eigen::VectorXd numeric = reference::finite_difference(
+      [&](const Eigen::VectorXd& x) {
+        return reference::multi_prediction(model.with_parameters(x), scene.batch(), scene.options())
+            .loss;
+      },
+      model.flattened());
+  on_every_device([&](Device& device) {
+    const auto got = scene.train(device, AdamRule{}).gradients;
+    const reference::Mrbm gradient{{got.W[0].cast<double>(), got.W[1].cast<double>()},
+                                   {got.a[0].cast<double>(), got.a[1].cast<double>()},
+                                   got.b.cast<double>()};
+    CHECK(numeric.norm() > 0.1);
+    CHECK((gradient.flattened() - numeric).cwiseAbs().maxCoeff() < 1e-6);
+  });
+}
+
+TEST_CASE("small: multi-prediction reports the mean cross-entropy of a unit in each direction") {
+  for (const MrbmCase& shape : kSmallCases) {
+    const Scene scene(shape);
+    const double total =
+        reference::multi_prediction(scene.model(), scene.batch(), scene.options()).loss;
+    on_every_device([&](Device& device) {
+      const auto losses = scene.train(device, AdamRule{}).losses;
+      REQUIRE(losses.size() == 2);
+      const double sum = losses[0] * static_cast<double>(shape.pose) +
+                         losses[1] * static_cast<double>(shape.track);
+      CHECK(sum == doctest::Approx(total).epsilon(1e-4));
+    });
+  }
+}
+
+TEST_CASE("Adam on the multi-prediction gradients lowers the loss, the same way each time") {
+  const Scene scene(kSmallCases[2]);
+  on_every_device([&](Device& device) {
+    AdamRule rule;
+    rule.rate = 0.01F;
+    const auto first = scene.train(device, rule, 1), many = scene.train(device, rule, 200);
+    const auto last = scene.train(device, rule, 201);
+    const float before = first.losses[0] + first.losses[1];
+    const float after = last.losses[0] + last.losses[1] - many.losses[0] - many.losses[1];
+    CHECK(after < 0.9F * before);
+    const auto again = scene.train(device, rule, 200);
+    CHECK((again.parameters.W[0].array() == many.parameters.W[0].array()).all());
+    CHECK((again.parameters.W[1].array() == many.parameters.W[1].array()).all());
+  });
+}
+
+TEST_CASE("small: multi-prediction wants mini-batches of the size that it was made for") {
+  on_every_device([&](Device& device) {
+    const Scene scene(kSmallCases[1]);
+    Mrbm mrbm(device, scene.parameters);
+    CHECK_THROWS_AS(MultiPrediction(mrbm, 0, 3), ConfigError);
+    MultiPrediction trainer(mrbm, 2, 4);
+    LossAccumulator losses(device, 2, 4);
+    const Matrix track = Matrix::from_host(device, scene.codes[0]);
+    const Matrix pose = Matrix::from_host(device, scene.codes[1]);
+    CHECK_THROWS_AS(trainer.step(track, pose, AdamRule{}, losses), ShapeError);
+    CHECK_THROWS_AS(trainer.step(track, Rows(pose, 0, 2), AdamRule{}, losses), ShapeError);
+  });
+}

@@ -1,0 +1,263 @@
+#include "mcdbn/machines/regeneration.hpp"
+
+#include <doctest/doctest.h>
+
+#include "device/every_device.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "reference/error_bounds.hpp"
+#include "reference/running_error.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+using reference::Bounded;
+using reference::misfit;
+
+namespace {
+
+constexpr std::size_t kTrack = 6, kPose = 9, kHidden = 7, kTop = 5, kShared = 4, kOrder = 2;
+
+CrbmParameters layer(std::size_t visible, std::size_t hidden, VisibleKind kind, unsigned seed) {
+  CrbmParameters p = CrbmParameters::zeros({visible, hidden, kOrder, kind});
+  p.W = random_matrix(visible, hidden, seed, 0.4F);
+  p.A = random_matrix(kOrder * visible, visible, seed + 1, 0.1F);
+  p.B = random_matrix(kOrder * visible, hidden, seed + 2, 0.2F);
+  p.a = random_matrix(1, visible, seed + 3, 0.3F);
+  p.b = random_matrix(1, hidden, seed + 4, 0.3F);
+  if (kind == VisibleKind::binary)
+    p.visible_mean = (random_matrix(1, visible, seed + 5).array() + 1.0F) / 2.0F;
+  return p;
+}
+
+/// A small MCDBN of two layers a modality, with parameters as after a training.
+struct Parameters {
+  std::array<CrbmParameters, 2> track{layer(kTrack, kHidden, VisibleKind::gaussian, 10),
+                                      layer(kHidden, kTop, VisibleKind::binary, 20)};
+  std::array<CrbmParameters, 2> pose{layer(kPose, kHidden, VisibleKind::gaussian, 30),
+                                     layer(kHidden, kTop, VisibleKind::binary, 40)};
+  MrbmParameters mrbm{
+      {random_matrix(kTop, kShared, 50, 2.0F), random_matrix(kTop, kShared, 51, 2.0F)},
+      {random_matrix(1, kTop, 52), random_matrix(1, kTop, 53)},
+      random_matrix(1, kShared, 54)};
+  std::size_t look_ahead = 1;
+  std::size_t mean_field_steps = 3;
+
+  Mcdbn on(Device& device) const {
+    Cdbn track_cdbn, pose_cdbn;
+    for (const auto& p : track) track_cdbn.layers.emplace_back(device, p);
+    for (const auto& p : pose) pose_cdbn.layers.emplace_back(device, p);
+    return {std::move(track_cdbn), std::move(pose_cdbn), Mrbm(device, mrbm), look_ahead,
+            mean_field_steps};
+  }
+};
+
+Bounded exact(const MatrixF& matrix) {
+  return Bounded::exact(matrix.cast<double>());
+}
+
+/// The frames before row t, side by side, as eq 15 has them.
+Bounded history(const std::vector<Bounded>& frames, std::size_t t) {
+  const Eigen::Index visible = frames[t].value.cols();
+  Bounded row{MatrixD(1, kOrder * visible), MatrixD(1, kOrder * visible)};
+  for (std::size_t q = 0; q < kOrder; ++q) {
+    row.value.middleCols(static_cast<Eigen::Index>(q) * visible, visible) =
+        frames[t - kOrder + q].value;
+    row.bound.middleCols(static_cast<Eigen::Index>(q) * visible, visible) =
+        frames[t - kOrder + q].bound;
+  }
+  return row;
+}
+
+/// eq 11 with eq 17, for the frames that have a history of frames that have a code themselves.
+std::vector<Bounded> up_pass(const CrbmParameters& p, const std::vector<Bounded>& frames,
+                             std::size_t first) {
+  std::vector<Bounded> code(frames.size());
+  for (std::size_t t = first; t < frames.size(); ++t)
+    code[t] = reference::sigmoid(exact(p.b) + product(history(frames, t), exact(p.B)) +
+                                 product(frames[t], exact(p.W)));
+  return code;
+}
+
+/// eq 32 and 33 from zeros: the 3D code from the 2D code.
+Bounded pose_code(const Parameters& p, const Bounded& track_code) {
+  const Bounded W = exact(p.mrbm.W[1]);
+  const Bounded drive = exact(p.mrbm.b) + product(track_code, exact(p.mrbm.W[0]));
+  Bounded pose = Bounded::exact(MatrixD::Zero(1, kTop));
+  for (std::size_t step = 0; step < p.mean_field_steps; ++step)
+    pose = reference::sigmoid(
+        exact(p.mrbm.a[1]) + product(reference::sigmoid(drive + product(pose, W)), W.transposed()));
+  return pose;
+}
+
+/// Algorithm 3 by mean field, in double with bounds: what regenerate() promises.
+std::vector<Bounded> reference_regeneration(const Parameters& p, const MatrixF& track,
+                                            std::size_t run_in) {
+  const std::size_t lead = 2 * kOrder + run_in;
+  std::vector<Bounded> frames;
+  for (std::size_t i = 0; i < lead; ++i) frames.push_back(exact(track.row(0)));
+  for (Eigen::Index t = 0; t < track.rows(); ++t) frames.push_back(exact(track.row(t)));
+  const Eigen::Index last = track.rows() - 1;
+  for (std::size_t i = 1; i <= p.look_ahead; ++i) {  // carried on, turned about the last frame
+    const MatrixF back = track.row(std::max<Eigen::Index>(last - static_cast<Eigen::Index>(i), 0));
+    frames.push_back(exact(MatrixF(2.0F * track.row(last) - back)));
+  }
+  const auto code = up_pass(p.track[1], up_pass(p.track[0], frames, kOrder), 2 * kOrder);
+
+  std::vector<Bounded> visible(frames.size(), exact(p.pose[0].visible_mean));
+  std::vector<Bounded> middle(frames.size(), exact(p.pose[1].visible_mean));
+  std::vector<Bounded> result;
+  for (std::size_t t = 2 * kOrder; t + p.look_ahead < frames.size(); ++t) {
+    middle[t] = reference::sigmoid(
+        exact(p.pose[1].a) + product(history(middle, t), exact(p.pose[1].A)) +
+        product(pose_code(p, code[t + p.look_ahead]), exact(p.pose[1].W).transposed()));
+    visible[t] = exact(p.pose[0].a) + product(history(visible, t), exact(p.pose[0].A)) +
+                 product(middle[t], exact(p.pose[0].W).transposed());
+    if (t >= lead) result.push_back(visible[t]);
+  }
+  return result;
+}
+
+RegenerationOptions options_with_run_in(std::size_t run_in) {
+  RegenerationOptions options;
+  options.run_in = run_in;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("mean-field regeneration is Algorithm 3 in double, within the rounding bound") {
+  for (const std::size_t look_ahead : {0U, 1U, 4U})
+    for (const Eigen::Index frames : {1, 3, 13}) {
+      Parameters parameters;
+      parameters.look_ahead = look_ahead;
+      const MatrixF track = random_matrix(static_cast<std::size_t>(frames), kTrack, 7, 1.7F);
+      const auto want = reference_regeneration(parameters, track, 5);
+      REQUIRE(want.size() == static_cast<std::size_t>(frames));
+      on_every_device([&](Device& device) {
+        const auto got = regenerate(parameters.on(device), {track}, options_with_run_in(5));
+        REQUIRE(got.size() == 1);
+        REQUIRE(got[0].rows() == frames);
+        for (Eigen::Index t = 0; t < frames; ++t) {
+          const Bounded& row = want[static_cast<std::size_t>(t)];
+          CHECK(row.bound.maxCoeff() < 1e-3);  // else the bound says nothing
+          CHECK(misfit(got[0].row(t), row.value, row.bound) == "");
+        }
+      });
+    }
+}
+
+TEST_CASE("clips that are regenerated together do not know of each other") {
+  const Parameters parameters;
+  const MatrixF one = random_matrix(9, kTrack, 1), other = random_matrix(4, kTrack, 2);
+  on_every_device([&](Device& device) {
+    const Mcdbn network = parameters.on(device);
+    const auto together = regenerate(network, {one, other});
+    const auto alone = regenerate(network, {other});
+    REQUIRE(together.size() == 2);
+    CHECK(together[0].rows() == 9);
+    CHECK(together[1].rows() == 4);
+    CHECK((together[1] - alone[0]).cwiseAbs().maxCoeff() < 1e-5F);
+  });
+}
+
+TEST_CASE("samples differ, the same seed gives the same ones, a low temperature the mean") {
+  const Parameters parameters;
+  const MatrixF track = random_matrix(11, kTrack, 3);
+  on_every_device([&](Device& device) {
+    const Mcdbn network = parameters.on(device);
+    RegenerationOptions options;
+    options.samples = 3;
+    options.temperature = 1.0;
+    const auto samples = regenerate(network, {track}, options);
+    REQUIRE(samples.size() == 3);
+    CHECK((samples[0] - samples[1]).cwiseAbs().maxCoeff() > 1e-2F);
+    CHECK((samples[1] - samples[2]).cwiseAbs().maxCoeff() > 1e-2F);
+    CHECK(regenerate(network, {track}, options)[2] == samples[2]);
+    options.seed = 2;
+    CHECK(regenerate(network, {track}, options)[2] != samples[2]);
+
+    options.temperature = 1e-6;
+    const auto cold = regenerate(network, {track}, options);
+    CHECK((cold[0] - cold[1]).cwiseAbs().maxCoeff() < 1e-4F);
+  });
+}
+
+TEST_CASE(
+    "with the MRBM's own Gibbs steps samples differ in the 3D code, without them they do not") {
+  const Parameters parameters;
+  const MatrixF track = random_matrix(11, kTrack, 3), other = random_matrix(5, kTrack, 4);
+  on_every_device([&](Device& device) {
+    const Mcdbn network = parameters.on(device);
+    const auto single = regenerate(network, {track, other});
+    RegenerationOptions options;
+    options.samples = 3;
+    options.sampling.gibbs_steps = 0;  // the decoder draws nothing
+    options.temperature = 1.0;
+    const auto shared_code = regenerate(network, {track, other}, options);
+    for (std::size_t i = 0; i < 6; ++i) CHECK(shared_code[i] == single[i / 3]);
+
+    options.sampling.mrbm_gibbs_steps = parameters.mean_field_steps;
+    const auto samples = regenerate(network, {track, other}, options);
+    REQUIRE(samples.size() == 6);
+    for (const std::size_t i : {0U, 1U, 3U, 4U})
+      CHECK((samples[i] - samples[i + 1]).cwiseAbs().maxCoeff() > 1e-2F);
+    CHECK(regenerate(network, {track, other}, options) == samples);
+    // What follows in the batch changes nothing.
+    const auto alone = regenerate(network, {track}, options);
+    CHECK((alone[2] - samples[2]).cwiseAbs().maxCoeff() < 1e-5F);
+    options.seed = 2;
+    CHECK(regenerate(network, {track, other}, options)[2] != samples[2]);
+
+    options.temperature = 1e-6;
+    const auto cold = regenerate(network, {track, other}, options);
+    for (std::size_t i = 0; i < 6; ++i)
+      CHECK((cold[i] - single[i / 3]).cwiseAbs().maxCoeff() < 1e-4F);
+    options.temperature = 0.0;
+    CHECK(regenerate(network, {track, other}, options)[4] == single[1]);
+  });
+}
+
+TEST_CASE("the start of a regeneration does not depend on the frames that follow the look-ahead") {
+  Parameters parameters;
+  parameters.look_ahead = 2;
+  MatrixF track = random_matrix(12, kTrack, 4);
+  on_every_device([&](Device& device) {
+    const Mcdbn network = parameters.on(device);
+    const MatrixF before = regenerate(network, {track})[0];
+    track.bottomRows(3).setConstant(3.0F);
+    const MatrixF after = regenerate(network, {track})[0];
+    CHECK(before.topRows(7) == after.topRows(7));  // frame t sees the track up to t + 2
+    CHECK((before.row(7) - after.row(7)).cwiseAbs().maxCoeff() > 0.0F);
+    track.bottomRows(3) = random_matrix(12, kTrack, 4).bottomRows(3);
+  });
+}
+
+TEST_CASE("missing joints are filled in, and what is seen stays as it was") {
+  const Parameters parameters;
+  const MatrixF track = random_matrix(10, kTrack, 5);
+  MatrixF gappy = track;
+  gappy.block(4, 2, 3, 2).setConstant(std::numeric_limits<float>::quiet_NaN());
+  on_every_device([&](Device& device) {
+    const Mcdbn network = parameters.on(device);
+    const auto whole = regenerate(network, {track});
+    const auto filled = regenerate(network, {gappy});
+    CHECK(filled[0].allFinite());
+    CHECK(filled[0].topRows(4 - 1) == whole[0].topRows(4 - 1));  // look-ahead 1
+    CHECK((filled[0].row(4) - whole[0].row(4)).cwiseAbs().maxCoeff() > 0.0F);
+    // Or left at the mean, where the network has learnt that.
+    Mcdbn taught = parameters.on(device);
+    taught.fills_gaps = false;
+    MatrixF at_mean = track;
+    at_mean.block(4, 2, 3, 2).setZero();
+    CHECK(regenerate(taught, {gappy})[0] == regenerate(network, {at_mean})[0]);
+  });
+}
+
+TEST_CASE("regenerate: nothing from nothing, and a track without frames is refused") {
+  const Parameters parameters;
+  on_every_device([&](Device& device) {
+    const Mcdbn network = parameters.on(device);
+    CHECK(regenerate(network, {}).empty());
+    CHECK_THROWS_AS(regenerate(network, {MatrixF(0, kTrack)}), ShapeError);
+    CHECK_THROWS_AS(regenerate(network, {random_matrix(3, kTrack + 1, 1)}), ShapeError);
+  });
+}

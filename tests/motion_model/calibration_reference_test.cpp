@@ -1,0 +1,131 @@
+// The scale of samples, found again step by step.
+
+#include <doctest/doctest.h>
+
+#include "device/every_device.hpp"
+#include "features/small_figure.hpp"
+#include "mcdbn/machines/regeneration.hpp"
+#include "motion_model/clip_scene.hpp"
+#include "motion_model/sample_calibration.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+struct Setting {
+  Modalities modalities = SmallFigure().modalities();
+  std::vector<MatrixF> tracks, poses;
+
+  Setting() {
+    const std::array<std::size_t, 3> frames{17, 8, 11};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto seed = static_cast<unsigned>(i);
+      tracks.push_back(random_matrix(
+          frames[i], static_cast<std::size_t>(modalities.track_scale.output_dimension()),
+          10 + seed));
+      poses.push_back(random_matrix(
+          frames[i], static_cast<std::size_t>(modalities.pose_scale.output_dimension()), 20 + seed,
+          0.4F));
+    }
+  }
+};
+
+/// Joints about the root, which stands still. @return [frames x 3·joints]
+MatrixD places(const Modalities& modalities, const MatrixF& pose) {
+  const PoseFeatures& features = modalities.pose_features;
+  return joint_positions(features.decode(modalities.pose_scale.invert(pose),
+                                         Eigen::Matrix3d::Identity(), features.skeleton(), 30.0,
+                                         MatrixD::Zero(pose.rows(), 3)));
+}
+
+double distance(const MatrixD& x, const MatrixD& y) {
+  double sum = 0;
+  for (Eigen::Index t = 0; t < x.rows(); ++t)
+    for (Eigen::Index c = 0; c < x.cols(); c += 3)
+      sum += (x.block<1, 3>(t, c) - y.block<1, 3>(t, c)).norm();
+  return sum;
+}
+
+/// At temperature 1 samples stray from the single answer half as far as that is off.
+double scale_by_halving(const Mcdbn& network, const Setting& setting) {
+  const auto answers = regenerate(network, setting.tracks);
+  double wanted = 0;
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    wanted += 0.5 * distance(places(setting.modalities, answers[i]),
+                             places(setting.modalities, setting.poses[i]));
+  RegenerationOptions options;
+  options.samples = 4;
+  options.temperature = 1.0;
+  options.sampling = {
+      .gibbs_steps = 0, .mrbm_gibbs_steps = network.mean_field_steps, .steady = true, .scale = 1.0};
+  double scale = 1.0;
+  for (double step = 0.5; step > 0.01; step /= 2) {
+    options.sampling.scale = scale;
+    const auto samples = regenerate(network, setting.tracks, options);
+    double strayed = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      strayed += 0.25 * distance(places(setting.modalities, samples[i]),
+                                 places(setting.modalities, answers[i / 4]));
+    scale += strayed > wanted ? -step : step;
+  }
+  return scale;
+}
+
+}  // namespace
+
+TEST_CASE("the scale of samples is where they stray half as far as the answers are off") {
+  on_every_device([](Device& device) {
+    Setting setting;
+    Mcdbn network = random_network(device, setting.modalities);
+    std::vector<double> scales;
+    const auto usual = regenerate(network, setting.tracks);
+    for (const float error : {0.06F, 0.12F}) {
+      // Poses near the answers and further from them.
+      const auto noise = setting.poses;
+      for (std::size_t i = 0; i < noise.size(); ++i) setting.poses[i] = usual[i] + error * noise[i];
+      const SamplingRule rule =
+          calibrated_sampling(network, setting.modalities, setting.tracks, setting.poses);
+      CHECK(rule.scale == scale_by_halving(network, setting));
+      CHECK(rule.gibbs_steps == 0);
+      CHECK(rule.mrbm_gibbs_steps == 4);
+      CHECK(rule.steady);
+      scales.push_back(rule.scale);
+      setting.poses = noise;
+    }
+    CHECK(scales[0] != scales[1]);
+    for (const double scale : scales) {
+      CHECK(scale > 0.05);  // not at either end, where every rule would be right
+      CHECK(scale < 1.95);
+    }
+    network.mean_field_steps = 0;
+    CHECK(calibrated_sampling(network, setting.modalities, setting.tracks, setting.poses)
+              .mrbm_gibbs_steps == 1);
+  });
+}
+
+TEST_CASE("calibration looks at every so many clips once they are longer than ten minutes") {
+  on_every_device([](Device& device) {
+    Setting setting;
+    const Mcdbn network = random_network(device, setting.modalities);
+    const auto answers = regenerate(network, setting.tracks);
+    for (std::size_t i = 0; i < 3; ++i)
+      setting.poses[i] = answers[i] + 0.04F * static_cast<float>(i + 1) * setting.poses[i];
+    const auto scale_of = [&](double fps, const std::vector<std::size_t>& clips) {
+      Modalities modalities = setting.modalities;
+      modalities.fps = fps;
+      std::vector<MatrixF> tracks, poses;
+      for (const std::size_t i : clips) {
+        tracks.push_back(setting.tracks[i]);
+        poses.push_back(setting.poses[i]);
+      }
+      return calibrated_sampling(network, modalities, tracks, poses).scale;
+    };
+    // 36 frames are exactly ten minutes at 0.06 a second, and more at less.
+    CHECK(scale_of(0.0601, {0, 1, 2}) == scale_of(30, {0, 1, 2}));
+    CHECK(scale_of(0.0599, {0, 1, 2}) == scale_of(30, {0, 2}));
+    CHECK(scale_of(0.0299, {0, 1, 2}) == scale_of(30, {0}));
+    CHECK(scale_of(30, {0, 1, 2}) != scale_of(30, {0, 2}));
+    CHECK(scale_of(30, {0}) != scale_of(30, {0, 2}));
+  });
+}

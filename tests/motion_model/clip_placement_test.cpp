@@ -1,0 +1,201 @@
+// Where a regenerated clip stands, and whose body it moves.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "camera/track_noise.hpp"
+#include "fitting/planted_velocity.hpp"
+#include "fitting/root_trajectory.hpp"
+#include "mcdbn/motion_model/clip_regeneration.hpp"
+#include "mcdbn/synthesis/synthesize.hpp"
+#include "motion/body_size.hpp"
+#include "motion/foot_joints.hpp"
+#include "motion_model/clip_scene.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+/// A walk of four seconds seen from one side, and a track of it that is a little off.
+struct Scene {
+  Motion truth = synthesize({.seconds = 4});
+  CameraPlacement view{55, 14, std::nullopt, 38, 1280, 721};
+  Modalities modalities = modalities_of({truth}, view);
+  Camera camera = place_camera(truth, view);
+  Track2d track = project_motion(truth, camera);
+  MatrixF pose = modalities.encode_pose(truth, camera.camera_from_world);
+
+  Motion placed(const ClipPlacement& placement) const {
+    return motion_from_features(modalities, pose, track, placement);
+  }
+  std::string root() const { return modalities.root_name(); }
+};
+
+/// A camera of the model's view as the track's image size has it, at the world's origin.
+Camera camera_of_view(const Scene& scene) {
+  Camera camera;
+  camera.camera_from_world = camera_rotation(scene.view.azimuth_deg, scene.view.elevation_deg);
+  camera.width_px = scene.track.width_px;
+  camera.height_px = scene.track.height_px;
+  camera.fx_px = camera.fy_px =
+      scene.track.height_px / 2.0 / std::tan(scene.view.field_of_view_deg / 2.0 * EIGEN_PI / 180.0);
+  camera.cx_px = scene.track.width_px / 2.0;
+  camera.cy_px = scene.track.height_px / 2.0;
+  return camera;
+}
+
+/// Channels of all joints but the root's position.
+MatrixD turns_of(const Motion& motion, const std::string& root) {
+  MatrixD turns = motion.channels;
+  const int joint = motion.skeleton.find(root);
+  for (std::size_t k = 0;
+       k < motion.skeleton.joints[static_cast<std::size_t>(joint)].channels.size(); ++k)
+    if (!is_rotation(motion.skeleton.joints[static_cast<std::size_t>(joint)].channels[k]))
+      turns.col(motion.skeleton.first_channel(joint) + static_cast<Eigen::Index>(k)).setZero();
+  return turns;
+}
+
+double largest(const MatrixD& difference) {
+  return difference.cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+TEST_CASE("placement: without a fit the answer's joints are decoded as they are") {
+  const Scene scene;
+  const Modalities& m = scene.modalities;
+  const Motion got = scene.placed({scene.camera, scene.truth.skeleton, std::nullopt});
+  const MatrixD features = m.pose_scale.invert(scene.pose);
+  const auto decoded = [&](const MatrixD& root) {
+    return m.pose_features.decode(features, scene.camera.camera_from_world, scene.truth.skeleton,
+                                  m.fps, root);
+  };
+  std::vector<std::string> names = m.track_features.joint_names();
+  names.push_back(scene.root());
+  const MatrixD about =
+      joints_about(decoded(MatrixD::Zero(scene.truth.frames(), 3)), names, scene.root());
+  // The features' velocity is in the camera's axes and in metres on a 1.7 m body.
+  const MatrixD velocity = file_units_per_metre(scene.truth.skeleton) *
+                           m.pose_features.root_features(features).rightCols(3) *
+                           scene.camera.camera_from_world;
+  const MatrixD root = root_trajectory(about, names, scene.track, scene.camera, velocity);
+  CHECK(largest(got.channels - decoded(root).channels) < 1e-9);
+  CHECK(got.fps() == doctest::Approx(m.fps));
+  // And that is the truth, as the answer was: a walk of some metres.
+  CHECK(largest(path_of(got, scene.root()) - path_of(scene.truth, scene.root())) < 1.0);
+  CHECK(largest(joint_positions(got) - joint_positions(scene.truth)) < 1.0);
+}
+
+TEST_CASE("placement: with a fit joints are turned and planted feet lead the root") {
+  Scene scene;
+  add_pixel_noise(scene.track, 3.0, 5);
+  const Modalities& m = scene.modalities;
+  const Skeleton& skeleton = scene.truth.skeleton;
+  TrackFitSettings fit;
+  fit.turn_deg = 12;
+  fit.caution = 3;
+  const Motion got = scene.placed({scene.camera, skeleton, fit});
+  std::vector<std::string> names = m.track_features.joint_names();
+  names.push_back(scene.root());
+  MatrixD features = m.pose_scale.invert(scene.pose);
+  const auto decoded = [&](const MatrixD& root) {
+    return m.pose_features.decode(features, scene.camera.camera_from_world, skeleton, m.fps, root);
+  };
+  const auto about = [&] {
+    return joints_about(decoded(MatrixD::Zero(features.rows(), 3)), names, scene.root());
+  };
+  const MatrixD velocity = file_units_per_metre(skeleton) *
+                           m.pose_features.root_features(features).rightCols(3) *
+                           scene.camera.camera_from_world;
+  const MatrixD first = root_trajectory(about(), names, scene.track, scene.camera, velocity);
+  features = fit_to_track(m.pose_features, features, decoded(first), names, scene.track,
+                          scene.camera, fit);
+  const MatrixD fitted = root_trajectory(about(), names, scene.track, scene.camera, velocity);
+  const MatrixD planted = planted_velocity(decoded(fitted), skeleton.find(scene.root()),
+                                           foot_joints(skeleton), velocity);
+  const MatrixD root = root_trajectory(about(), names, scene.track, scene.camera, planted, 0.5);
+  CHECK(largest(got.channels - decoded(root).channels) < 1e-9);
+  // Each of these steps shows.
+  CHECK(largest(root - fitted) > 1e-3);
+  CHECK(largest(fitted - first) > 1e-3);
+}
+
+TEST_CASE("placement: without a camera it is the model's view with the track's image") {
+  Scene scene;
+  add_pixel_noise(scene.track, 2.0, 5);
+  for (const bool fit : {false, true}) {
+    CAPTURE(fit);
+    ClipPlacement placement;
+    if (!fit) placement.fit.reset();
+    const Motion got = scene.placed(placement);
+    placement.camera = camera_of_view(scene);
+    const Motion there = scene.placed(placement);
+    CHECK(largest(turns_of(got, scene.root()) - turns_of(there, scene.root())) < 1e-9);
+    // The same path, but for where it stands: above the origin at first, as high on average as
+    // the answer says.
+    const MatrixD path = path_of(got, scene.root()), other = path_of(there, scene.root());
+    const MatrixD shift = path - other;
+    CHECK(largest(shift.rowwise() - shift.row(0)) < 1e-9);
+    CHECK(std::abs(path(0, 0)) < 1e-9);
+    CHECK(std::abs(path(0, 2)) < 1e-9);
+    if (fit) continue;
+    const double height = path_of(scene.truth, scene.root()).col(1).mean();
+    CHECK(std::abs(path.col(1).mean() - height) < 0.01);
+  }
+}
+
+TEST_CASE("placement: the root's travel is kept where no camera is given") {
+  const Scene scene;
+  const MatrixD truth = path_of(scene.truth, scene.root());
+  REQUIRE((truth.bottomRows(1) - truth.topRows(1)).norm() > 200);  // cm
+  for (const bool fit : {false, true}) {
+    CAPTURE(fit);
+    ClipPlacement placement;
+    if (!fit) placement.fit.reset();
+    const MatrixD got = path_of(scene.placed(placement), scene.root());
+    const MatrixD travel = got.rowwise() - got.row(0), want = truth.rowwise() - truth.row(0);
+    CHECK(largest(travel - want) < 5.0);  // of some metres
+  }
+}
+
+TEST_CASE("placement: a skeleton that is not the person's may have other proportions") {
+  Scene scene;
+  add_pixel_noise(scene.track, 2.0, 5);
+  const auto with = [&](bool own_skeleton, double proportions_m) {
+    TrackFitSettings fit;
+    fit.proportions_m = proportions_m;
+    ClipPlacement placement{scene.camera, std::nullopt, fit};
+    if (own_skeleton) placement.skeleton = scene.modalities.pose_features.skeleton();
+    return scene.placed(placement).channels;
+  };
+  // Joints are then taken to be off by 7 cm at least.
+  CHECK(with(false, 0.0) == with(true, 0.07));
+  CHECK(with(false, 0.0) != with(true, 0.0));
+  CHECK(with(false, 0.2) == with(true, 0.2));
+  CHECK(with(false, 0.02) == with(false, 0.07));
+}
+
+TEST_CASE("placement: motion goes onto the skeleton that is given") {
+  const Scene scene;
+  Skeleton larger = scene.truth.skeleton;
+  for (Joint& joint : larger.joints) {
+    joint.offset *= 1.25;
+    for (Eigen::Vector3d& end : joint.end_sites) end *= 1.25;
+  }
+  for (const bool camera : {true, false}) {
+    ClipPlacement placement{std::nullopt, larger, std::nullopt};
+    if (camera) placement.camera = scene.camera;
+    const Motion got = scene.placed(placement);
+    for (std::size_t j = 0; j < larger.joints.size(); ++j)
+      CHECK(got.skeleton.joints[j].offset == larger.joints[j].offset);
+    const auto names = scene.modalities.track_features.joint_names();
+    CHECK(largest(joints_about(got, names, scene.root()) -
+                  1.25 * joints_about(scene.truth, names, scene.root())) < 0.1);
+    if (camera) continue;
+    // In its own units it stands as high as the answer says, in metres on a 1.7 m body.
+    const double height = path_of(scene.truth, scene.root()).col(1).mean();
+    CHECK(std::abs(path_of(got, scene.root()).col(1).mean() - 1.25 * height) < 0.1);
+  }
+}

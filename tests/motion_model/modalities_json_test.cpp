@@ -1,0 +1,38 @@
+#include "motion_model/modalities_json.hpp"
+
+#include <doctest/doctest.h>
+
+#include "mcdbn/base/errors.hpp"
+#include "motion/synthetic_motion.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+const Eigen::Matrix3d kCamera = camera_rotation(30, 10);
+
+Motion there_and_back(const PoseFeatures& features, const Motion& motion) {
+  return features.decode(features.encode(motion, kCamera), kCamera, motion.skeleton, motion.fps(),
+                         MatrixD::Zero(motion.frames(), 3));
+}
+
+}  // namespace
+
+TEST_CASE("pose features: JSON keeps every bit, and damage is noticed") {
+  const Motion motion = swinging(small_body_below_still_root(), 20, 30, {"RFoot"});
+  const PoseFeatures features = PoseFeatures::fit({&motion});
+  const nlohmann::json json = pose_features_json(features);
+  const PoseFeatures copy = pose_features_from(nlohmann::json::parse(json.dump()));
+  CHECK(pose_features_json(copy) == json);
+  CHECK(copy.encode(motion, kCamera) == features.encode(motion, kCamera));
+  CHECK(there_and_back(copy, motion).channels == there_and_back(features, motion).channels);
+  for (const char* key : {"skeleton", "root", "joints", "constant_channels"}) {
+    nlohmann::json damaged = json;
+    damaged.erase(key);
+    CHECK_THROWS_AS(pose_features_from(damaged), InputError);
+  }
+  nlohmann::json damaged = json;
+  damaged["joints"].push_back(99);
+  CHECK_THROWS_AS(pose_features_from(damaged), InputError);
+}

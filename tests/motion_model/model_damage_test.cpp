@@ -1,0 +1,189 @@
+// A model file that is not whole is refused, and the message says what is missing.
+
+#include <doctest/doctest.h>
+
+#include "base/safetensors.hpp"
+#include "base/scratch_folder.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "motion_model/example_model.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+using nlohmann::json;
+
+namespace {
+
+/// A model's file that can be damaged and read again.
+class File {
+ public:
+  explicit File(Device& device) : device_(device) {
+    save_model(path_, ExampleModel(false).on(device));
+    whole_ = read_safetensors(path_);
+  }
+
+  const Safetensors& whole() const { return whole_; }
+  std::string path() const { return path_.string(); }
+  json about() const { return json::parse(whole_.metadata.at("mcdbn")); }
+
+  /// What loading says of this content; empty if it loads.
+  std::string complaint(const Safetensors& content) const {
+    write_safetensors(path_, content);
+    try {
+      load_model(device_, path_);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  std::string complaint(const json& about) const {
+    Safetensors content = whole_;
+    content.metadata["mcdbn"] = about.dump();
+    return complaint(content);
+  }
+  std::string describing(const json& about) const {
+    Safetensors content = whole_;
+    content.metadata["mcdbn"] = about.dump();
+    write_safetensors(path_, content);
+    try {
+      describe_model(path_);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+ private:
+  Device& device_;
+  ScratchFolder folder_;
+  std::filesystem::path path_ = folder_ / "model.safetensors";
+  Safetensors whole_;
+};
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a model of another format version is refused, by loading and by describing") {
+  on_every_device([](Device& device) {
+    const File file(device);
+    CHECK(file.about().at("format_version") == 1);
+    CHECK(file.complaint(file.about()).empty());
+    for (const json& version : {json(0), json(2), json("1"), json(nullptr), json(-1)}) {
+      json about = file.about();
+      about["format_version"] = version;
+      CHECK(says(file.complaint(about), file.path() + ": model format " + version.dump()));
+      CHECK(says(file.describing(about), "format " + version.dump()));
+    }
+  });
+}
+
+TEST_CASE("every tensor of a model is needed, in its shape; a missing one is named") {
+  on_every_device([](Device& device) {
+    const File file(device);
+    REQUIRE(file.whole().tensors.size() == 35);
+    for (const auto& [name, tensor] : file.whole().tensors) {
+      CAPTURE(name);
+      Safetensors without = file.whole();
+      without.tensors.erase(name);
+      CHECK(says(file.complaint(without), file.path() + ": no tensor " + name + " "));
+
+      Safetensors longer = file.whole();
+      auto& changed = longer.tensors[name];
+      changed.shape[1] += 1;
+      changed.values.resize(changed.shape[0] * changed.shape[1]);
+      CHECK(says(file.complaint(longer), name + " "));
+
+      Safetensors turned = file.whole();
+      std::swap(turned.tensors[name].shape[0], turned.tensors[name].shape[1]);
+      if (tensor.shape[0] != tensor.shape[1]) CHECK(says(file.complaint(turned), name + " "));
+    }
+  });
+}
+
+TEST_CASE("every field of a model's description is needed; a missing one is named") {
+  on_every_device([](Device& device) {
+    const File file(device);
+    const std::vector<std::string> optional{"sampling", "fills_gaps", "early_stopping"};
+    // Every field of the description and of what it holds, one at a time.
+    const auto check_without = [&](const json::json_pointer& where, const std::string& name) {
+      json about = file.about();
+      CAPTURE(where.to_string());
+      CAPTURE(name);
+      REQUIRE(about.at(where).erase(name) == 1);
+      CHECK(says(file.complaint(about), "'" + name + "'"));
+    };
+    const json about = file.about();
+    for (const auto& [name, value] : about.items())
+      if (std::find(optional.begin(), optional.end(), name) == optional.end())
+        check_without(json::json_pointer(""), name);
+    for (const char* part :
+         {"/modalities", "/modalities/camera", "/modalities/pose_features",
+          "/modalities/track_features", "/modalities/pose_scale", "/modalities/track_scale",
+          "/sampling", "/early_stopping", "/training_clips/1", "/track/0", "/pose/2"}) {
+      const json::json_pointer where(part);
+      for (const auto& [name, value] : about.at(where).items()) check_without(where, name);
+    }
+  });
+}
+
+TEST_CASE("what is no model, and a model without layers, are refused") {
+  on_every_device([](Device& device) {
+    const File file(device);
+    Safetensors nameless = file.whole();
+    nameless.metadata.clear();
+    CHECK(says(file.complaint(nameless), file.path() + ": not a model"));
+    Safetensors garbled = file.whole();
+    garbled.metadata["mcdbn"] = "{";
+    CHECK(says(file.complaint(garbled), "damaged"));
+    for (const char* name : {"track", "pose"}) {
+      json about = file.about();
+      about[name] = json::array();
+      CHECK(says(file.complaint(about), "without layers"));
+    }
+    json about = file.about();
+    about["mrbm_hidden"] = 12;  // has 11
+    CHECK(says(file.complaint(about), "mrbm."));
+  });
+}
+
+TEST_CASE("a model's description of itself, every figure of it") {
+  const ScratchFolder folder;
+  on_every_device([&](Device& device) {
+    const ExampleModel example(false);
+    Model model = example.on(device);
+    save_model(folder / "model", model);
+    // 5-7-4 of orders 2 and 1, 9-8-3-6 of orders 3, 2 and 1, MRBM 4 + 6 to 11; a layer has W, A, B,
+    // a, b and the visible means.
+    const std::size_t track = (35 + 50 + 70 + 5 + 7 + 5) + (28 + 49 + 28 + 7 + 4 + 7);
+    const std::size_t pose =
+        (72 + 243 + 216 + 9 + 8 + 9) + (24 + 128 + 48 + 8 + 3 + 8) + (18 + 9 + 18 + 3 + 6 + 3);
+    const std::size_t mrbm = 44 + 66 + 4 + 6 + 11;
+    const json whole = {
+        {"training_clips", {"a.bvh", "b.bvh"}},
+        {"parameters", track + pose + mrbm},
+        {"fps", 24.5},
+        {"order", 3},
+        {"layers", 2},
+        {"hidden", 31},
+        {"mrbm-hidden", 17},
+        {"camera.azimuth", {20, -40}},
+        {"camera.elevation", 7.5},
+        {"seed", 9},
+        {"look_ahead", 4},
+        {"mean_field_steps", 6},
+        {"early_stopping", {{"held_out", {"c.bvh", "d.bvh"}}, {"steps", 75}, {"loss", 1.0 / 3.0}}}};
+    CHECK(describe_model(folder / "model") == whole);
+    model.early_stopping.reset();
+    model.config.erase("layers");
+    model.training_clips.pop_back();
+    save_model(folder / "model", model);
+    json less = whole;
+    less.erase("early_stopping");
+    less.erase("layers");
+    less["training_clips"] = {"a.bvh"};
+    CHECK(describe_model(folder / "model") == less);
+  });
+  CHECK_THROWS_AS(describe_model(folder / "missing"), InputError);
+}

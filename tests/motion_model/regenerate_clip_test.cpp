@@ -1,0 +1,179 @@
+// From a track to clips: rates, gaps, and every option on its way to its use.
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "camera/track_noise.hpp"
+#include "camera/track_resample.hpp"
+#include "device/every_device.hpp"
+#include "fitting/track_smoothing.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion_model/clip_regeneration.hpp"
+#include "motion/resample.hpp"
+#include "motion_model/clip_scene.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+/// A clip at the model's 30 frames a second, and one of another length at another rate, whose
+/// track is off by some pixels.
+struct Scene {
+  Motion training = swinging(small_body(), 60);
+  CameraPlacement view{35, 12, std::nullopt, 45, 1920, 1080};
+  Modalities modalities = modalities_of({training}, view);
+  Motion clip;
+  Camera camera;
+  Track2d track;
+
+  explicit Scene(double fps, int frames = 50)
+      : clip(swinging(small_body(), frames, fps)),
+        camera(place_camera(clip, view)),
+        track(project_motion(clip, camera)) {
+    add_pixel_noise(track, 2.0, 3);
+  }
+  ClipPlacement placement() const { return {camera, clip.skeleton, std::nullopt}; }
+  Model model(Device& device) const {
+    return {random_network(device, modalities), modalities, {}, {}};
+  }
+};
+
+RegenerationOptions some_options() {
+  RegenerationOptions options;
+  options.samples = 2;
+  options.temperature = 0.8;
+  options.sampling = {.gibbs_steps = 2, .mrbm_gibbs_steps = 3, .steady = true, .scale = 0.9};
+  options.seed = 41;
+  options.run_in = 7;
+  return options;
+}
+
+/// Step by step: the track to the model's rate, then its noise out; the motion back to its rate.
+std::vector<Motion> step_by_step(const Model& model, const Track2d& track,
+                                 const ClipPlacement& placement,
+                                 const RegenerationOptions& options) {
+  const Track2d at_rate = resample_track(track, model.modalities.fps);
+  MatrixF seen = model.modalities.encode_track(smooth_track(at_rate));
+  seen = fill_gaps(model.modalities, seen, at_rate, placement,
+                   [&](const MatrixF& some) { return single_answer(model.network, some); });
+  std::vector<Motion> motions;
+  for (const MatrixF& pose : regenerate(model.network, {seen}, options))
+    motions.push_back(
+        resample(motion_from_features(model.modalities, pose, at_rate, placement), track.fps));
+  return motions;
+}
+
+double largest(const MatrixD& difference) {
+  return difference.cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+TEST_CASE("regenerate_clip: as many frames as the track has, at the track's rate") {
+  on_every_device([](Device& device) {
+    for (const double fps : {30.0, 47.0, 120.0, 24.0, 15.0})
+      for (const int frames : {1, 2, 50}) {
+        CAPTURE(fps);
+        CAPTURE(frames);
+        const Scene scene(fps, frames);
+        const auto motions =
+            regenerate_clip(scene.model(device), scene.track, scene.placement(), {});
+        REQUIRE(motions.size() == 1);
+        CHECK(motions[0].frames() == frames);
+        if (frames > 2) CHECK(motions[0].fps() == doctest::Approx(fps));
+        CHECK(motions[0].channels.allFinite());
+      }
+  });
+}
+
+TEST_CASE("regenerate_clip: every option comes to its use") {
+  on_every_device([](Device& device) {
+    for (const double fps : {30.0, 47.0, 20.0}) {
+      CAPTURE(fps);
+      const Scene scene(fps);
+      const Model model = scene.model(device);
+      const RegenerationOptions options = some_options();
+      const auto got = regenerate_clip(model, scene.track, scene.placement(), options);
+      const auto want = step_by_step(model, scene.track, scene.placement(), options);
+      REQUIRE(got.size() == 2);
+      for (std::size_t i = 0; i < 2; ++i) {
+        // Beyond the last frame at the model's rate the last one stays.
+        const int have = std::min(want[i].frames(), scene.clip.frames());
+        CHECK(largest(got[i].channels.topRows(have) - want[i].channels.topRows(have)) < 1e-9);
+        for (int t = have; t < got[i].frames(); ++t)
+          CHECK(largest(got[i].channels.row(t) - want[i].channels.row(have - 1)) < 1e-9);
+      }
+      CHECK(largest(got[0].channels - got[1].channels) > 1e-3);
+    }
+    // Each option alone changes what comes out.
+    const Scene scene(30.0);
+    const Model model = scene.model(device);
+    const auto first = [&](const RegenerationOptions& options, const ClipPlacement& placement) {
+      return regenerate_clip(model, scene.track, placement, options).at(0).channels;
+    };
+    const RegenerationOptions options = some_options();
+    const MatrixD usual = first(options, scene.placement());
+    CHECK(first(options, scene.placement()) == usual);
+    std::vector<RegenerationOptions> others(7, options);
+    others[0].seed = 42;
+    others[1].temperature = 0.4;
+    others[2].sampling.gibbs_steps = 3;
+    others[3].sampling.mrbm_gibbs_steps = 1;
+    others[4].sampling.steady = false;
+    others[5].sampling.scale = 0.45;
+    others[6].run_in = 0;
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      CAPTURE(i);
+      CHECK(largest(first(others[i], scene.placement()) - usual) > 1e-4);
+    }
+    std::vector<ClipPlacement> places(3, scene.placement());
+    places[0].camera.reset();
+    places[1].fit = TrackFitSettings{};
+    places[2].skeleton->joints[2].offset *= 1.2;
+    for (const ClipPlacement& place : places)
+      CHECK((first(options, place) - usual).cwiseAbs().maxCoeff() > 1e-4);
+  });
+}
+
+TEST_CASE(
+    "regenerate_clip: gaps are counted, filled from the answer, and a lost joint is an error") {
+  on_every_device([](Device& device) {
+    Scene scene(30.0);
+    const Model model = scene.model(device);
+    const int hand = scene.track.find("LHand"), foot = scene.track.find("RFoot");
+    // At most 0.2 s are interpolated: six frames; what is longer is missing.
+    scene.track.confidence.col(hand).segment(10, 6).setZero();
+    scene.track.x_px.col(foot).segment(20, 7).setConstant(std::numeric_limits<double>::quiet_NaN());
+    TrackFeatures::FillCount filled;
+    const auto got = regenerate_clip(model, scene.track, scene.placement(), {}, &filled);
+    CHECK(filled.interpolated == 6);
+    CHECK(filled.missing == 7);
+    const auto want = step_by_step(model, scene.track, scene.placement(), {});
+    CHECK(largest(got[0].channels - want[0].channels) < 1e-9);
+    Track2d lost = scene.track;
+    lost.joint_names[static_cast<std::size_t>(hand)] = "Tail";
+    CHECK_THROWS_AS(regenerate_clip(model, lost, scene.placement(), {}), InputError);
+  });
+}
+
+TEST_CASE("gaps are filled in three rounds, each from the answer to the round before") {
+  Scene scene(30.0);
+  scene.track.confidence.col(scene.track.find("LHand")).segment(10, 20).setZero();
+  const Modalities& m = scene.modalities;
+  const MatrixF features = m.encode_track(scene.track);
+  const MatrixF truth = m.encode_pose(scene.clip, scene.camera.camera_from_world);
+  std::vector<MatrixF> asked;
+  // Each answer holds the arm elsewhere, so that every round shows.
+  const auto answer = [&](const MatrixF& seen) -> MatrixF {
+    asked.push_back(seen);
+    return truth * (1.0F - 0.1F * static_cast<float>(asked.size()));
+  };
+  const MatrixF filled = fill_gaps(m, features, scene.track, scene.placement(), answer);
+  REQUIRE(asked.size() == 3);
+  CHECK(asked[0].array().isNaN().any());
+  for (const MatrixF& seen : {asked[1], asked[2], filled}) CHECK_FALSE(seen.array().isNaN().any());
+  CHECK(asked[1] != asked[2]);
+  CHECK(filled != asked[2]);
+}

@@ -1,0 +1,193 @@
+#include "mcdbn/motion_model/training_schedule.hpp"
+#include "mcdbn/learning/greedy_schedule.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "corpus/augmented_views.hpp"
+#include "corpus/training_files.hpp"
+#include "learning/random_start.hpp"
+#include "learning/small_network.hpp"
+#include "mcdbn/base/errors.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+/// Files, settings and the training set of a run that takes a second.
+struct SmallTraining {
+  TrainingFiles walks{{{1, 1, 30.0, 1.2}, {2, 1, 30.0, 1.0}}};
+  TrainingConfig config = settings();
+  TrainingSet data = make_training_set(walks.files(), config, nullptr);
+
+  TrainedNetwork train(Device& device, const TrainingConfig& with,
+                       const EpochObserver& observer = {}) const {
+    return train_network(device, data, walks.files(), with, observer);
+  }
+  TrainingSet views(const TrainingConfig& with) const {
+    return make_augmented_views(walks.files(), data.modalities, with);
+  }
+  Mcdbn start(Device& device, const TrainingConfig& with) const {
+    return random_start(device, static_cast<std::size_t>(data.tracks.front().cols()),
+                        static_cast<std::size_t>(data.poses.front().cols()), with);
+  }
+
+ private:
+  static TrainingConfig settings() {
+    TrainingConfig config;
+    config.seed = 19;
+    config.hidden = 8;
+    config.mrbm_hidden = 6;
+    config.order = 2;
+    config.look_ahead = 2;
+    config.batch = 20;
+    config.least_batches = 2;
+    config.gaussian.epochs = config.mrbm.epochs = 2;
+    config.gaussian.gibbs_steps = 1;
+    config.mrbm.mean_field_steps = 4;
+    config.augment.views = 2;
+    config.fine_tuning.steps = 3;
+    config.fine_tuning.windows = 4;
+    config.fine_tuning.window_frames = 4;
+    config.fine_tuning.mean_field_steps = 2;
+    return config;
+  }
+};
+
+/// All parameters of two networks are the same bits, at the same steps and look-ahead.
+bool same_network(const Mcdbn& x, const Mcdbn& y) {
+  const auto flat = [](const Mcdbn& network) { return in_double(on_host(network)).flattened(); };
+  return flat(x) == flat(y) && x.look_ahead == y.look_ahead &&
+         x.mean_field_steps == y.mean_field_steps && x.fills_gaps == y.fills_gaps;
+}
+
+std::vector<std::string> stages_of(const std::vector<EpochReport>& reports) {
+  std::vector<std::string> stages;
+  for (const EpochReport& report : reports)
+    if (stages.empty() || stages.back() != report.stage) stages.push_back(report.stage);
+  return stages;
+}
+
+const EpochReport& last_of(const std::vector<EpochReport>& reports, const std::string& stage) {
+  return *std::find_if(reports.rbegin(), reports.rend(),
+                       [&](const EpochReport& report) { return report.stage == stage; });
+}
+
+void check_progress_rises(const std::vector<EpochReport>& reports) {
+  double before = 0;
+  for (const EpochReport& report : reports) {
+    CHECK(report.overall_progress > before);
+    before = report.overall_progress;
+  }
+  CHECK(before == doctest::Approx(1.0));
+}
+
+}  // namespace
+
+TEST_CASE("without fine-tuning the greedy stages learn the clips as they are") {
+  const SmallTraining small;
+  TrainingConfig config = small.config;
+  config.fine_tuning.steps = 0;
+  on_every_device([&](Device& device) {
+    std::vector<EpochReport> reports;
+    const TrainedNetwork trained =
+        small.train(device, config, [&](const EpochReport& report) { reports.push_back(report); });
+    CHECK(same_network(trained.network, train_greedy(device, paired_clips(small.data), config)));
+    CHECK(trained.network.fills_gaps);
+    CHECK(trained.network.mean_field_steps == 4);
+    CHECK_FALSE(trained.early_stopping);
+    CHECK(stages_of(reports) == std::vector<std::string>{"pose.0", "track.0", "mrbm"});
+    check_progress_rises(reports);
+  });
+}
+
+TEST_CASE("fine-tuning goes on from what the greedy stages made of its start and the same views") {
+  const SmallTraining small;
+  on_every_device([&](Device& device) {
+    std::vector<EpochReport> reports;
+    const TrainedNetwork trained = small.train(
+        device, small.config, [&](const EpochReport& report) { reports.push_back(report); });
+    const TrainingSet views = small.views(small.config);
+    const Mcdbn start = small.start(device, small.config);
+    const Mcdbn greedy = train_greedy(device, paired_clips(views), small.config, {}, &start);
+    CHECK(same_network(trained.network, fine_tune(device, greedy, views, small.config).network));
+    CHECK_FALSE(trained.network.fills_gaps);
+    CHECK(trained.network.mean_field_steps == 2);
+    CHECK(stages_of(reports) == std::vector<std::string>{"pose.0", "track.0", "mrbm", "joint"});
+    check_progress_rises(reports);
+    CHECK(last_of(reports, "mrbm").overall_progress == doctest::Approx(0.1));
+    CHECK(last_of(reports, "mrbm").stage_progress == doctest::Approx(1.0));
+
+    TrainingConfig alone = small.config;
+    alone.fine_tuning.from_greedy = false;
+    reports.clear();
+    const TrainedNetwork without =
+        small.train(device, alone, [&](const EpochReport& report) { reports.push_back(report); });
+    CHECK(same_network(without.network, fine_tune(device, start, views, alone).network));
+    CHECK_FALSE(same_network(without.network, trained.network));
+    CHECK(stages_of(reports) == std::vector<std::string>{"joint"});
+    check_progress_rises(reports);
+  });
+}
+
+TEST_CASE("fine-tuning's progress runs on from that of the greedy stages") {
+  SmallTraining small;
+  small.config.fine_tuning.steps = 50;
+  on_every_device([&](Device& device) {
+    for (const bool from_greedy : {true, false}) {
+      TrainingConfig config = small.config;
+      config.fine_tuning.from_greedy = from_greedy;
+      std::vector<double> progress;
+      small.train(device, config, [&](const EpochReport& report) {
+        if (report.stage == "joint") progress.push_back(report.overall_progress);
+      });
+      REQUIRE(progress.size() == 2);
+      CHECK(progress[0] == doctest::Approx(from_greedy ? 0.1 + 0.9 * 0.5 : 0.5));
+      CHECK(progress[1] == doctest::Approx(1.0));
+    }
+  });
+}
+
+TEST_CASE("one person of several is held out by the whole run too, and the observer may stop it") {
+  SmallTraining small;
+  small.config.hold_out_among = 2;
+  on_every_device([&](Device& device) {
+    const TrainedNetwork trained = small.train(device, small.config);
+    REQUIRE(trained.early_stopping);
+    CHECK(trained.early_stopping->held_out == std::vector<std::string>{"walk_2_1.bvh"});
+    const auto stop_at = [&](const std::string& stage) {
+      return [stage](const EpochReport& report) {
+        if (report.stage == stage) throw InputError("enough of " + report.stage);
+      };
+    };
+    CHECK_THROWS_WITH(small.train(device, small.config, stop_at("mrbm")), "enough of mrbm");
+    CHECK_THROWS_WITH(small.train(device, small.config, stop_at("joint")), "enough of joint");
+  });
+}
+
+TEST_CASE("a run's seed reaches its views, its start, its greedy stages and its fine-tuning") {
+  const SmallTraining small;
+  TrainingConfig other = small.config;
+  other.seed = 20;
+  on_every_device([&](Device& device) {
+    const TrainedNetwork trained = small.train(device, other);
+    const TrainingSet views = small.views(other), old_views = small.views(small.config);
+    const Mcdbn start = small.start(device, other), old_start = small.start(device, small.config);
+    const auto from = [&](const TrainingSet& greedy_views, const Mcdbn& greedy_start,
+                          const TrainingConfig& greedy_config, const TrainingSet& joint_views,
+                          const TrainingConfig& joint_config) {
+      const Mcdbn greedy =
+          train_greedy(device, paired_clips(greedy_views), greedy_config, {}, &greedy_start);
+      return fine_tune(device, greedy, joint_views, joint_config).network;
+    };
+    CHECK(same_network(trained.network, from(views, start, other, views, other)));
+    // Were any of them the old seed's, the result would be another.
+    CHECK_FALSE(same_network(trained.network, from(old_views, start, other, views, other)));
+    CHECK_FALSE(same_network(trained.network, from(views, old_start, other, views, other)));
+    CHECK_FALSE(same_network(trained.network, from(views, start, small.config, views, other)));
+    CHECK_FALSE(same_network(trained.network, from(views, start, other, old_views, other)));
+    CHECK_FALSE(same_network(trained.network, from(views, start, other, views, small.config)));
+  });
+}
