@@ -59,7 +59,7 @@ void print_table(const EvaluationReport& report) {
                verdict.text);
 }
 
-/// The views that the model's joint stage learnt from, made again, for the MLP to learn from too.
+/// The views that the model's fine-tuning learnt from, made again, for the MLP to learn from too.
 void add_views(const Model& model, TestRunOptions& run) {
   const TrainingConfig config = settings_from_json(model.config);
   if (config.fine_tuning.steps == 0) return;

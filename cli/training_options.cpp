@@ -12,6 +12,9 @@
 namespace mcdbn::cli {
 namespace {
 
+/// The group of options that the help does not list.
+constexpr const char* kHidden = "";
+
 std::string flag_of(const std::string& setting) {
   std::string flag = "--" + setting;
   std::replace(flag.begin(), flag.end(), '.', '-');
@@ -55,10 +58,10 @@ void TrainingOptions::add_to(CLI::App& command) {
       .add_option(
           "--stages", stages_,
           "greedy: layer by layer, as the paper does, and with two layers of order 5 and 300 "
-          "units unless told otherwise; joint: the whole network by back-propagation, from random "
-          "weights; both: some epochs of the one before the other "
+          "units unless told otherwise; fine-tuning: the whole network by back-propagation, from "
+          "random weights; both: some epochs of the one before the other "
           "(default, but for --preset paper)")
-      ->check(CLI::IsMember({"greedy", "joint", "both"}));
+      ->check(CLI::IsMember({"greedy", "fine-tuning", "joint", "both"}));
   command
       .add_option_function<std::filesystem::path>(
           "--config",
@@ -80,16 +83,21 @@ void TrainingOptions::add_to(CLI::App& command) {
         });
       });
     };
-    CLI::Option* option = nullptr;
-    if constexpr (std::is_same_v<Member, bool>) {
-      const std::string flag = flag_of(name);
-      option = command.add_flag_function(
-          flag + ",!--no" + flag.substr(1), [set](std::int64_t count) { set(count > 0); }, help);
-    } else {
-      option = command.add_option_function<Member>(flag_of(name), set, help);
-      option->default_str(fmt::format("{}", member))->run_callback_for_default(false);
-    }
-    option->group("Settings");
+    const auto add_flag = [&](const std::string& flag, const char* group) {
+      if constexpr (std::is_same_v<Member, bool>) {
+        const std::string both = flag + ",!--no" + flag.substr(1);
+        const auto switch_to = [set](std::int64_t count) { set(count > 0); };
+        command.add_flag_function(both, switch_to, help)->group(group);
+      } else {
+        command.add_option_function<Member>(flag, set, help)
+            ->default_str(fmt::format("{}", member))
+            ->run_callback_for_default(false)
+            ->group(group);
+      }
+    };
+    add_flag(flag_of(name), "Settings");
+    const std::string former = former_name(name);
+    if (!former.empty()) add_flag(flag_of(former), kHidden);
   });
 }
 
@@ -112,14 +120,14 @@ void TrainingOptions::apply_stages(TrainingConfig& config) const {
     config.fine_tuning.steps = 0;
   else if (config.fine_tuning.steps == 0)
     config.fine_tuning.steps = FineTuningSettings{}.steps;
-  config.fine_tuning.from_greedy = stages_ != "joint";
+  config.fine_tuning.from_greedy = stages_ != "fine-tuning" && stages_ != "joint";
 }
 
 void assign_setting(TrainingConfig& config, const std::string& name, const nlohmann::json& value,
                     const std::string& where) {
   bool found = false;
   visit_settings(config, [&](const std::string& setting, auto& member, const char*) {
-    if (setting != name) return;
+    if (setting != name && former_name(setting) != name) return;
     found = true;
     using Member = std::decay_t<decltype(member)>;
     if (!fits<Member>(value))
@@ -141,7 +149,7 @@ nlohmann::json settings_json(const TrainingConfig& config) {
 
 TrainingConfig settings_from_json(const nlohmann::json& json) {
   TrainingConfig config;
-  // Models from before there was a joint stage say nothing of it.
+  // Models from before there was fine-tuning say nothing of it.
   config.fine_tuning.steps = 0;
   const nlohmann::json flat = json.flatten();
   for (const auto& [pointer, value] : flat.items()) {

@@ -27,6 +27,8 @@ class MetricsLog {
                                    {"epoch", report.epoch},
                                    {"loss", report.loss},
                                    {"windows_per_s", report.windows_per_s}};
+    // Up to version 0.1 fine-tuning was called so.
+    if (report.stage == "fine-tuning") line["former_stage"] = "joint";
     if (report.held_out_loss) line["held_out_loss"] = *report.held_out_loss;
     if (report.health) append(line, *report.health);
     stream_ << line.dump() << '\n' << std::flush;

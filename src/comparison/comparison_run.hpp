@@ -24,7 +24,7 @@ struct TestRunOptions {
   CameraPlacement camera;
   RegenerationOptions regeneration;
   /// What the MLP is fitted on where there are any, in place of the training clips: the views that
-  /// the model's joint stage saw, [frames x dimension] each, so that both learnt from the same.
+  /// the model's fine-tuning saw, [frames x dimension] each, so that both learnt from the same.
   std::vector<MatrixF> view_tracks, view_poses;
   std::optional<TrackFitSettings> fit =
       TrackFitSettings{};  ///< of every method's answer; unset: none

@@ -7,7 +7,7 @@
 
 namespace mcdbn {
 
-/// Views of the training clips (augmented_view), standardized, for the joint stage:
+/// Views of the training clips (augmented_view), standardized, for fine-tuning:
 /// config.augment.views of each clip, fewer where that would be more than some two hours.
 /// @param files as make_training_set read them  @throws InputError
 TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files,

@@ -20,6 +20,8 @@ namespace {
 
 constexpr std::uint16_t kDropoutStream = 194;  // of random numbers
 
+constexpr const char* kStage = "fine-tuning";
+
 /// Mini-batches between two reports.
 constexpr std::size_t kReportEvery = 25;
 /// The other direction takes part in every so many mini-batches, with as many times its weight.
@@ -189,7 +191,7 @@ SequenceWindows sequence_windows(const Mcdbn& network, const FineTuningSettings&
 EpochReport report_of(std::size_t done, const FineTuningSettings& settings, double loss,
                       double took_s) {
   EpochReport report;
-  report.stage = "joint";
+  report.stage = kStage;
   report.epoch = done;
   report.epochs = settings.steps;
   report.loss = loss;
@@ -210,8 +212,8 @@ FineTuned fine_tune(Device& device, const Mcdbn& start, const PairedClips& clips
   if (held_out) judged.emplace(device, *held_out, windows, settings, make_loss);
   FineTuner tuner(device, start, clips, windows, settings, make_loss);
   HeldOutRecord record;
-  DivergenceGuard guard("joint",
-                        fmt::format("lower --joint-rate (now {:g})", settings.fine_tuning.rate));
+  DivergenceGuard guard(
+      kStage, fmt::format("lower --fine-tuning-rate (now {:g})", settings.fine_tuning.rate));
   auto last = std::chrono::steady_clock::now();
   for (std::size_t done = 1; done <= steps; ++done) {
     tuner.step(done - 1);

@@ -62,12 +62,13 @@ void LearningSettings::validate() const {
   require_positive("mrbm.rate", mrbm.rate);
   require_positive("mrbm.mean-field-steps", mrbm.mean_field_steps);
   require_positive("mrbm.epochs", mrbm.epochs);
-  require_positive("joint.windows", fine_tuning.windows);
-  require_positive("joint.rate", fine_tuning.rate);
-  require_positive("joint.mean-field-steps", fine_tuning.mean_field_steps);
-  if (fine_tuning.window_frames < 2) throw ConfigError("joint.window-frames must be at least 2");
-  require_share("joint.dropout", fine_tuning.dropout);
-  require_share("joint.average", fine_tuning.average);
+  require_positive("fine-tuning.windows", fine_tuning.windows);
+  require_positive("fine-tuning.rate", fine_tuning.rate);
+  require_positive("fine-tuning.mean-field-steps", fine_tuning.mean_field_steps);
+  if (fine_tuning.window_frames < 2)
+    throw ConfigError("fine-tuning.window-frames must be at least 2");
+  require_share("fine-tuning.dropout", fine_tuning.dropout);
+  require_share("fine-tuning.average", fine_tuning.average);
 }
 
 }  // namespace mcdbn

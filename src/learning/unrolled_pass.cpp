@@ -56,7 +56,7 @@ UnrolledPass::UnrolledPass(UnrolledNetwork& network, Modality present,
       down_layers_(network.layers(other(present))) {
   if (windows.first < std::max(total_order(up_layers_), longest_order(down_layers_)) ||
       windows.lead < windows.first || windows.lead >= windows.frames)
-    throw ShapeError("joint pass: the windows are too short for the layers' histories");
+    throw ShapeError("unrolled pass: the windows are too short for the layers' histories");
   Device& device = network.device();
   const std::size_t code = up_layers_.back().crbm.shape().hidden,
                     absent_code = down_layers_.back().crbm.shape().hidden,
@@ -82,7 +82,7 @@ UnrolledPass::UnrolledPass(UnrolledNetwork& network, Modality present,
                                layer.crbm.shape().visible);
   }
   if (code != network.mrbm().visible(present))
-    throw ShapeError("joint pass: the MRBM does not fit the CDBN's code");
+    throw ShapeError("unrolled pass: the MRBM does not fit the CDBN's code");
 }
 
 void UnrolledPass::forward(const Rows& present, float kept_share, const RandomKey& key) {

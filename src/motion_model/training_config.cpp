@@ -14,6 +14,13 @@ TrainingConfig TrainingConfig::paper() {
   return config;
 }
 
+std::string former_name(const std::string& setting) {
+  const std::string prefix = "fine-tuning.";
+  if (!setting.starts_with(prefix)) return {};
+  const std::string part = setting.substr(prefix.size());
+  return "joint." + (part == "positions" ? "places" : part);
+}
+
 void TrainingConfig::validate() const {
   CorpusSettings::validate();
   LearningSettings::validate();

@@ -42,7 +42,7 @@ TEST_CASE("info says of a model what it was trained with") {
   CHECK(about.at("seed") == 1);
   CHECK(about.at("fps") == 30);
   CHECK(about.at("look_ahead") == 5);
-  CHECK(about.at("mean_field_steps") == 2);  // the joint stage's
+  CHECK(about.at("mean_field_steps") == 2);  // fine-tuning's
 }
 
 TEST_CASE("devices: every option changes what its help says") {

@@ -60,7 +60,7 @@ TEST_CASE("exit codes: usage 2, input 3, without any device") {
            {"info absent.csv", 3, "absent.csv"},
            {"train absent -o " + out, 3, "absent"},
            {"train " + clip + " -o " + out + " --hidden 0", 2, "hidden"},
-           {"train " + clip + " -o " + out + " --joint-dropout 1", 2, "joint.dropout"},
+           {"train " + clip + " -o " + out + " --fine-tuning-dropout 1", 2, "fine-tuning.dropout"},
            {"regenerate --input t.csv -o " + out, 2, "--model"},
            {"evaluate --model m", 2, "--test"},
            {"bench --seconds 601", 2, "--seconds"},

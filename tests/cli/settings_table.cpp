@@ -61,22 +61,22 @@ const std::vector<SettingRow>& setting_rows() {
       SETTING("mrbm.initial-deviation", 0.043, mrbm.initial_deviation),
       SETTING("mrbm.mean-field-steps", 4, mrbm.mean_field_steps),
       SETTING("mrbm.epochs", 2, mrbm.epochs),
-      SETTING("joint.steps", 6, fine_tuning.steps),
-      SWITCH("joint.from-greedy", 0, fine_tuning.from_greedy),
-      SETTING("joint.windows", 5, fine_tuning.windows),
-      SETTING("joint.people-power", 0.3, fine_tuning.people_power),
-      SETTING("joint.window-frames", 8, fine_tuning.window_frames),
-      SETTING("joint.settle-frames", 3, fine_tuning.settle_frames),
-      SETTING("joint.rate", 0.0033, fine_tuning.rate),
-      SETTING("joint.weight-decay", 0.7, fine_tuning.weight_decay),
-      SETTING("joint.dropout", 0.2, fine_tuning.dropout),
-      SETTING("joint.average", 0.8, fine_tuning.average),
-      SETTING("joint.places", 0.6, pose_loss.positions),
-      SETTING("joint.velocities", 0.4, pose_loss.velocities),
-      SETTING("joint.contacts", 0.15, pose_loss.contacts),
-      SETTING("joint.reverse", 0.25, fine_tuning.reverse),
-      SETTING("joint.mean-field-steps", 3, fine_tuning.mean_field_steps),
-      SETTING("joint.hold-out-among", 2, hold_out_among),
+      SETTING("fine-tuning.steps", 6, fine_tuning.steps),
+      SWITCH("fine-tuning.from-greedy", 0, fine_tuning.from_greedy),
+      SETTING("fine-tuning.windows", 5, fine_tuning.windows),
+      SETTING("fine-tuning.people-power", 0.3, fine_tuning.people_power),
+      SETTING("fine-tuning.window-frames", 8, fine_tuning.window_frames),
+      SETTING("fine-tuning.settle-frames", 3, fine_tuning.settle_frames),
+      SETTING("fine-tuning.rate", 0.0033, fine_tuning.rate),
+      SETTING("fine-tuning.weight-decay", 0.7, fine_tuning.weight_decay),
+      SETTING("fine-tuning.dropout", 0.2, fine_tuning.dropout),
+      SETTING("fine-tuning.average", 0.8, fine_tuning.average),
+      SETTING("fine-tuning.positions", 0.6, pose_loss.positions),
+      SETTING("fine-tuning.velocities", 0.4, pose_loss.velocities),
+      SETTING("fine-tuning.contacts", 0.15, pose_loss.contacts),
+      SETTING("fine-tuning.reverse", 0.25, fine_tuning.reverse),
+      SETTING("fine-tuning.mean-field-steps", 3, fine_tuning.mean_field_steps),
+      SETTING("fine-tuning.hold-out-among", 2, hold_out_among),
       SETTING("augment.views", 3, augment.views),
       SWITCH("augment.mirror", 0, augment.mirror),
       SETTING("augment.azimuth", 11, augment.azimuth_deg),
@@ -112,14 +112,14 @@ std::string flag_of(const SettingRow& row) {
 std::string all_flags() {
   std::string flags;
   for (const SettingRow& row : setting_rows())
-    if (std::string(row.name) != "joint.from-greedy") flags += " " + flag_of(row);
+    if (std::string(row.name) != "fine-tuning.from-greedy") flags += " " + flag_of(row);
   return flags;
 }
 
 TrainingConfig all_settings() {
   TrainingConfig config;
   for (const SettingRow& row : setting_rows())
-    if (std::string(row.name) != "joint.from-greedy") row.write(config, row.value);
+    if (std::string(row.name) != "fine-tuning.from-greedy") row.write(config, row.value);
   return config;
 }
 
@@ -127,7 +127,7 @@ std::string all_toml() {
   std::map<std::string, std::string> tables;  // the settings without a table come first: ""
   for (const SettingRow& row : setting_rows()) {
     const std::string name = row.name;
-    if (name == "joint.from-greedy") continue;
+    if (name == "fine-tuning.from-greedy") continue;
     const auto dot = name.find('.');
     const std::string table = dot == std::string::npos ? "" : name.substr(0, dot);
     const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);

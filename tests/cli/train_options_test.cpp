@@ -18,7 +18,8 @@ namespace {
 const std::string kQuick =
     kTinyGreedy + " --stages greedy --layers 1 --order 2 --least-batches 1 --batch 36";
 
-constexpr const char* kSwitches[] = {"keep-first-frame", "joint.from-greedy", "augment.mirror"};
+constexpr const char* kSwitches[] = {"keep-first-frame", "fine-tuning.from-greedy",
+                                     "augment.mirror"};
 
 std::string with_dashes(std::string name) {
   std::replace(name.begin(), name.end(), '.', '-');

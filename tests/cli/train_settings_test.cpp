@@ -168,20 +168,42 @@ TEST_CASE("--preset and --stages say which stages there are and whose defaults h
   check_settings(settings_of_options("--preset default"), TrainingConfig{}, {});
   check_settings(settings_of_options("--preset paper"), TrainingConfig::paper(), {});
   check_settings(settings_of_options("--stages greedy"), TrainingConfig::greedy(), {});
-  check_settings(settings_of_options("--joint-steps 0 --hidden 6"), TrainingConfig::greedy(),
+  check_settings(settings_of_options("--fine-tuning-steps 0 --hidden 6"), TrainingConfig::greedy(),
                  {{"hidden", 6}});
-  check_settings(settings_of_options("--stages joint"), TrainingConfig{},
-                 {{"joint.from-greedy", 0}});
-  check_settings(settings_of_options("--no-joint-from-greedy"), TrainingConfig{},
-                 {{"joint.from-greedy", 0}});
-  check_settings(settings_of_options("--stages both --no-joint-from-greedy --joint-steps 7"),
-                 TrainingConfig{}, {{"joint.steps", 7}});
+  check_settings(settings_of_options("--stages fine-tuning"), TrainingConfig{},
+                 {{"fine-tuning.from-greedy", 0}});
+  check_settings(settings_of_options("--no-fine-tuning-from-greedy"), TrainingConfig{},
+                 {{"fine-tuning.from-greedy", 0}});
+  check_settings(
+      settings_of_options("--stages both --no-fine-tuning-from-greedy --fine-tuning-steps 7"),
+      TrainingConfig{}, {{"fine-tuning.steps", 7}});
   // Who asks for the stage gets it, however many steps the preset or the flags say.
   const double steps = static_cast<double>(TrainingConfig{}.fine_tuning.steps);
   check_settings(settings_of_options("--preset paper --stages both"), TrainingConfig::paper(),
-                 {{"joint.steps", steps}});
-  check_settings(settings_of_options("--stages joint --joint-steps 0"), TrainingConfig{},
-                 {{"joint.steps", steps}, {"joint.from-greedy", 0}});
-  check_settings(settings_of_options("--stages greedy --joint-steps 5 --layers 3"),
+                 {{"fine-tuning.steps", steps}});
+  check_settings(settings_of_options("--stages fine-tuning --fine-tuning-steps 0"),
+                 TrainingConfig{}, {{"fine-tuning.steps", steps}, {"fine-tuning.from-greedy", 0}});
+  check_settings(settings_of_options("--stages greedy --fine-tuning-steps 5 --layers 3"),
                  TrainingConfig::greedy(), Wanted{{"layers", 3}});
+}
+
+TEST_CASE("fine-tuning's settings are known by their former names too") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  const fs::path file = folder.write("former.toml", "[joint]\nrate = 0.5\nplaces = 0.25\n");
+  check_settings(settings_of_options(fmt::format("--joint-steps 7 --no-joint-from-greedy "
+                                                 "--joint-places 0.75 --config '{}'",
+                                                 file.string())),
+                 TrainingConfig{},
+                 {{"fine-tuning.steps", 7},
+                  {"fine-tuning.from-greedy", 0},
+                  {"fine-tuning.rate", 0.5},
+                  {"fine-tuning.positions", 0.75}});
+  check_settings(settings_of_options("--stages joint"), TrainingConfig{},
+                 {{"fine-tuning.from-greedy", 0}});
+  CHECK(run_cli("train --help").standard_output.find("--joint-") == std::string::npos);
+  const std::string metrics =
+      mcdbn::read_text_file(TinyPipeline::instance().folder("run") / "metrics.jsonl");
+  CHECK(metrics.find("\"stage\":\"fine-tuning\"") != std::string::npos);
+  CHECK(metrics.find("\"former_stage\":\"joint\"") != std::string::npos);
 }

@@ -32,7 +32,7 @@ TEST_CASE("train writes a run folder") {
   const fs::path run = TinyPipeline::instance().folder("run");
   CHECK(fs::exists(run / "model.safetensors"));
   CHECK(fs::exists(run / "config.toml"));
-  CHECK(stages_of(run) == std::set<std::string>{"pose.0", "track.0", "mrbm", "joint"});
+  CHECK(stages_of(run) == std::set<std::string>{"pose.0", "track.0", "mrbm", "fine-tuning"});
 }
 
 TEST_CASE("train --stages leaves stages out") {
@@ -46,12 +46,12 @@ TEST_CASE("train --stages leaves stages out") {
   };
   const std::set<std::string> greedy{"pose.0", "pose.1", "track.0", "track.1", "mrbm"};
   CHECK(stages("--stages greedy", kTiny) == greedy);
-  CHECK(stages("--joint-steps 0", kTinyGreedy) == greedy);
+  CHECK(stages("--fine-tuning-steps 0", kTinyGreedy) == greedy);
   CHECK(stages("--stages both", kTiny) ==
-        std::set<std::string>{"pose.0", "track.0", "mrbm", "joint"});
-  CHECK(stages("--stages joint", kTiny) == std::set<std::string>{"joint"});
+        std::set<std::string>{"pose.0", "track.0", "mrbm", "fine-tuning"});
+  CHECK(stages("--stages fine-tuning", kTiny) == std::set<std::string>{"fine-tuning"});
   std::set<std::string> all = greedy;
-  all.insert("joint");
+  all.insert("fine-tuning");
   CHECK(stages("--stages both --layers 2", kTiny) == all);
 }
 

@@ -44,7 +44,7 @@ void check_reports(const std::vector<EpochReport>& reports, const Run& run) {
   std::size_t before = 0;
   for (const EpochReport& report : reports) {
     const std::size_t done = std::min(before + 25, steps);
-    CHECK(report.stage == "joint");
+    CHECK(report.stage == "fine-tuning");
     CHECK(report.epoch == done);
     CHECK(report.epochs == steps);
     CHECK(report.stage_progress ==
@@ -141,6 +141,6 @@ TEST_CASE("fine-tuning that blows up is stopped and says what to lower") {
   small.config.fine_tuning.rate = 2.0;
   on_every_device([&](Device& device) {
     CHECK_THROWS_AS(small.train(device), DivergenceError);
-    CHECK_THROWS_WITH(small.train(device), doctest::Contains("--joint-rate (now 2)"));
+    CHECK_THROWS_WITH(small.train(device), doctest::Contains("--fine-tuning-rate (now 2)"));
   });
 }

@@ -75,7 +75,7 @@ bool same_bits(const Mcdbn& x, const Mcdbn& y) {
 
 }  // namespace
 
-TEST_CASE("the joint stage lowers its loss, and the same seed gives the same bits") {
+TEST_CASE("fine-tuning lowers its loss, and the same seed gives the same bits") {
   const SmallRun run;
   const TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
   REQUIRE(views.poses.size() == 4);
@@ -83,7 +83,7 @@ TEST_CASE("the joint stage lowers its loss, and the same seed gives the same bit
   on_every_device([&](Device& device) {
     std::vector<double> losses;
     const auto observer = [&](const EpochReport& report) {
-      CHECK(report.stage == "joint");
+      CHECK(report.stage == "fine-tuning");
       losses.push_back(report.loss);
     };
     const Mcdbn start = run.start(device);
@@ -151,7 +151,7 @@ TEST_CASE("parameters of before the person held out fared worse are kept") {
   });
 }
 
-TEST_CASE("an observer stops the joint stage, and windows need their histories") {
+TEST_CASE("an observer stops fine-tuning, and windows need their histories") {
   const SmallRun run;
   const TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
   on_every_device([&](Device& device) {
@@ -164,7 +164,7 @@ TEST_CASE("an observer stops the joint stage, and windows need their histories")
   });
 }
 
-TEST_CASE("greedy stages before the joint one go on from its own starting weights") {
+TEST_CASE("greedy stages before fine-tuning go on from its own starting weights") {
   SmallRun run;
   run.config.gaussian.rate = run.config.gaussian.rate_A = run.config.gaussian.rate_B = 1e-9;
   run.config.binary = run.config.gaussian;

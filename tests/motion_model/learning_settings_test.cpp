@@ -51,17 +51,18 @@ const std::vector<Setting>& learning_settings() {
       {"mrbm.initial-deviation", [](C& c) { return at(c.mrbm.initial_deviation); }, "0.01"},
       {"mrbm.mean-field-steps", [](C& c) { return at(c.mrbm.mean_field_steps); }, "5"},
       {"mrbm.epochs", [](C& c) { return at(c.mrbm.epochs); }, "1"},
-      {"joint.steps", [](C& c) { return at(c.fine_tuning.steps); }, "3000"},
-      {"joint.from-greedy", [](C& c) { return at(c.fine_tuning.from_greedy); }, "true"},
-      {"joint.windows", [](C& c) { return at(c.fine_tuning.windows); }, "48"},
-      {"joint.window-frames", [](C& c) { return at(c.fine_tuning.window_frames); }, "20"},
-      {"joint.settle-frames", [](C& c) { return at(c.fine_tuning.settle_frames); }, "4"},
-      {"joint.rate", [](C& c) { return at(c.fine_tuning.rate); }, "0.002"},
-      {"joint.weight-decay", [](C& c) { return at(c.fine_tuning.weight_decay); }, "1"},
-      {"joint.dropout", [](C& c) { return at(c.fine_tuning.dropout); }, "0"},
-      {"joint.average", [](C& c) { return at(c.fine_tuning.average); }, "0.995"},
-      {"joint.reverse", [](C& c) { return at(c.fine_tuning.reverse); }, "0.1"},
-      {"joint.mean-field-steps", [](C& c) { return at(c.fine_tuning.mean_field_steps); }, "2"}};
+      {"fine-tuning.steps", [](C& c) { return at(c.fine_tuning.steps); }, "3000"},
+      {"fine-tuning.from-greedy", [](C& c) { return at(c.fine_tuning.from_greedy); }, "true"},
+      {"fine-tuning.windows", [](C& c) { return at(c.fine_tuning.windows); }, "48"},
+      {"fine-tuning.window-frames", [](C& c) { return at(c.fine_tuning.window_frames); }, "20"},
+      {"fine-tuning.settle-frames", [](C& c) { return at(c.fine_tuning.settle_frames); }, "4"},
+      {"fine-tuning.rate", [](C& c) { return at(c.fine_tuning.rate); }, "0.002"},
+      {"fine-tuning.weight-decay", [](C& c) { return at(c.fine_tuning.weight_decay); }, "1"},
+      {"fine-tuning.dropout", [](C& c) { return at(c.fine_tuning.dropout); }, "0"},
+      {"fine-tuning.average", [](C& c) { return at(c.fine_tuning.average); }, "0.995"},
+      {"fine-tuning.reverse", [](C& c) { return at(c.fine_tuning.reverse); }, "0.1"},
+      {"fine-tuning.mean-field-steps", [](C& c) { return at(c.fine_tuning.mean_field_steps); },
+       "2"}};
   return settings;
 }
 
@@ -75,7 +76,8 @@ TEST_CASE("learning settings: the list leaves no member out") {
   CHECK(member_count<CdSettings>() == listed_under("gaussian."));
   CHECK(member_count<CdSettings>() == listed_under("binary."));
   CHECK(member_count<MultiPredictionSettings>() == listed_under("mrbm."));
-  CHECK(member_count<FineTuningSettings>() == listed_under("joint."));
+  // Beside them three weights of the loss on poses, and how many people it takes to spare one.
+  CHECK(member_count<FineTuningSettings>() + 4 == listed_under("fine-tuning."));
 }
 
 TEST_CASE(
@@ -88,15 +90,21 @@ TEST_CASE(
                                                        {"binary.epochs", "50"},
                                                        {"mrbm.rate", "0.001"},
                                                        {"mrbm.epochs", "30"},
-                                                       {"joint.steps", "0"}});
+                                                       {"fine-tuning.steps", "0"}});
 }
 
 TEST_CASE("learning settings: the paper's preset has the paper's own figures") {
-  Values want = {
-      {"order", "5"},         {"hidden", "300"},          {"layers", "2"},
-      {"mrbm-hidden", "150"}, {"look-ahead", "0"},        {"least-batches", "1"},
-      {"mrbm.rate", "0.1"},   {"mrbm.epochs", "30"},      {"mrbm.initial-deviation", "1"},
-      {"joint.steps", "0"},   {"binary.gibbs-steps", "5"}};
+  Values want = {{"order", "5"},
+                 {"hidden", "300"},
+                 {"layers", "2"},
+                 {"mrbm-hidden", "150"},
+                 {"look-ahead", "0"},
+                 {"least-batches", "1"},
+                 {"mrbm.rate", "0.1"},
+                 {"mrbm.epochs", "30"},
+                 {"mrbm.initial-deviation", "1"},
+                 {"fine-tuning.steps", "0"},
+                 {"binary.gibbs-steps", "5"}};
   for (const std::string kind : {"gaussian", "binary"}) {
     for (const std::string rate : {".rate", ".rate-A", ".rate-B"}) want[kind + rate] = "0.1";
     want[kind + ".momentum-from-epoch"] = "0";
@@ -118,16 +126,16 @@ TEST_CASE("learning settings: what is out of range is refused by its name") {
   for (const char* name :
        {"hidden", "layers", "mrbm-hidden", "batch", "least-batches", "gaussian.gibbs-steps",
         "gaussian.rate", "gaussian.epochs", "binary.gibbs-steps", "binary.rate", "binary.epochs",
-        "mrbm.rate", "mrbm.mean-field-steps", "mrbm.epochs", "joint.windows", "joint.rate",
-        "joint.mean-field-steps"})
+        "mrbm.rate", "mrbm.mean-field-steps", "mrbm.epochs", "fine-tuning.windows",
+        "fine-tuning.rate", "fine-tuning.mean-field-steps"})
     check_refused(name, 0, positive + "0");
-  for (const char* name : {"gaussian.rate", "binary.rate", "mrbm.rate", "joint.rate"}) {
+  for (const char* name : {"gaussian.rate", "binary.rate", "mrbm.rate", "fine-tuning.rate"}) {
     check_refused(name, -0.5, positive + "-0.5");
     check_refused(name, kNan, positive + "nan");
     check_accepted(name, 1e-9);
   }
   for (const char* name :
-       {"gaussian.momentum", "binary.momentum", "joint.dropout", "joint.average"}) {
+       {"gaussian.momentum", "binary.momentum", "fine-tuning.dropout", "fine-tuning.average"}) {
     const std::string share = " must be at least 0 and below 1, not ";
     check_refused(name, 1, share + "1");
     check_refused(name, -0.25, share + "-0.25");
@@ -135,8 +143,8 @@ TEST_CASE("learning settings: what is out of range is refused by its name") {
     check_accepted(name, 0);
     check_accepted(name, 0.999);
   }
-  check_refused("joint.window-frames", 1, " must be at least 2");
-  check_accepted("joint.window-frames", 2);
+  check_refused("fine-tuning.window-frames", 1, " must be at least 2");
+  check_accepted("fine-tuning.window-frames", 2);
 }
 
 TEST_CASE("learning settings: what may be nothing is accepted as nothing") {
@@ -144,12 +152,12 @@ TEST_CASE("learning settings: what may be nothing is accepted as nothing") {
        {"seed", "order", "look-ahead", "gaussian.rate-A", "gaussian.rate-B", "gaussian.momentum",
         "gaussian.momentum-from-epoch", "gaussian.weight-decay", "gaussian.initial-deviation",
         "binary.rate-A", "binary.weight-decay", "mrbm.weight-decay", "mrbm.initial-deviation",
-        "joint.steps", "joint.from-greedy", "joint.settle-frames", "joint.weight-decay",
-        "joint.reverse"})
+        "fine-tuning.steps", "fine-tuning.from-greedy", "fine-tuning.settle-frames",
+        "fine-tuning.weight-decay", "fine-tuning.reverse"})
     check_accepted(name, 0);
   for (const char* name : {"hidden", "layers", "mrbm-hidden", "batch", "least-batches",
                            "gaussian.gibbs-steps", "binary.epochs", "mrbm.mean-field-steps",
-                           "mrbm.epochs", "joint.windows", "joint.mean-field-steps"})
+                           "mrbm.epochs", "fine-tuning.windows", "fine-tuning.mean-field-steps"})
     check_accepted(name, 1);
 }
 

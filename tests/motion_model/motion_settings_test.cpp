@@ -18,11 +18,11 @@ const std::vector<Setting>& motion_settings() {
       {"fps", [](C& c) { return at(c.fps); }, "30"},
       {"phases", [](C& c) { return at(c.phases); }, "1"},
       {"keep-first-frame", [](C& c) { return at(c.keep_first_frame); }, "false"},
-      {"joint.people-power", [](C& c) { return at(c.fine_tuning.people_power); }, "0.5"},
-      {"joint.places", [](C& c) { return at(c.pose_loss.positions); }, "0.5"},
-      {"joint.velocities", [](C& c) { return at(c.pose_loss.velocities); }, "0.2"},
-      {"joint.contacts", [](C& c) { return at(c.pose_loss.contacts); }, "0.1"},
-      {"joint.hold-out-among", [](C& c) { return at(c.hold_out_among); }, "20"},
+      {"fine-tuning.people-power", [](C& c) { return at(c.fine_tuning.people_power); }, "0.5"},
+      {"fine-tuning.positions", [](C& c) { return at(c.pose_loss.positions); }, "0.5"},
+      {"fine-tuning.velocities", [](C& c) { return at(c.pose_loss.velocities); }, "0.2"},
+      {"fine-tuning.contacts", [](C& c) { return at(c.pose_loss.contacts); }, "0.1"},
+      {"fine-tuning.hold-out-among", [](C& c) { return at(c.hold_out_among); }, "20"},
       {"augment.views", [](C& c) { return at(c.augment.views); }, "20"},
       {"augment.mirror", [](C& c) { return at(c.augment.mirror); }, "true"},
       {"augment.azimuth", [](C& c) { return at(c.augment.azimuth_deg); }, "0"},
@@ -68,9 +68,9 @@ TEST_CASE("motion settings: what is out of range is refused by its name") {
 
 TEST_CASE("motion settings: what may be nothing is accepted as nothing") {
   for (const char* name :
-       {"keep-first-frame", "joint.people-power", "joint.places", "joint.velocities",
-        "joint.contacts", "joint.hold-out-among", "augment.mirror", "augment.azimuth",
-        "augment.distance", "augment.bone", "augment.turn", "augment.speed", "augment.noise",
-        "augment.missing", "camera.azimuth", "camera.elevation"})
+       {"keep-first-frame", "fine-tuning.people-power", "fine-tuning.positions",
+        "fine-tuning.velocities", "fine-tuning.contacts", "fine-tuning.hold-out-among",
+        "augment.mirror", "augment.azimuth", "augment.distance", "augment.bone", "augment.turn",
+        "augment.speed", "augment.noise", "augment.missing", "camera.azimuth", "camera.elevation"})
     check_accepted(name, 0);
 }

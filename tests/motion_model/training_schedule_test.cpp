@@ -115,7 +115,8 @@ TEST_CASE("fine-tuning goes on from what the greedy stages made of its start and
     CHECK(same_network(trained.network, fine_tune(device, greedy, views, small.config).network));
     CHECK_FALSE(trained.network.fills_gaps);
     CHECK(trained.network.mean_field_steps == 2);
-    CHECK(stages_of(reports) == std::vector<std::string>{"pose.0", "track.0", "mrbm", "joint"});
+    CHECK(stages_of(reports) ==
+          std::vector<std::string>{"pose.0", "track.0", "mrbm", "fine-tuning"});
     check_progress_rises(reports);
     CHECK(last_of(reports, "mrbm").overall_progress == doctest::Approx(0.1));
     CHECK(last_of(reports, "mrbm").stage_progress == doctest::Approx(1.0));
@@ -127,7 +128,7 @@ TEST_CASE("fine-tuning goes on from what the greedy stages made of its start and
         small.train(device, alone, [&](const EpochReport& report) { reports.push_back(report); });
     CHECK(same_network(without.network, fine_tune(device, start, views, alone).network));
     CHECK_FALSE(same_network(without.network, trained.network));
-    CHECK(stages_of(reports) == std::vector<std::string>{"joint"});
+    CHECK(stages_of(reports) == std::vector<std::string>{"fine-tuning"});
     check_progress_rises(reports);
   });
 }
@@ -141,7 +142,7 @@ TEST_CASE("fine-tuning's progress runs on from that of the greedy stages") {
       config.fine_tuning.from_greedy = from_greedy;
       std::vector<double> progress;
       small.train(device, config, [&](const EpochReport& report) {
-        if (report.stage == "joint") progress.push_back(report.overall_progress);
+        if (report.stage == "fine-tuning") progress.push_back(report.overall_progress);
       });
       REQUIRE(progress.size() == 2);
       CHECK(progress[0] == doctest::Approx(from_greedy ? 0.1 + 0.9 * 0.5 : 0.5));
@@ -163,7 +164,8 @@ TEST_CASE("one person of several is held out by the whole run too, and the obser
       };
     };
     CHECK_THROWS_WITH(small.train(device, small.config, stop_at("mrbm")), "enough of mrbm");
-    CHECK_THROWS_WITH(small.train(device, small.config, stop_at("joint")), "enough of joint");
+    CHECK_THROWS_WITH(small.train(device, small.config, stop_at("fine-tuning")),
+                      "enough of fine-tuning");
   });
 }
 

@@ -223,7 +223,7 @@ TEST_CASE("centered parameters come back as they were") {
   CHECK((back.visible_mean - own.visible_mean).cwiseAbs().maxCoeff() < 1e-6F);
 }
 
-TEST_CASE("the joint pass predicts what the reference does, frame by frame") {
+TEST_CASE("the unrolled pass predicts what the reference does, frame by frame") {
   const SmallFigure figure;
   const SmallNetwork small(figure.dimension());
   const Windows windows(figure.dimension());
@@ -250,7 +250,7 @@ TEST_CASE("the joint pass predicts what the reference does, frame by frame") {
   });
 }
 
-TEST_CASE("gradients of the joint stage are the finite differences of its loss") {
+TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
   const SmallFigure figure;
   const SmallNetwork small(figure.dimension());
   const Windows windows(figure.dimension());

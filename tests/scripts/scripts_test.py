@@ -18,7 +18,7 @@ import unittest
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 TINY = (
     "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2 "
-    "--joint-steps 30 --joint-windows 4 --augment-views 2"
+    "--fine-tuning-steps 30 --fine-tuning-windows 4 --augment-views 2"
 )
 SWEEP = """
 test = ["walk/walk_s02_01.bvh"]
@@ -79,10 +79,10 @@ class Scripts(unittest.TestCase):
         self.assertEqual({name: record["status"] for name, record in records.items()}, {
             "hidden=8,order=2": "ok", "hidden=8,order=3": "ok", "hidden=0,order=2": "failed",
             "hidden=0,order=3": "failed", "gaussian.rate=50.0": "failed",
-            "joint.steps=0": "ok"})
+            "fine-tuning.steps=0": "ok"})
         self.assertIn("lower --gaussian-rate", records["gaussian.rate=50.0"]["error"])
         layers = {name: record["settings"].get("layers") for name, record in records.items()}
-        self.assertEqual(layers["joint.steps=0"], 2, "the architecture of --stages greedy")
+        self.assertEqual(layers["fine-tuning.steps=0"], 2, "the architecture of --stages greedy")
         self.assertEqual(layers["hidden=8,order=2"], 1)
         scored = records["hidden=8,order=2"]
         self.assertEqual(scored["settings"]["order"], 2)
@@ -125,7 +125,7 @@ joint.from-greedy = false
         varied = [{"seed": 4},
                   {"gaussian.rate": 0.002, "hidden": 7}, {"gaussian.rate": 0.002, "hidden": 6},
                   {"gaussian.rate": 0.003, "hidden": 7}, {"gaussian.rate": 0.003, "hidden": 6},
-                  {"joint.from-greedy": False}]
+                  {"fine-tuning.from-greedy": False}]
         # What the sweep varies has the last word.
         (self.folder / "sweep.toml").write_text(text)
         training = self.folder / "walk/walk_s01_01.bvh"
@@ -148,8 +148,8 @@ joint.from-greedy = false
             self.assertEqual(settings["seed"], changes.get("seed", 9))
             self.assertEqual(settings["hidden"], changes.get("hidden", 8))
             self.assertEqual(settings["gaussian"]["rate"], changes.get("gaussian.rate", 0.001))
-            self.assertEqual(settings["joint"]["from-greedy"],
-                             changes.get("joint.from-greedy", True))
+            self.assertEqual(settings["fine-tuning"]["from-greedy"],
+                             changes.get("fine-tuning.from-greedy", True))
             figures.add(record["mpjpe_mm"])
             # The table on stdout has the same figures.
             row = next(line for line in result.stdout.splitlines() if line.startswith(name + " "))
@@ -190,8 +190,8 @@ joint.from-greedy = false
         for line in (run / "metrics.jsonl").read_text().splitlines():
             entry = json.loads(line)
             stages.setdefault(entry["stage"], []).append(entry)
-        joint = stages.pop("joint")
-        self.assertGreater(joint[-1]["loss"], 0)
+        tuned = stages.pop("fine-tuning")
+        self.assertGreater(tuned[-1]["loss"], 0)
         for stage, entries in stages.items():
             self.assertGreater(entries[-1]["weight_norm"], 0)
             self.assertTrue(0 < entries[-1]["hidden_activity"] < 1)

@@ -36,6 +36,10 @@ struct TrainingConfig : CorpusSettings, LearningSettings {
   void validate() const;
 };
 
+/// The name that a setting had up to version 0.1, which is still understood: fine-tuning was called
+/// the joint stage. Empty if it never had another.
+std::string former_name(const std::string& setting);
+
 /// Calls visit(name, member, help) for every setting, with dots between the parts of a name: the
 /// one list from which flags, TOML files and the record in the model are made.
 template <typename Config, typename Visit>
@@ -72,26 +76,32 @@ void visit_settings(Config& config, Visit&& visit) {
         "spread of the first weights, with --stages greedy");
   visit("mrbm.mean-field-steps", config.mrbm.mean_field_steps, "unrolled steps of eq 32 and 33");
   visit("mrbm.epochs", config.mrbm.epochs, "epochs (with --stages greedy 30)");
-  visit("joint.steps", config.fine_tuning.steps,
-        "mini-batches of the joint stage; 0: as --stages greedy");
-  visit("joint.from-greedy", config.fine_tuning.from_greedy,
+  visit("fine-tuning.steps", config.fine_tuning.steps,
+        "mini-batches of fine-tuning; 0: as --stages greedy");
+  visit("fine-tuning.from-greedy", config.fine_tuning.from_greedy,
         "the greedy stages come before it; else they are left out");
-  visit("joint.windows", config.fine_tuning.windows, "windows in a mini-batch");
-  visit("joint.people-power", config.fine_tuning.people_power,
+  visit("fine-tuning.windows", config.fine_tuning.windows, "windows in a mini-batch");
+  visit("fine-tuning.people-power", config.fine_tuning.people_power,
         "1: every frame counts alike; 0: every person, told by their bones");
-  visit("joint.window-frames", config.fine_tuning.window_frames, "judged frames of a window");
-  visit("joint.settle-frames", config.fine_tuning.settle_frames, "free-running frames before them");
-  visit("joint.rate", config.fine_tuning.rate, "Adam's rate");
-  visit("joint.weight-decay", config.fine_tuning.weight_decay, "decoupled decay of the weights");
-  visit("joint.dropout", config.fine_tuning.dropout, "share of hidden units left out");
-  visit("joint.average", config.fine_tuning.average, "kept of the parameters' moving average");
-  visit("joint.places", config.pose_loss.positions, "weight of joint places in the loss");
-  visit("joint.velocities", config.pose_loss.velocities, "weight of joint velocities in the loss");
-  visit("joint.contacts", config.pose_loss.contacts, "weight of planted feet's steps in the loss");
-  visit("joint.reverse", config.fine_tuning.reverse, "weight of 2D from 3D");
-  visit("joint.mean-field-steps", config.fine_tuning.mean_field_steps,
+  visit("fine-tuning.window-frames", config.fine_tuning.window_frames, "judged frames of a window");
+  visit("fine-tuning.settle-frames", config.fine_tuning.settle_frames,
+        "free-running frames before them");
+  visit("fine-tuning.rate", config.fine_tuning.rate, "Adam's rate");
+  visit("fine-tuning.weight-decay", config.fine_tuning.weight_decay,
+        "decoupled decay of the weights");
+  visit("fine-tuning.dropout", config.fine_tuning.dropout, "share of hidden units left out");
+  visit("fine-tuning.average", config.fine_tuning.average,
+        "kept of the parameters' moving average");
+  visit("fine-tuning.positions", config.pose_loss.positions,
+        "weight of joint positions in the loss");
+  visit("fine-tuning.velocities", config.pose_loss.velocities,
+        "weight of joint velocities in the loss");
+  visit("fine-tuning.contacts", config.pose_loss.contacts,
+        "weight of planted feet's steps in the loss");
+  visit("fine-tuning.reverse", config.fine_tuning.reverse, "weight of 2D from 3D");
+  visit("fine-tuning.mean-field-steps", config.fine_tuning.mean_field_steps,
         "unrolled steps of eq 32 and 33");
-  visit("joint.hold-out-among", config.hold_out_among,
+  visit("fine-tuning.hold-out-among", config.hold_out_among,
         "hold one of at least so many people out, and stop when they fare worse; 0: never");
   visit("augment.views", config.augment.views, "augmented views of each clip");
   visit("augment.mirror", config.augment.mirror, "exchange left and right in every other view");
