@@ -98,10 +98,10 @@ TEST_CASE("Ctrl-C: training stops with 130, the metrics so far, and no model") {
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;
   const fs::path run = folder / "run", metrics = run / "metrics.jsonl";
-  const std::string call =
-      fmt::format("train {} -o '{}' {}", pipeline.training_clips(), run.string(), kTinyGreedy);
+  const std::string small = "--hidden 8 --mrbm-hidden 8 --stages greedy --layers 1";
   const CliResult result = interrupted_after(
-      metrics, call + " --quiet --stages greedy --layers 1 --gaussian-epochs 1000000");
+      metrics, fmt::format("train {} -o '{}' {} --quiet --gaussian-epochs 1000000",
+                           pipeline.training_clips(), run.string(), small));
   CHECK(result.exit_code == 130);
   CHECK(result.standard_error == "mcdbn-cl: error: interrupted\n");
   CHECK(!fs::exists(run / "model.safetensors"));
@@ -114,10 +114,8 @@ TEST_CASE("Ctrl-C: training stops with 130, the metrics so far, and no model") {
                                              (pipeline.motion() / "walk_s02_01.bvh").string()));
   const CliResult swept = interrupted_after(
       folder / "swept/seed=1/metrics.jsonl",
-      fmt::format("train {} -o '{}' {} --stages greedy --layers 1 --mrbm-epochs 1000000 --sweep "
-                  "'{}'",
-                  pipeline.training_clips(), (folder / "swept").string(), kTinyGreedy,
-                  sweep.string()));
+      fmt::format("train {} -o '{}' {} --gaussian-epochs 2 --mrbm-epochs 1000000 --sweep '{}'",
+                  pipeline.training_clips(), (folder / "swept").string(), small, sweep.string()));
   CHECK(swept.exit_code == 130);
   CHECK(!fs::exists(folder / "swept/seed=2"));
   CHECK(!fs::exists(folder / "swept/sweep.jsonl"));

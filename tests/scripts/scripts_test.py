@@ -28,7 +28,7 @@ hidden = [8, 0]
 [[configuration]]
 gaussian.rate = 50.0
 [[configuration]]
-joint.steps = 0
+fine-tuning.steps = 0
 """
 
 
@@ -120,7 +120,7 @@ seed = 4
 hidden = [7, 6]
 gaussian.rate = [0.002, 0.003]
 [[configuration]]
-joint.from-greedy = false
+fine-tuning.from-greedy = false
 """
         varied = [{"seed": 4},
                   {"gaussian.rate": 0.002, "hidden": 7}, {"gaussian.rate": 0.002, "hidden": 6},

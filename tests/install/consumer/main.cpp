@@ -22,7 +22,7 @@ int main() {
     const mcdbn::Crbm crbm =
         mcdbn::train_crbm(device, mcdbn::Sequences::from_host(device, {frames}),
                           mcdbn::CrbmParameters::random(shape, settings.initial_deviation, {}),
-                          settings, mcdbn::TrainingConfig{}, /*stream=*/0, watch);
+                          settings, mcdbn::LearningSettings{}, /*stream=*/0, watch);
 
     const mcdbn::CrbmParameters learned = crbm.to_host();
     std::cout << "error " << first_loss << " -> " << last_loss << ", W\n" << learned.W << '\n';
