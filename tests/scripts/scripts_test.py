@@ -159,9 +159,10 @@ fine-tuning.from-greedy = false
 
         # A configuration alone gives the same model, and evaluate the same scores.
         alone = self.folder / "alone"
-        self.assertEqual(self.run_cli("train", training, "-o", alone, "--quiet", *TINY.split(),
-                                      "--order", 2, "--seed", 9, "--hidden", 6,
-                                      "--gaussian-rate", 0.003).returncode, 0)
+        six_hidden = TINY.replace("--hidden 8", "--hidden 6", 1)
+        trained = self.run_cli("train", training, "-o", alone, "--quiet", *six_hidden.split(),
+                               "--order", 2, "--seed", 9, "--gaussian-rate", 0.003)
+        self.assertEqual(trained.returncode, 0, trained.stderr)
         swept = self.folder / "sweep/gaussian.rate=0.003,hidden=6"
         for file in ("model.safetensors", "config.toml"):
             self.assertEqual((alone / file).read_bytes(), (swept / file).read_bytes())
