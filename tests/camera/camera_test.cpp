@@ -5,12 +5,14 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "camera/odd_camera.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "motion/synthetic_motion.hpp"
 #include "shared_data.hpp"
 
 using namespace mcdbn;
+using test::odd_camera;
 
 namespace {
 
@@ -18,20 +20,6 @@ namespace {
 double smallest_margin_px(const Track2d& track) {
   return std::min({track.x_px.minCoeff(), track.width_px - track.x_px.maxCoeff(),
                    track.y_px.minCoeff(), track.height_px - track.y_px.maxCoeff()});
-}
-
-Camera odd_camera() {
-  Camera camera;
-  camera.camera_from_world = camera_rotation(-123.4, 17.3);
-  camera.translation = {0.1, -2.0 / 3, 412.7};
-  camera.fx_px = 1234.5;
-  camera.fy_px = 1200 / 0.7;
-  camera.cx_px = 611.1;
-  camera.cy_px = 377.7;
-  camera.distortion = {-0.21, 0.07, 1e-3, -2e-3, 0.01};
-  camera.width_px = 1280;
-  camera.height_px = 720;
-  return camera;
 }
 
 }  // namespace
