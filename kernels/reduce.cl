@@ -1,5 +1,6 @@
 // Losses, reduced on the device in a fixed order: one partial sum a row, then one work-item adds
-// them to accumulator[slot]; the host reads the accumulators once an epoch.
+// them to accumulator[slot]; the host reads the accumulators once an epoch. block_sum adds up the
+// blocks of rows that a back-propagation through several steps keeps.
 
 #include "types.clh"
 

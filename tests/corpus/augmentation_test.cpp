@@ -2,21 +2,15 @@
 
 #include <doctest/doctest.h>
 
+#include "corpus/no_augmentation.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"
 #include "motion/resample.hpp"
 
 using namespace mcdbn;
+using test::nothing;
 
 namespace {
-
-AugmentationSettings nothing() {
-  AugmentationSettings settings;
-  settings.mirror = false;
-  settings.azimuth_deg = settings.elevation_deg = settings.distance = 0;
-  settings.bone = settings.turn_deg = settings.speed = settings.noise_px = settings.missing = 0;
-  return settings;
-}
 
 Motion walk() {
   SynthesisOptions options;

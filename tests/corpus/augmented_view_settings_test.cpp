@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "camera/track_noise.hpp"
+#include "corpus/no_augmentation.hpp"
 #include "mcdbn/corpus/augmentation.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"
@@ -12,18 +13,11 @@
 #include "motion/resample.hpp"
 
 using namespace mcdbn;
+using test::nothing;
 
 namespace {
 
 constexpr double kFps = 25.0;
-
-AugmentationSettings nothing() {
-  AugmentationSettings settings;
-  settings.mirror = false;
-  settings.azimuth_deg = settings.elevation_deg = settings.distance = 0;
-  settings.bone = settings.turn_deg = settings.speed = settings.noise_px = settings.missing = 0;
-  return settings;
-}
 
 Motion walk() {
   SynthesisOptions options;

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
+#include "machines/random_crbm.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
 #include "reference/units_reference.hpp"
@@ -21,16 +22,7 @@ constexpr std::size_t kFrames = 13;
 constexpr std::uint16_t kStream = 200;
 
 CrbmParameters parameters_of(const CrbmShape& shape, unsigned seed) {
-  CrbmParameters p = CrbmParameters::zeros(shape);
-  const float scale = 4.0F / (4.0F + static_cast<float>(shape.hidden));
-  p.W = random_matrix(shape.visible, shape.hidden, seed, scale);
-  p.A = random_matrix(shape.order * shape.visible, shape.visible, seed + 1,
-                      0.5F / static_cast<float>(shape.order * shape.visible));
-  p.B = random_matrix(shape.order * shape.visible, shape.hidden, seed + 2, scale);
-  p.a = random_matrix(1, shape.visible, seed + 3, 0.5F);
-  p.b = random_matrix(1, shape.hidden, seed + 4, 0.5F);
-  p.visible_mean = (0.5F * (random_matrix(1, shape.visible, seed + 5).array() + 1.0F)).matrix();
-  return p;
+  return random_crbm(shape, seed, 4.0F);
 }
 
 MatrixF random_code(std::size_t rows, std::size_t columns) {

@@ -5,6 +5,7 @@
 
 #include "device/every_device.hpp"
 #include "machines/cdbn_decoder.hpp"
+#include "machines/random_crbm.hpp"
 #include "machines/regeneration_reference.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
@@ -19,16 +20,7 @@ namespace {
 constexpr std::size_t kFrames = 12, kFirst = 4, kLast = 11;
 
 CrbmParameters layer(const CrbmShape& shape, unsigned seed) {
-  CrbmParameters p = CrbmParameters::zeros(shape);
-  const float scale = 2.0F / (2.0F + static_cast<float>(shape.hidden));
-  p.W = random_matrix(shape.visible, shape.hidden, seed, scale);
-  p.A = random_matrix(shape.order * shape.visible, shape.visible, seed + 1,
-                      0.5F / static_cast<float>(shape.order * shape.visible));
-  p.B = random_matrix(shape.order * shape.visible, shape.hidden, seed + 2, scale);
-  p.a = random_matrix(1, shape.visible, seed + 3, 0.5F);
-  p.b = random_matrix(1, shape.hidden, seed + 4, 0.5F);
-  p.visible_mean = (0.5F * (random_matrix(1, shape.visible, seed + 5).array() + 1.0F)).matrix();
-  return p;
+  return random_crbm(shape, seed, 2.0F);
 }
 
 struct Case {

@@ -178,11 +178,11 @@ TEST_CASE("a run's seed reaches its views, its start, its greedy stages and its 
     const TrainingSet views = small.views(other), old_views = small.views(small.config);
     const Mcdbn start = small.start(device, other), old_start = small.start(device, small.config);
     const auto from = [&](const TrainingSet& greedy_views, const Mcdbn& greedy_start,
-                          const TrainingConfig& greedy_config, const TrainingSet& joint_views,
-                          const TrainingConfig& joint_config) {
+                          const TrainingConfig& greedy_config, const TrainingSet& tuned_views,
+                          const TrainingConfig& tuned_config) {
       const Mcdbn greedy =
           train_greedy(device, paired_clips(greedy_views), greedy_config, {}, &greedy_start);
-      return fine_tune(device, greedy, joint_views, joint_config).network;
+      return fine_tune(device, greedy, tuned_views, tuned_config).network;
     };
     CHECK(same_network(trained.network, from(views, start, other, views, other)));
     // Were any of them the old seed's, the result would be another.

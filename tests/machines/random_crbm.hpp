@@ -1,0 +1,23 @@
+#pragma once
+
+#include "base/random_matrix.hpp"
+#include "mcdbn/machines/crbm.hpp"
+
+namespace mcdbn::test {
+
+/// Parameters without a zero, of sizes with which a decoder neither saturates nor dies out.
+/// @param drive entries of W and B are at most drive / (drive + hidden)
+inline CrbmParameters random_crbm(const CrbmShape& shape, unsigned seed, float drive) {
+  CrbmParameters p = CrbmParameters::zeros(shape);
+  const float scale = drive / (drive + static_cast<float>(shape.hidden));
+  p.W = random_matrix(shape.visible, shape.hidden, seed, scale);
+  p.A = random_matrix(shape.order * shape.visible, shape.visible, seed + 1,
+                      0.5F / static_cast<float>(shape.order * shape.visible));
+  p.B = random_matrix(shape.order * shape.visible, shape.hidden, seed + 2, scale);
+  p.a = random_matrix(1, shape.visible, seed + 3, 0.5F);
+  p.b = random_matrix(1, shape.hidden, seed + 4, 0.5F);
+  p.visible_mean = (0.5F * (random_matrix(1, shape.visible, seed + 5).array() + 1.0F)).matrix();
+  return p;
+}
+
+}  // namespace mcdbn::test
