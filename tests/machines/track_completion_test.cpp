@@ -19,7 +19,8 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 CrbmParameters parameters(std::size_t order) {
   CrbmParameters p = CrbmParameters::zeros({5, 5, order, VisibleKind::gaussian});
-  p.W = random_matrix(5, 5, 1, 0.6F);
+  // So large that ten steps have not converged: a step less shows, and so does where they began.
+  p.W = random_matrix(5, 5, 1, 1.2F);
   p.A = random_matrix(order * 5, 5, 2, 0.3F);
   p.B = random_matrix(order * 5, 5, 3, 0.5F);
   p.a = random_matrix(1, 5, 4);
@@ -70,10 +71,10 @@ TEST_CASE("track completion is the mean field of the lowest layer, frame by fram
       gappy(2, 1) = gappy(3, 1) = gappy(3, 4) = gappy(8, 0) = kNan;
       gappy.row(5).setConstant(kNan);
       const MatrixF filled = complete_track(cdbn, gappy);
-      // Some 30 roundings a step of numbers about 1, carried over ten steps and nine frames: 1e-4
-      // is far above, and a fault's effect far above that.
+      // Rounding comes to 6e-7 here. One step less or more, or another first guess, comes to 2e-4
+      // at least.
       const double off = (filled.cast<double>() - completed(p, gappy)).cwiseAbs().maxCoeff();
-      CHECK(!(off > 1e-4));
+      CHECK(!(off > 1e-5));
       CHECK(filled.allFinite());
       for (Eigen::Index t = 0; t < 9; ++t)
         for (Eigen::Index c = 0; c < 5; ++c)
