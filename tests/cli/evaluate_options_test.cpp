@@ -97,8 +97,9 @@ TEST_CASE("evaluate: every option changes what its help says") {
   const ScratchFolder folder;
   Call all;
   all.model = pipeline.model();
+  // Two clips of one action: a pair of real ones, and by the seed as many of the regenerations'.
   all.test = {with_calibration_pose(pipeline.motion() / "walk_s02_01.bvh", folder),
-              pipeline.motion() / "walk_s01_01.bvh"};
+              pipeline.motion() / "walk_s01_01.bvh", pipeline.motion() / "walk_s01_02.bvh"};
   all.by_folder = all.keep_first_frame = all.include_training = true;
   all.fit = false;
   all.samples = 2;
@@ -154,7 +155,7 @@ TEST_CASE("evaluate: every option changes what its help says") {
        }},
       {"--include-training",
        [&] {
-         CHECK(found.at("training_clips") == 1);
+         CHECK(found.at("training_clips") == 2);
          CHECK(refused("", 3));
        }},
       {"--report",
