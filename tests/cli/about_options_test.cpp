@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
+#include "library_calls.hpp"
 #include "mcdbn/device/device.hpp"
 #include "option_table.hpp"
 #include "tiny_pipeline.hpp"
@@ -11,6 +13,89 @@
 using namespace mcdbn::test;
 using nlohmann::json;
 namespace fs = std::filesystem;
+
+namespace {
+
+struct BenchRow {
+  json what;
+  double multiply_adds;  ///< 0: not counted
+};
+
+/// Every step that bench measures, and its multiply-adds counted once more.
+std::vector<BenchRow> bench_rows() {
+  std::vector<BenchRow> rows;
+  const auto crbm = [&](const char* layer, double v, double k, int batch) {
+    const double order = 5, h = 300;
+    const double biases_and_gradients = 2 * order * v * (v + h), passes = (1 + 2 * k) * v * h,
+                 gradient_of_W = 2 * v * h;
+    rows.push_back({{{"layer", layer},
+                     {"visible", v},
+                     {"order", order},
+                     {"hidden", h},
+                     {"batch", batch},
+                     {"k", k}},
+                    batch * (biases_and_gradients + passes + gradient_of_W)});
+  };
+  for (const int batch : {100, 1024}) {
+    crbm("gaussian_crbm", 96, 5, batch);
+    crbm("binary_crbm", 300, 1, batch);
+    json mrbm = {{"visible", 600}, {"hidden", 150}, {"batch", batch}, {"steps", 10}};
+    mrbm["layer"] = "mrbm";
+    rows.push_back({mrbm, batch * 2.0 * (6 * 10 - 1) * 300 * 150});
+    mrbm["layer"] = "mrbm_chain";
+    for (const double temperature : {0.0, 1.0}) {
+      mrbm["temperature"] = temperature;
+      rows.push_back({mrbm, batch * 2.0 * 10 * 300 * 150});
+    }
+  }
+  for (const char* backend : {"own", "clblast"})
+    for (const auto& [m, k] : {std::pair(100, 96), {100, 480}, {100, 1500}, {1024, 1500}})
+      rows.push_back({{{"layer", "gemm"}, {"m", m}, {"n", 300}, {"k", k}, {"backend", backend}},
+                      300.0 * m * k});
+  for (const int temperature : {0, 1})
+    rows.push_back({{{"layer", "regeneration"},
+                     {"frames", 1000},
+                     {"samples", 10},
+                     {"temperature", temperature},
+                     {"k", temperature}},
+                    0});
+  return rows;
+}
+
+/// What it says of a step is what was measured, and follows from the time.
+void check_bench_step(json step, const BenchRow& row, double peak_gflops) {
+  CAPTURE(step.dump());
+  const auto take = [&](const char* name) {
+    const double value = step.at(name).get<double>();
+    step.erase(name);
+    return value;
+  };
+  const double us = take("median_us");
+  CHECK(us > 0);
+  CHECK(take("launches") >= 1);
+  if (row.multiply_adds > 0) {
+    const double gflops = take("gflops");
+    CHECK(gflops == doctest::Approx(2 * row.multiply_adds / us * 1e-3));
+    CHECK(take("percent_of_peak") == doctest::Approx(100 * gflops / peak_gflops));
+  } else {
+    CHECK(take("us_per_frame") == doctest::Approx(us / 1000));
+  }
+  CHECK(step == row.what);
+}
+
+void check_bench_lines(const std::string& text) {
+  CAPTURE(text);
+  CHECK(count_lines(text) == 1 + 8 + 2);
+  CHECK(std::regex_search(
+      text, std::regex("^.+, \\d+ compute units: \\d+\\.\\d GFLOP/s with fma alone\n"
+                       "gemm  m 100  n 300  k 96  backend own {32} +\\d+\\.\\d us +\\d+ launches "
+                       "+\\d+\\.\\d GFLOP/s +\\d+\\.\\d % of peak\n")));
+  CHECK(std::regex_search(
+      text, std::regex("\nregeneration  frames 1000  samples 10  temperature 1.0  k 1 {16} +"
+                       "\\d+\\.\\d us +\\d+ launches +\\d+\\.\\d\\d us a frame\n$")));
+}
+
+}  // namespace
 
 TEST_CASE("info: every option changes what its help says") {
   const ScratchFolder folder;
@@ -72,40 +157,32 @@ TEST_CASE("devices: every option changes what its help says") {
 
 TEST_CASE("bench: every option changes what its help says") {
   if (!have_device()) return;
-  const auto steps = [](const std::string& options) {
-    const CliResult result = run_cli("bench --json --seconds 0 " + options);
-    CAPTURE(result.standard_error);
-    CHECK(result.exit_code == 0);
-    return json::parse(result.standard_output);
-  };
   std::vector<OptionRow> rows = {
-      {"--only",
-       [&] {
-         const json report = steps("--only gemm");
-         CHECK(report.at("steps").size() == 8);
-         for (const json& step : report.at("steps")) {
-           CHECK(step.at("layer") == "gemm");
-           CHECK(step.at("median_us").get<double>() > 0);
-           const double flops = 2.0 * step.at("m").get<double>() * step.at("n").get<double>() *
-                                step.at("k").get<double>();
-           CHECK(step.at("gflops").get<double>() ==
-                 doctest::Approx(flops / step.at("median_us").get<double>() * 1e-3));
-           CHECK(step.at("percent_of_peak").get<double>() ==
-                 doctest::Approx(100 * step.at("gflops").get<double>() /
-                                 report.at("peak_gflops").get<double>()));
-         }
-         CHECK(run_cli("bench --only other").exit_code == 2);
-       }},
       {"--json",
        [] {
-         const CliResult text = run_cli("bench --seconds 0 --only gemm");
-         CHECK(text.standard_output.find("GFLOP/s with fma alone") != std::string::npos);
-         CHECK(count_lines(text.standard_output) == 9);
+         const CliResult result = run_cli("bench --json --seconds 0");
+         CAPTURE(result.standard_error);
+         REQUIRE(result.exit_code == 0);
+         const json report = json::parse(result.standard_output);
+         const mcdbn::DeviceInfo& info = usual_device().info();
+         CHECK(report.at("device") == info.name);
+         CHECK(report.at("driver") == info.driver_version);
+         CHECK(report.at("compute_units") == info.compute_units);
+         const std::vector<BenchRow> wanted = bench_rows();
+         REQUIRE(report.at("steps").size() == wanted.size());
+         for (std::size_t i = 0; i < wanted.size(); ++i)
+           check_bench_step(report.at("steps").at(i), wanted[i],
+                            report.at("peak_gflops").get<double>());
+       }},
+      {"--only",
+       [] {
+         check_bench_lines(run_cli("bench --seconds 0 --only gemm regeneration").standard_output);
+         CHECK(run_cli("bench --only other").exit_code == 2);
        }},
       {"--seconds", [] { CHECK(run_cli("bench --seconds -1").exit_code == 2); }},
       // Not run: it takes minutes.
       {"--tune", [] {}}};
-  const std::string call = "bench --only gemm --seconds 0 --json";
+  const std::string call = "bench --only mrbm_chain --seconds 0 --json";
   for (const OptionRow& row : device_rows(call, [] { return std::string(); })) rows.push_back(row);
   check_options("bench", rows);
 }
