@@ -63,6 +63,7 @@ TEST_CASE("exit codes: usage 2, input 3, without any device") {
            {"train " + clip + " -o " + out + " --fine-tuning-dropout 1", 2, "fine-tuning.dropout"},
            {"regenerate --input t.csv -o " + out, 2, "--model"},
            {"evaluate --model m", 2, "--test"},
+           {"evaluate --model m --test t --camera-elevation -89.05", 2, "--camera-elevation"},
            {"bench --seconds 601", 2, "--seconds"},
            {"devices surplus", 2, "surplus"}})
     check_case(one);
@@ -88,6 +89,7 @@ TEST_CASE("exit codes: bad models and tracks are 3, no such device 4") {
            {"evaluate --model absent --test " + clip, 3, "absent"},
            {"evaluate --model " + model + " --test absent.bvh", 3, "absent.bvh"},
            {"evaluate --model " + model + " --test " + clip + " --device no-such", 4, "no-such"},
+           {"train " + clip + " -o '" + text + "/run'", 3, text + "/run: cannot be made: "},
            {"bench --platform no-such", 4, "no-such"}})
     check_case(one);
   CHECK(!fs::exists(out));

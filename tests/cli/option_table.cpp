@@ -19,6 +19,17 @@ std::vector<std::string> long_names(const std::string& word) {
   return names;
 }
 
+/// Where the texts of the help begin.
+constexpr std::size_t kHelpColumn = 30;
+const std::string kNoOption(kHelpColumn, ' ');
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
 nlohmann::json first_device() {
   return nlohmann::json::parse(run_cli("devices --json").standard_output).at("devices").at(0);
 }
@@ -41,12 +52,17 @@ std::set<std::string> options_in_help(const std::string& command) {
   REQUIRE(help.exit_code == 0);
   std::set<std::string> options;
   bool positionals = false;
-  std::istringstream lines(help.standard_output);
-  for (std::string line; std::getline(lines, line);) {
+  const std::vector<std::string> lines = lines_of(help.standard_output);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string& line = lines[i];
     if (line.starts_with("Example")) break;
     if (!line.empty() && line[0] != ' ') positionals = line == "Positionals:";
     if (!line.starts_with("  ") || line.starts_with("   ")) continue;  // or a text that goes on
     const std::string word = line.substr(2, line.find(' ', 2) - 2);
+    // Beside it or, where it is long, below.
+    const bool explained = (line.size() > kHelpColumn && line[kHelpColumn - 1] == ' ') ||
+                           (i + 1 < lines.size() && lines[i + 1].starts_with(kNoOption));
+    CHECK_MESSAGE(explained, command, " ", word, " has a text that explains it");
     if (positionals)
       options.insert(word);
     else

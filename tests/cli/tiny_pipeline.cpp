@@ -58,6 +58,7 @@ TinyPipeline::TinyPipeline() {
   CAPTURE(trained.standard_error);
   REQUIRE(trained.exit_code == 0);
   REQUIRE(trained.standard_output.empty());
+  training_messages_ = trained.standard_error;
 }
 
 bool have_device() {

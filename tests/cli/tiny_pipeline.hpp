@@ -28,10 +28,12 @@ class TinyPipeline {
   std::filesystem::path folder(const std::string& name) const { return folder_ / name; }
   std::string training_clips() const;  ///< each in quotes
   std::string test_clips() const;
+  const std::string& training_messages() const { return training_messages_; }
 
  private:
   TinyPipeline();
   ScratchFolder folder_;
+  std::string training_messages_;
 };
 
 /// Fails the test where there is none: nothing would be tested. Where MCDBN_ALLOW_NO_DEVICE is set,

@@ -35,6 +35,15 @@ TEST_CASE("train writes a run folder") {
   CHECK(stages_of(run) == std::set<std::string>{"pose.0", "track.0", "mrbm", "fine-tuning"});
 }
 
+TEST_CASE("train says how far it is: in the end no time is left") {
+  if (!have_device()) return;
+  const std::string messages = TinyPipeline::instance().training_messages();
+  CAPTURE(messages);
+  const auto last = messages.find("100 %  fine-tuning epoch 3/3  loss ");
+  REQUIRE(last != std::string::npos);
+  CHECK(messages.substr(0, messages.find('\n', last)).ends_with(" windows/s  0 s left"));
+}
+
 TEST_CASE("train --stages leaves stages out") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();

@@ -176,6 +176,9 @@ fine-tuning.from-greedy = false
         for text, words in (("test = ['x']\n", "nothing to try"),
                             ("[grid]\norder = [2]\n", "no 'test'"),
                             ("test = ['x']\nother = 3\n", ":2: 'other' is none of"),
+                            ("test = ['x']\n[other]\norder = 2\n", ":2: 'other' is none of"),
+                            ("test = ['x']\ngrid = 3\n", ":2: 'grid' is none of"),
+                            ("test = ['x']\nconfiguration = 3\n", ":2: 'configuration' is"),
                             ("test = ['x']\n[grid]\norder = ['a']\n", ":3: a setting is a number"),
                             ("test = [\n", ":")):
             result = self.sweep(text)
