@@ -45,6 +45,7 @@ TEST_CASE("every command's help shows an example") {
     if (line[2] == ' ') continue;  // a description that ran on
     const std::string command = line.substr(2, line.find(' ', 2) - 2);
     CAPTURE(command);
+    CHECK(line.find_first_not_of(' ', 2 + command.size()) != std::string::npos);  // what it does
     const CliResult result = run_cli(command + " --help");
     CHECK(result.exit_code == 0);
     CHECK(result.standard_output.find("\n  mcdbn-cl " + command + " ") != std::string::npos);

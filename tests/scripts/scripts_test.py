@@ -177,6 +177,7 @@ fine-tuning.from-greedy = false
                             ("[grid]\norder = [2]\n", "no 'test'"),
                             ("test = ['x']\nother = 3\n", ":2: 'other' is none of"),
                             ("test = ['x']\n[other]\norder = 2\n", ":2: 'other' is none of"),
+                            ("test = ['x']\nunknown = ['y']\n", ":2: 'unknown' is none of"),
                             ("test = ['x']\ngrid = 3\n", ":2: 'grid' is none of"),
                             ("test = ['x']\nconfiguration = 3\n", ":2: 'configuration' is"),
                             ("test = ['x']\n[grid]\norder = ['a']\n", ":3: a setting is a number"),
