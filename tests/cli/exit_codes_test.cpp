@@ -65,7 +65,8 @@ TEST_CASE("exit codes: usage 2, input 3, without any device") {
            {"evaluate --model m", 2, "--test"},
            {"evaluate --model m --test t --camera-elevation -89.05", 2, "--camera-elevation"},
            {"bench --seconds 601", 2, "--seconds"},
-           {"devices surplus", 2, "surplus"}})
+           {"devices surplus", 2, "not expected: surplus"},
+           {"--odd devices", 2, "not expected: --odd"}})
     check_case(one);
   CHECK(!fs::exists(out));
   CHECK(!fs::exists(out + ".png"));
