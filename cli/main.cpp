@@ -78,13 +78,14 @@ int parse_and_run(CLI::App& app, CommandContext& context, int argc, char** argv)
 }
 
 int run_program(int argc, char** argv) {
-  CLI::App app{kDescription, "mcdbn-cl"};
-  app.set_version_flag("--version", "mcdbn-cl " MCDBN_VERSION);
-  app.require_subcommand(1);
-  app.footer(kExitCodes);
-  CommandContext context;
-  for (const auto add_command : kCommands) add_command(app, context);
   try {
+    set_up_messages();
+    CLI::App app{kDescription, "mcdbn-cl"};
+    app.set_version_flag("--version", "mcdbn-cl " MCDBN_VERSION);
+    app.require_subcommand(1);
+    app.footer(kExitCodes);
+    CommandContext context;
+    for (const auto add_command : kCommands) add_command(app, context);
     return parse_and_run(app, context, argc, argv);
   } catch (const Interrupted& error) {
     return report(error, kInterrupted);
@@ -103,6 +104,5 @@ int run_program(int argc, char** argv) {
 }  // namespace mcdbn::cli
 
 int main(int argc, char** argv) {
-  mcdbn::cli::set_up_messages();
   return mcdbn::cli::run_program(argc, argv);
 }

@@ -91,8 +91,12 @@ MatrixD track_px(const Track2d& track, const std::vector<std::string>& names) {
 std::string unique_name(const std::filesystem::path& file, std::set<std::string>& taken) {
   std::string name = file.stem().string();
   for (std::filesystem::path folder = std::filesystem::weakly_canonical(file).parent_path();
-       !taken.insert(name).second; folder = folder.parent_path())
-    name = folder.has_filename() ? folder.filename().string() + "/" + name : name + "'";
+       !taken.insert(name).second; folder = folder.parent_path()) {
+    if (folder.has_filename())
+      name.insert(0, folder.filename().string() + "/");
+    else
+      name += "'";
+  }
   return name;
 }
 

@@ -30,6 +30,7 @@ std::vector<Motion> resampled_phases(const Motion& raw, const CorpusSettings& se
 
 std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair::*member) {
   std::vector<const MatrixD*> blocks;
+  blocks.reserve(pairs.size());
   for (const Pair& pair : pairs) blocks.push_back(&(pair.*member));
   return blocks;
 }
@@ -80,6 +81,7 @@ TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
     recorded.push_back(identify_clip(file));
   }
   std::vector<const Motion*> all;
+  all.reserve(motions.size());
   for (const Motion& motion : motions) all.push_back(&motion);
   PoseFeatures pose_features = PoseFeatures::fit(all);
   TrackFeatures track_features =

@@ -86,8 +86,8 @@ Panel::Panel(std::vector<const Figure*> figures, std::string label, const Render
   const Eigen::Vector3d centre = box_centre(framed_);
   constexpr double kOrbitStep_s = 1.0;
   const double turn_s = options.orbit ? 360 / std::abs(options.orbit_deg_per_s) : 0;
-  for (double t_s = 0; t_s <= turn_s; t_s += kOrbitStep_s) {
-    CameraPlacement placement = placement_at(t_s);
+  for (int step = 0; step * kOrbitStep_s <= turn_s; ++step) {
+    CameraPlacement placement = placement_at(step * kOrbitStep_s);
     placement.distance = options.placement.distance;
     distance_ = std::max(distance_, distance_to(place_camera(framed_, placement), centre));
   }
@@ -312,6 +312,7 @@ void render(const std::vector<RenderClip>& clips, const fs::path& path,
         fmt::format("{}: cannot tell what to write; end the name in .mp4 or .png", path.string()));
   }
   std::vector<Figure> figures;
+  figures.reserve(clips.size());
   for (const RenderClip& clip : clips) figures.emplace_back(clip.motion);
   const Size size = panel_size(options, video ? kVideoPanel : kSheetPanel);
   const std::vector<Panel> panels = make_panels(clips, figures, options, size);

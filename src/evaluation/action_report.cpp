@@ -61,7 +61,7 @@ void compare_methods(ActionReport& report, const Clips& clips) {
     for (const ReportMotion& sample : clip->samples) {
       model.push_back(sample.score);
       if (sample.score.error.mpjpe_mm < nearest->score.error.mpjpe_mm) nearest = &sample;
-      samples.push_back(sample.points_mm.leftCols(3 * clip->joints));
+      samples.emplace_back(sample.points_mm.leftCols(3 * clip->joints));
     }
     best.push_back(nearest->score);
     diversity += diversity_mm(samples) / static_cast<double>(clips.size());

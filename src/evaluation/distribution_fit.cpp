@@ -63,7 +63,7 @@ std::vector<FittedParameter> with_errors(const std::string& first_name, double f
 
 std::vector<FittedParameter> fit_normal(const Samples& x, const char* mean_name,
                                         const char* deviation_name) {
-  const double n = static_cast<double>(x.size());
+  const auto n = static_cast<double>(x.size());
   const double mean = x.mean();
   const double deviation = std::sqrt((x.array() - mean).square().mean());
   return {{mean_name, mean, deviation / std::sqrt(n)},
@@ -71,7 +71,7 @@ std::vector<FittedParameter> fit_normal(const Samples& x, const char* mean_name,
 }
 
 std::vector<FittedParameter> fit_gamma(const Samples& x) {
-  const double n = static_cast<double>(x.size());
+  const auto n = static_cast<double>(x.size());
   const double mean = x.mean();
   const double s = -(x.array() / mean).log().mean();
   const double guess = (3 - s + std::sqrt((s - 3) * (s - 3) + 24 * s)) / (12 * s);
@@ -85,7 +85,7 @@ std::vector<FittedParameter> fit_gamma(const Samples& x) {
 }
 
 std::vector<FittedParameter> fit_weibull(const Samples& x) {
-  const double n = static_cast<double>(x.size());
+  const auto n = static_cast<double>(x.size());
   // Powers of x over the largest sample: shapes of many hundreds do not overflow.
   const double largest = x.maxCoeff();
   const Eigen::ArrayXd u = (x.array() / largest).log();

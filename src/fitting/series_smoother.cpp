@@ -103,6 +103,7 @@ std::vector<Measured> smooth_series(const std::vector<Measured>& series,
     states = posterior(used, dynamics);
   }
   std::vector<Measured> result;
+  result.reserve(states.size());
   for (const State& state : states) result.push_back(state.number());
   return result;
 }

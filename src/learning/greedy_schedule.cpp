@@ -108,7 +108,7 @@ MatrixF mean_of(const Sequences& sequences) {
 
 /// Work of a stage in multiply-adds, to show progress over all of them.
 double crbm_cost(const CrbmShape& shape, const CdSettings& settings) {
-  const double v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
+  const auto v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
   const double histories = 2.0 * static_cast<double>(shape.order) * v * (v + h);
   return static_cast<double>(settings.epochs) *
          (histories + (2.0 * static_cast<double>(settings.gibbs_steps) + 3.0) * v * h);
@@ -270,12 +270,12 @@ Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
   DivergenceGuard guard(
       "mrbm", fmt::format("lower --mrbm-rate (now {:g}) or --mrbm-initial-deviation (now {:g})",
                           settings.rate, settings.initial_deviation));
-  const auto [track_rows, pose_rows] = some_pairs(track, pose, learning.look_ahead);
+  const auto pairs = some_pairs(track, pose, learning.look_ahead);
   AdamRule rule;
   rule.weight_decay = static_cast<float>(settings.weight_decay);
   run_epochs(
       "mrbm", settings.epochs, schedule, losses, guard, key_of(learning, stream, 0, kShufflePhase),
-      observer, [&] { return mrbm_health(mrbm.to_host(), track_rows, pose_rows); },
+      observer, [&] { return mrbm_health(mrbm.to_host(), pairs.first, pairs.second); },
       [&](std::size_t, std::size_t first, std::uint32_t step) {
         const double progress = static_cast<double>(step) /
                                 static_cast<double>(settings.epochs * schedule.batch_count());

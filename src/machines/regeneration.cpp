@@ -96,6 +96,7 @@ std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>
   const std::size_t frames = lead + longest + network.look_ahead;
 
   std::vector<MatrixF> sequences;
+  sequences.reserve(tracks.size());
   for (const MatrixF& track : tracks)
     sequences.push_back(extended(
         network.fills_gaps ? complete_track(network.track, track) : at_mean_where_unknown(track),

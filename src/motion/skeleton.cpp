@@ -124,8 +124,8 @@ WorldPose forward_kinematics(const Skeleton& skeleton,
       pose.position.push_back(offset);
     } else {
       const Eigen::Matrix3d& world_from_parent = pose.world_from_joint[joint.parent];
-      pose.position.push_back(pose.position[joint.parent] + world_from_parent * offset);
-      pose.world_from_joint.push_back(world_from_parent * parent_from_joint);
+      pose.position.emplace_back(pose.position[joint.parent] + world_from_parent * offset);
+      pose.world_from_joint.emplace_back(world_from_parent * parent_from_joint);
     }
     joint_channels += joint.channels.size();
   }

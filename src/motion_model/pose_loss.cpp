@@ -42,6 +42,7 @@ PoseLoss::PoseLoss(Device& device, const Modalities& modalities, const SequenceW
   const Standardizer& standardizer = modalities.pose_scale;
   std::vector<cl_int> columns(static_cast<std::size_t>(standardizer.input_dimension()), -1);
   std::vector<cl_float2> scale;
+  scale.reserve(columns.size());
   for (std::size_t k = 0; k < standardizer.kept_columns().size(); ++k)
     columns[static_cast<std::size_t>(standardizer.kept_columns()[k])] = to_int(k);
   for (int i = 0; i < standardizer.input_dimension(); ++i)

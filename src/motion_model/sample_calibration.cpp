@@ -19,6 +19,7 @@ std::vector<MatrixD> joints_about_root(const Modalities& modalities,
                                        const std::vector<MatrixF>& poses) {
   const PoseFeatures& features = modalities.pose_features;
   std::vector<MatrixD> result;
+  result.reserve(poses.size());
   for (const MatrixF& pose : poses)
     result.push_back(joint_positions(
         features.decode(modalities.pose_scale.invert(pose), Eigen::Matrix3d::Identity(),

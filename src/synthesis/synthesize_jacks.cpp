@@ -122,7 +122,7 @@ double JumpingJacks::pitch_deg(int hop, double t) const {
 Foot JumpingJacks::foot(Side side, int hop, double t) const {
   const double pitch = pitch_deg(hop, t);
   if (t < 0) return planted_foot(body_, print(side, hop), pitch);
-  const Foot landing = planted_foot(body_, print(side, hop + 1), pitch);
+  Foot landing = planted_foot(body_, print(side, hop + 1), pitch);
   if (t >= flight_s_) return landing;
   const Foot leaving = planted_foot(body_, print(side, hop), pitch);
   const double u = t / flight_s_, across = smooth_step(0, 1, u);
@@ -172,6 +172,7 @@ Frame JumpingJacks::frame(double t_s) const {
 std::vector<Frame> jumping_jacks(ClipSetup& setup) {
   const JumpingJacks jacks(setup);
   std::vector<Frame> frames;
+  frames.reserve(setup.frame_count);
   for (int i = 0; i < setup.frame_count; ++i) frames.push_back(jacks.frame(i / setup.fps));
   return frames;
 }

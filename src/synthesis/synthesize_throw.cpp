@@ -60,6 +60,7 @@ Throw::Throw(const Body& body, const Style& style, Random& random)
 
 double Throw::run(const std::array<double, kPhaseCount>& values, double t) const {
   std::vector<KeyCurve::Key> keys;
+  keys.reserve(kPhaseCount);
   for (int phase = 0; phase < kPhaseCount; ++phase) keys.emplace_back(times_[phase], values[phase]);
   return KeyCurve(keys)(t);
 }

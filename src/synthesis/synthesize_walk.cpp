@@ -256,6 +256,7 @@ std::vector<Frame> walk(ClipSetup& setup) {
   const auto phase = [&](double t_s) { return start + t_s / cycle_s + tempo(t_s) - tempo(0); };
   const Gait gait(setup, phase(setup.seconds()) + 2);
   std::vector<Frame> frames;
+  frames.reserve(setup.frame_count);
   for (int i = 0; i < setup.frame_count; ++i) frames.push_back(gait.frame(phase(i / setup.fps)));
   return frames;
 }

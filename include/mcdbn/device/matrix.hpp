@@ -16,7 +16,7 @@ constexpr std::size_t padded(std::size_t columns) {
 }
 
 /// A row-major float matrix on the device. Padding columns are zero and every kernel keeps them so.
-class Matrix {  // NOLINT(bugprone-exception-escape): cl::Buffer may throw when it lets go
+class Matrix {
  public:
   Matrix() = default;
   /// All zeros. @throws DeviceError
