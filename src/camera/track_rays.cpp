@@ -35,10 +35,13 @@ MatrixD undistorted(const Track2d& track, const std::vector<int>& columns, const
 TrackRays track_rays(const std::vector<std::string>& joint_names, const Track2d& track,
                      const Camera& camera) {
   TrackRays result;
+  result.asked = static_cast<int>(joint_names.size());
+  result.fps = track.fps;
   std::vector<int> columns;
   for (std::size_t k = 0; k < joint_names.size(); ++k) {
     const int column = track.find(joint_names[k]);
     if (column < 0) continue;
+    result.joint_names.push_back(joint_names[k]);
     result.indices.push_back(static_cast<int>(k));
     columns.push_back(column);
   }

@@ -111,8 +111,9 @@ MatrixF seen_features(const Model& model, const TestRunOptions& options, const E
 Regeneration answer(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
                     const MatrixF& pose) {
   Regeneration result;
-  result.motion =
-      motion_from_features(model.modalities, pose, truth.track, placement_of(truth, options));
+  result.motion = fit_to_track(PosePrior::around(pose), model.modalities, truth.track,
+                               placement_of(truth, options), options.fit)
+                      .motion;
   result.score = score_clip(truth, result.motion, model.modalities.root_name());
   return result;
 }

@@ -50,8 +50,8 @@ class Turns {
     shift_ = correction.tail<3>();
   }
 
-  Eigen::Vector3d position(const std::vector<Lever>& levers, const Eigen::Vector3d& place) const {
-    Eigen::Vector3d position = place + shift_;
+  Eigen::Vector3d position(const std::vector<Lever>& levers, const Eigen::Vector3d& root) const {
+    Eigen::Vector3d position = root + shift_;
     for (const Lever& lever : levers) position += rotation_[lever.turn] * lever.bone;
     return position;
   }
@@ -76,7 +76,13 @@ class Turns {
 /// What of its deviation a turn has for itself.
 double own_deviation(const FramePrior& prior, std::size_t turn) {
   const double own = prior.parents[turn] < 0 ? 1 : std::sqrt(1 - prior.likeness * prior.likeness);
-  return own * prior.turn_deviation_rad;
+  return own * prior.turn_deviation_rad[turn];
+}
+
+/// What a turn of `parent` by one makes one expect of a turn that hangs from it.
+double expected_share(const FramePrior& prior, std::size_t turn, int parent) {
+  return prior.likeness * (prior.turn_deviation_rad[turn] /
+                           prior.turn_deviation_rad[static_cast<std::size_t>(parent)]);
 }
 
 /// A correction, less the one expected, as independent numbers of variance 1.
@@ -85,10 +91,10 @@ Eigen::VectorXd whitened(const FramePrior& prior, const Eigen::VectorXd& correct
   for (std::size_t turn = 0; turn < prior.parents.size(); ++turn) {
     auto own = result.segment<3>(3 * static_cast<Eigen::Index>(turn));
     const int parent = prior.parents[turn];
-    if (parent >= 0) own -= prior.likeness * correction.segment<3>(3 * parent);
+    if (parent >= 0) own -= expected_share(prior, turn, parent) * correction.segment<3>(3 * parent);
     own /= own_deviation(prior, turn);
   }
-  result.tail<3>() /= prior.place_deviation;
+  result.tail<3>() /= prior.root_deviation;
   return result;
 }
 
@@ -98,9 +104,9 @@ Eigen::VectorXd coloured(const FramePrior& prior, Eigen::VectorXd white) {
     auto own = white.segment<3>(3 * static_cast<Eigen::Index>(turn));
     own *= own_deviation(prior, turn);
     const int parent = prior.parents[turn];
-    if (parent >= 0) own += prior.likeness * white.segment<3>(3 * parent);
+    if (parent >= 0) own += expected_share(prior, turn, parent) * white.segment<3>(3 * parent);
   }
-  white.tail<3>() *= prior.place_deviation;
+  white.tail<3>() *= prior.root_deviation;
   return white;
 }
 
@@ -109,10 +115,11 @@ void whiten(const FramePrior& prior, MatrixD& jacobian) {
   for (std::size_t turn = prior.parents.size(); turn-- > 0;) {
     auto own = jacobian.middleCols<3>(3 * static_cast<Eigen::Index>(turn));
     const int parent = prior.parents[turn];
-    if (parent >= 0) jacobian.middleCols<3>(3 * parent) += prior.likeness * own;
+    if (parent >= 0)
+      jacobian.middleCols<3>(3 * parent) += expected_share(prior, turn, parent) * own;
     own *= own_deviation(prior, turn);
   }
-  jacobian.rightCols<3>() *= prior.place_deviation;
+  jacobian.rightCols<3>() *= prior.root_deviation;
 }
 
 /// The frame's equations around one correction.
@@ -177,7 +184,7 @@ class Equations {
       const auto row = 2 * static_cast<Eigen::Index>(k);
       const double weight = robust ? 1 / (1 + miss_squared(k) / (kCauchy * kCauchy * scale)) : 1.0;
       variance_.segment<2>(row).setConstant(observations_[k].variance / weight);
-      const Eigen::Vector3d position = turns.position(observations_[k].levers, prior_.place);
+      const Eigen::Vector3d position = turns.position(observations_[k].levers, prior_.root);
       if (before_camera(position)) {
         turns.add_jacobian(observations_[k].levers, projection(position),
                            jacobian.middleRows<2>(row));
@@ -203,7 +210,7 @@ class Equations {
 
  private:
   bool before_camera(const Eigen::Vector3d& position) const {
-    return position.z() > kNearest * prior_.place.z();
+    return position.z() > kNearest * prior_.root.z();
   }
   double miss_squared(std::size_t k) const {
     return residuals_.segment<2>(2 * static_cast<Eigen::Index>(k)).squaredNorm() /
@@ -216,10 +223,10 @@ class Equations {
   void look(const Turns& turns) {
     for (std::size_t k = 0; k < prior_.held.size(); ++k) {
       const HeldDepth& joint = prior_.held[k];
-      residuals_[held_row(k)] = joint.depth - turns.position(joint.levers, prior_.place).z();
+      residuals_[held_row(k)] = joint.depth - turns.position(joint.levers, prior_.root).z();
     }
     for (std::size_t k = 0; k < observations_.size(); ++k) {
-      const Eigen::Vector3d position = turns.position(observations_[k].levers, prior_.place);
+      const Eigen::Vector3d position = turns.position(observations_[k].levers, prior_.root);
       residuals_.segment<2>(2 * static_cast<Eigen::Index>(k)) =
           before_camera(position)
               ? Eigen::Vector2d(observations_[k].ray - position.head<2>() / position.z())
@@ -241,18 +248,18 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& turn_rad) {
   return Eigen::AngleAxisd(angle, turn_rad / angle).toRotationMatrix();
 }
 
-Eigen::Vector3d corrected_position(const std::vector<Lever>& levers, const Eigen::Vector3d& place,
+Eigen::Vector3d corrected_position(const std::vector<Lever>& levers, const Eigen::Vector3d& root,
                                    const Eigen::VectorXd& correction) {
-  return Turns(correction).position(levers, place);
+  return Turns(correction).position(levers, root);
 }
 
 Eigen::Matrix<double, 2, Eigen::Dynamic> ray_jacobian(const Observation& observation,
-                                                      const Eigen::Vector3d& place,
+                                                      const Eigen::Vector3d& root,
                                                       const Eigen::VectorXd& correction) {
   const Turns turns(correction);
   Eigen::Matrix<double, 2, Eigen::Dynamic> rows =
       Eigen::Matrix<double, 2, Eigen::Dynamic>::Zero(2, correction.size());
-  turns.add_jacobian(observation.levers, projection(turns.position(observation.levers, place)),
+  turns.add_jacobian(observation.levers, projection(turns.position(observation.levers, root)),
                      rows);
   return rows;
 }
@@ -260,7 +267,7 @@ Eigen::Matrix<double, 2, Eigen::Dynamic> ray_jacobian(const Observation& observa
 FrameFit fit_frame(const std::vector<Observation>& observations, const FramePrior& prior) {
   Equations equations(observations, prior);
   FrameFit fit{equations.expected(), {}};
-  if (observations.empty() || !(prior.place.z() > 0)) return fit;
+  if (observations.empty() || !(prior.root.z() > 0)) return fit;
   // All joints first: how well they can be met tells what is out of the ordinary.
   fit.correction = equations.solve(fit.correction, 1, false);
   for (int round = 1; round < kRounds; ++round) {

@@ -27,14 +27,14 @@ struct HeldDepth {
 
 /// A frame before its track is looked at.
 struct FramePrior {
-  Eigen::Vector3d place{0, 0, 0};  ///< of the root, camera axes
+  Eigen::Vector3d root{0, 0, 0};  ///< its position, camera axes
   /// By orientation, the one that it hangs from, or −1; those come first.
   std::vector<int> parents;
-  double turn_deviation_rad = 0;  ///< of each orientation's turn about each axis
-  double likeness = 0;            ///< correlation of a turn with its parent's
-  double place_deviation = 1;     ///< of the place, in its units
-  Eigen::VectorXd expected;       ///< mean of the correction; empty: zero
-  std::vector<HeldDepth> held;    ///< what is known besides the rays
+  std::vector<double> turn_deviation_rad;  ///< of each orientation's turn about each axis, above 0
+  double likeness = 0;                     ///< correlation of a turn with its parent's
+  double root_deviation = 1;               ///< of the root's position, in its units
+  Eigen::VectorXd expected;                ///< mean of the correction; empty: zero
+  std::vector<HeldDepth> held;             ///< what is known besides the rays
 };
 
 /// Rotation by the vector's length about it.
@@ -42,12 +42,12 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& turn_rad);
 
 /// Where the joint is when the orientations are turned and the root is moved.
 /// @param correction three numbers a turn (radians), then the root's shift
-Eigen::Vector3d corrected_position(const std::vector<Lever>& levers, const Eigen::Vector3d& place,
+Eigen::Vector3d corrected_position(const std::vector<Lever>& levers, const Eigen::Vector3d& root,
                                    const Eigen::VectorXd& correction);
 
 /// d ray / d correction of a joint. @return [2 x correction.size()]
 Eigen::Matrix<double, 2, Eigen::Dynamic> ray_jacobian(const Observation& observation,
-                                                      const Eigen::Vector3d& place,
+                                                      const Eigen::Vector3d& root,
                                                       const Eigen::VectorXd& correction);
 
 struct FrameFit {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "camera/track_rays.hpp"
 #include "fitting/robust_residuals.hpp"
+#include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -24,8 +24,6 @@ constexpr double kRmsOfBody_m = 0.5;
 constexpr double kFreeAcceleration_m_s2 = 4.0;
 /// Nobody is that fast; only keeps frames that nothing else determines from running away.
 constexpr double kFastest_m_s = 50.0;
-/// No estimator of 2D joints is better than this, so no frame is trusted without limit.
-constexpr double kLeastNoise_px = 0.25;
 constexpr int kRounds = 12;
 constexpr int kFewestJoints = 3;
 
@@ -39,16 +37,16 @@ struct RootObservation {
 /// What one frame alone says of the root.
 struct Fix {
   bool known = false;
-  Eigen::Vector3d place{0, 0, 0};  ///< camera axes
+  Eigen::Vector3d root{0, 0, 0};  ///< its position, camera axes
   /// Inverse covariance for a noise of one (in units of a ray).
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   std::vector<double> residuals;  ///< of the rays, two a joint
 };
 
 /// Gauss-Newton on the distance between where a joint is seen and where it should be. The first
-/// round puts (relative + place) onto the seen ray, which is linear: [1 0 -u; 0 1 -v]·place =
+/// round puts (relative + root) onto the seen ray, which is linear: [1 0 -u; 0 1 -v]·root =
 /// (u·z - x, v·z - y). To stay with those equations would draw the body nearer, as u and v are
-/// noisy; the later rounds take u and v from the place found. Cauchy's weights let go of a joint
+/// noisy; the later rounds take u and v from the position found. Cauchy's weights let go of a joint
 /// that the tracker swapped.
 Fix locate(const std::vector<RootObservation>& observations) {
   Fix fix;
@@ -59,15 +57,15 @@ Fix locate(const std::vector<RootObservation>& observations) {
   for (int round = 0; round < kRounds; ++round) {
     for (Eigen::Index k = 0; k < joints; ++k) {
       const RootObservation& observation = observations[k];
-      const Eigen::Vector3d place = observation.relative + fix.place;
-      const double depth = round == 0 ? 1.0 : place.z();
+      const Eigen::Vector3d position = observation.relative + fix.root;
+      const double depth = round == 0 ? 1.0 : position.z();
       if (!(depth > 0)) return fix;  // a body behind the camera explains nothing
       const Eigen::Vector2d ray =
-          round == 0 ? observation.ray : Eigen::Vector2d(place.head<2>() / depth);
+          round == 0 ? observation.ray : Eigen::Vector2d(position.head<2>() / depth);
       jacobian.middleRows<2>(2 * k) << 1, 0, -ray.x(), 0, 1, -ray.y();
       jacobian.middleRows<2>(2 * k) /= depth;
       residual.segment<2>(2 * k) = round == 0
-                                       ? Eigen::Vector2d(jacobian.middleRows<2>(2 * k) * place)
+                                       ? Eigen::Vector2d(jacobian.middleRows<2>(2 * k) * position)
                                        : Eigen::Vector2d(ray - observation.ray);
     }
     const double scale = kCauchy * robust_deviation({residual.begin(), residual.end()}) + 1e-12;
@@ -78,10 +76,10 @@ Fix locate(const std::vector<RootObservation>& observations) {
     fix.information = jacobian.transpose() * weight.asDiagonal() * jacobian;
     const Eigen::LDLT<Eigen::Matrix3d> solver(fix.information);
     if (solver.info() != Eigen::Success || !(solver.rcond() > 1e-12)) return fix;
-    fix.place -= solver.solve(jacobian.transpose() * weight.asDiagonal() * residual);
+    fix.root -= solver.solve(jacobian.transpose() * weight.asDiagonal() * residual);
   }
   fix.residuals.assign(residual.begin(), residual.end());
-  fix.known = fix.place.allFinite();
+  fix.known = fix.root.allFinite();
   return fix;
 }
 
@@ -100,7 +98,7 @@ double ray_noise(const std::vector<Fix>& fixes, const Camera& camera) {
   return std::max(least, robust_deviation(std::move(residuals)) / std::sqrt(share));
 }
 
-/// Adds weight·|Σ coefficient_k · place_(frame + k)|² for each axis to the normal equations.
+/// Adds weight·|Σ coefficient_k · root_(frame + k)|² for each axis to the normal equations.
 void add_smoothness(std::vector<Eigen::Triplet<double>>& entries, int frame,
                     const std::vector<double>& coefficients, double weight) {
   for (std::size_t a = 0; a < coefficients.size(); ++a) {
@@ -132,7 +130,7 @@ MatrixD fuse(const std::vector<Fix>& fixes, const MatrixD& prediction, double no
       }
     }
     right_side.segment<3>(3 * frame) =
-        information * (fixes[frame].place - prediction.row(frame).transpose());
+        information * (fixes[frame].root - prediction.row(frame).transpose());
   }
   const double bend = acceleration * frame_time_s * frame_time_s, step = speed * frame_time_s;
   for (int frame = 0; frame + 1 < frames; ++frame) {
@@ -148,28 +146,25 @@ MatrixD fuse(const std::vector<Fix>& fixes, const MatrixD& prediction, double no
   return prediction + Eigen::Map<const MatrixD>(correction.data(), frames, 3);
 }
 
-void check_shapes(const MatrixD& relative_positions, const std::vector<std::string>& joint_names,
-                  const Track2d& track, const MatrixD& velocity) {
+void check_shapes(const MatrixD& relative_positions, const TrackRays& track,
+                  const MatrixD& velocity) {
   const Eigen::Index frames = track.frames();
-  const bool fits =
-      relative_positions.rows() == frames &&
-      relative_positions.cols() == 3 * static_cast<Eigen::Index>(joint_names.size()) &&
-      (velocity.rows() == 0 || (velocity.rows() == frames && velocity.cols() == 3));
+  const bool fits = relative_positions.rows() == frames &&
+                    relative_positions.cols() == 3 * track.asked &&
+                    (velocity.rows() == 0 || (velocity.rows() == frames && velocity.cols() == 3));
   if (!fits) {
     throw ShapeError(fmt::format(
         "root_trajectory: {}x{} positions of {} joints, {}x{} velocities, {} frames of 2D",
-        relative_positions.rows(), relative_positions.cols(), joint_names.size(), velocity.rows(),
+        relative_positions.rows(), relative_positions.cols(), track.asked, velocity.rows(),
         velocity.cols(), frames));
   }
 }
 
 }  // namespace
 
-MatrixD root_trajectory(const MatrixD& relative_positions,
-                        const std::vector<std::string>& joint_names, const Track2d& track,
+MatrixD root_trajectory(const MatrixD& relative_positions, const TrackRays& track,
                         const Camera& camera, const MatrixD& velocity, double velocity_error_m_s2) {
-  check_shapes(relative_positions, joint_names, track, velocity);
-  const TrackRays seen = track_rays(joint_names, track, camera);
+  check_shapes(relative_positions, track, velocity);
   const double frame_time_s = 1.0 / track.fps;
 
   std::vector<Fix> fixes;
@@ -177,13 +172,13 @@ MatrixD root_trajectory(const MatrixD& relative_positions,
   double squares = 0;
   for (int frame = 0; frame < track.frames(); ++frame) {
     std::vector<RootObservation> observations;
-    for (Eigen::Index k = 0; k < seen.joints(); ++k) {
+    for (Eigen::Index k = 0; k < track.joints(); ++k) {
       const Eigen::Vector3d relative =
-          relative_positions.row(frame).segment<3>(3 * seen.indices[k]);
+          relative_positions.row(frame).segment<3>(3 * track.indices[k]);
       squares += relative.squaredNorm();
-      if (!seen.seen(frame, k)) continue;
+      if (!track.seen(frame, k)) continue;
       observations.push_back({camera.camera_from_world * relative,
-                              seen.rays.row(frame).segment<2>(2 * k), seen.confidence(frame, k)});
+                              track.rays.row(frame).segment<2>(2 * k), track.confidence(frame, k)});
     }
     fixes.push_back(locate(observations));
     if (frame > 0) {
@@ -197,11 +192,11 @@ MatrixD root_trajectory(const MatrixD& relative_positions,
   if (std::none_of(fixes.begin(), fixes.end(), [](const Fix& fix) { return fix.known; })) {
     throw InputError(fmt::format(
         "the 2D track never shows {} joints of the model at once before the camera; the root's "
-        "place cannot be told",
+        "position cannot be told",
         kFewestJoints));
   }
   const double metre =
-      std::sqrt(squares / static_cast<double>(fixes.size() * seen.indices.size())) / kRmsOfBody_m;
+      std::sqrt(squares / static_cast<double>(fixes.size() * track.indices.size())) / kRmsOfBody_m;
   const MatrixD path =
       fuse(fixes, prediction, ray_noise(fixes, camera),
            metre * (velocity.rows() > 0 ? velocity_error_m_s2 : kFreeAcceleration_m_s2),

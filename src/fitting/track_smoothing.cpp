@@ -13,7 +13,8 @@ namespace {
 constexpr double kUnseen = std::numeric_limits<double>::infinity();
 /// Independent noise of variance 1 in second and in third differences: sums of squared binomials.
 constexpr double kSecondGain = 6, kThirdGain = 20;
-constexpr double kLeastNoise_px = 0.05;
+/// Of a track made by projection, which is exact: it keeps the smoother from dividing by zero.
+constexpr double kLeastSmoothed_px = 0.05;
 
 bool seen(const Track2d& track, Eigen::Index frame, Eigen::Index joint) {
   return track.confidence(frame, joint) > 0 && std::isfinite(track.x_px(frame, joint)) &&
@@ -64,7 +65,7 @@ double track_noise_px(const Track2d& track) {
 
 Track2d smooth_track(const Track2d& track) {
   Track2d result = track;
-  const double noise_px = std::max(kLeastNoise_px, track_noise_px(track));
+  const double noise_px = std::max(kLeastSmoothed_px, track_noise_px(track));
   for (Eigen::Index joint = 0; joint < track.joint_count(); ++joint) {
     const std::vector<Eigen::Index> known = runs(track, joint, 1);
     for (MatrixD* coordinate_px : {&result.x_px, &result.y_px}) {

@@ -4,6 +4,10 @@
 
 namespace mcdbn {
 
+/// No estimator of 2D joints is better than this, so no track is trusted without limit. (A track
+/// made by projection is exact; smooth_track itself leaves it as it is, by a smaller bound.)
+inline constexpr double kLeastNoise_px = 0.25;
+
 /// The track's noise, told from the track itself: the bulk of the third differences over time, in
 /// which motion is small and independent noise counts 20-fold. Over all joints.
 /// @return standard deviation in pixels of each coordinate; 0 where no joint is ever seen in four

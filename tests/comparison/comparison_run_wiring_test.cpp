@@ -71,8 +71,9 @@ EncodedClip damaged(const Scene& scene, std::size_t i, const TestRunOptions& opt
 
 Motion motion_of(const Scene& scene, const EncodedClip& truth, const MatrixF& pose,
                  const std::optional<TrackFitSettings>& fit) {
-  return motion_from_features(scene.modalities, pose, truth.track,
-                              {truth.camera, truth.motion.skeleton, fit});
+  return fit_to_track(PosePrior::around(pose), scene.modalities, truth.track,
+                      {truth.camera, truth.motion.skeleton}, fit)
+      .motion;
 }
 
 bool same_track(const Track2d& x, const Track2d& y) {

@@ -56,8 +56,8 @@ Motion walk() {
 }
 
 MatrixD solve(const Scene& scene, bool with_velocity) {
-  return root_trajectory(scene.relative, scene.names, scene.track, scene.camera,
-                         with_velocity ? scene.velocity : MatrixD(0, 3));
+  return root_trajectory(scene.relative, track_rays(scene.names, scene.track, scene.camera),
+                         scene.camera, with_velocity ? scene.velocity : MatrixD(0, 3));
 }
 
 void add_noise(Track2d& track, double deviation_px, unsigned seed) {
@@ -158,17 +158,20 @@ TEST_CASE("root trajectory: one or two frames, and nothing to see") {
     motion.channels.conservativeResize(frames, Eigen::NoChange);
     Scene scene = make_scene(walk());
     scene.track = project_motion(motion, scene.camera);
-    const MatrixD path = root_trajectory(scene.relative.topRows(frames), scene.names, scene.track,
+    const MatrixD path = root_trajectory(scene.relative.topRows(frames),
+                                         track_rays(scene.names, scene.track, scene.camera),
                                          scene.camera, MatrixD(0, 3));
     CHECK(largest(path - scene.root.topRows(frames)) < 0.1);
   }
   Scene scene = make_scene(walk());
-  CHECK_THROWS_AS(root_trajectory(scene.relative.topRows(9), scene.names, scene.track, scene.camera,
-                                  scene.velocity),
-                  ShapeError);
-  CHECK_THROWS_AS(root_trajectory(scene.relative, scene.names, scene.track, scene.camera,
-                                  scene.velocity.topRows(9)),
-                  ShapeError);
+  CHECK_THROWS_AS(
+      root_trajectory(scene.relative.topRows(9), track_rays(scene.names, scene.track, scene.camera),
+                      scene.camera, scene.velocity),
+      ShapeError);
+  CHECK_THROWS_AS(
+      root_trajectory(scene.relative, track_rays(scene.names, scene.track, scene.camera),
+                      scene.camera, scene.velocity.topRows(9)),
+      ShapeError);
   scene.track.confidence.setZero();
   CHECK_THROWS_AS(solve(scene, true), InputError);
   scene.track.joint_names.assign(scene.names.size(), "stranger");

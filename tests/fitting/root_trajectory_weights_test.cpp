@@ -16,7 +16,7 @@ struct Scene {
   MatrixD relative, root, velocity;
 
   MatrixD solve(double velocity_error_m_s2 = 1) const {
-    return root_trajectory(relative, track.joint_names, track, camera, velocity,
+    return root_trajectory(relative, track_rays(track.joint_names, track, camera), camera, velocity,
                            velocity_error_m_s2);
   }
 };

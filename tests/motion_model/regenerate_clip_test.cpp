@@ -60,8 +60,10 @@ std::vector<Motion> step_by_step(const Model& model, const Track2d& track,
                    [&](const MatrixF& some) { return single_answer(model.network, some); });
   std::vector<Motion> motions;
   for (const MatrixF& pose : regenerate(model.network, {seen}, options))
-    motions.push_back(
-        resample(motion_from_features(model.modalities, pose, at_rate, placement), track.fps));
+    motions.push_back(resample(
+        fit_to_track(PosePrior::around(pose), model.modalities, at_rate, placement, placement.fit)
+            .motion,
+        track.fps));
   return motions;
 }
 

@@ -20,6 +20,8 @@ class PoseFeatures {
   /// share joint names. @throws InputError if a clip lacks a joint that the first one has
   static PoseFeatures fit(const std::vector<const Motion*>& clips);
 
+  static constexpr int kBlock = 6;  ///< numbers of one orientation; the blocks stand first
+
   int dimension() const;
   const Skeleton& skeleton() const { return skeleton_; }  ///< of the first training clip
   /// Where the root velocity's three features begin; the height stands before them.
@@ -56,7 +58,6 @@ class PoseFeatures {
                                RowVectorD fixed_channels);
 
  private:
-  static constexpr int kBlock = 6;         ///< numbers of one orientation
   static constexpr int kRootFeatures = 4;  ///< height, velocity
 
   Skeleton skeleton_;

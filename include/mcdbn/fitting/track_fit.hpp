@@ -1,21 +1,46 @@
-// The room fitting: where an answer meets the track that it answers: the fit, root paths,
-// smoothing. It uses features. Add here: a cost of the fit.
+// The room fitting: poses that are likely beforehand meet the 2D track that shows them. It uses
+// features. Its door is fit_to_track; behind it: root paths, the fit of joints, smoothing. Add
+// here: a cost of the fit.
 #pragma once
 
-#include <string>
-#include <vector>
+#include <optional>
 
 #include "mcdbn/camera/camera.hpp"
-#include "mcdbn/features/pose_features.hpp"
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/features/modalities.hpp"
 
 namespace mcdbn {
 
-/// How far an answer may be bent to meet the track.
+/// What is likely of each pose of a clip before its track is looked at: a normal distribution for
+/// each frame and feature. It is all that the fit knows of a network. Standardized 3D features,
+/// [frames x Modalities::pose_scale.output_dimension()] both.
+struct PosePrior {
+  MatrixF mean;
+  /// Standard deviation, finite and not negative; below 1e-6 counts as that. The fit takes the RMS
+  /// over an orientation's features for how far TrackFitSettings::turn_deg may turn it, and over
+  /// all velocities of the clip for how far the root's velocity may be off. Height and the root's
+  /// position are not asked.
+  MatrixF deviation;
+
+  /// With deviation 1, the spread of the training clips: for a mean that says nothing of how sure
+  /// it is. The fit then has the same deviations for every frame and joint: those of its settings.
+  static PosePrior around(MatrixF mean);
+};
+
+/// What is known of a clip besides its track.
+struct KnownOfClip {
+  std::optional<Camera> camera;  ///< unset: the model's own view, the clip put at the origin
+  /// The person's own; unset: the model's, and the fit allows for other proportions.
+  std::optional<Skeleton> skeleton;
+};
+
+/// How far poses may be bent to meet the track.
 struct TrackFitSettings {
-  double turn_deg = 25;     ///< standard deviation of an orientation about each axis
+  /// Standard deviation of an orientation about each axis where PosePrior::deviation is 1.
+  double turn_deg = 25;
   double change = 0.4;      ///< of a turn from those of the frames around it, as a share of it
   double likeness = 0.5;    ///< correlation of a joint's turn with its parent's
-  double position_m = 0.1;  ///< standard deviation of the root's place, on a 1.7 m body
+  double position_m = 0.1;  ///< standard deviation of the root's position, on a 1.7 m body
   /// How far a foot that stands still on the image strays from the depth that it has in the frames
   /// around, on a 1.7 m body.
   double footing_m = 0.0125;
@@ -29,21 +54,22 @@ struct TrackFitSettings {
   double fade_s = 0.1;  ///< how long a joint's correction outlives the joint's last observation
 };
 
-/// Moves an answer so that its joints lie where the track shows them. The answer is the prior:
-/// every orientation is turned about the camera's axes, and the root shifted, as is most likely
-/// given the track and the frames around (Gauss-Newton per frame, in rounds; joints that nothing
-/// likely explains are let go of; feet that stand still on the image come no nearer either).
-/// How much the track counts is told from the clip: from how well it can be met at all, so that the
-/// track of a body of other proportions, or of joints put elsewhere, is not taken at its word. The
-/// turns are smoothed over time as much as the track's noise asks for, and fade where joints go
-/// missing.
-/// @param features [frames x pose_features.dimension()], the answer
-/// @param answer the same, decoded, the root where root_trajectory puts it
-/// @param joint_names the joints to look at; those that the track or the answer lacks are ignored
-/// @return features with other orientations
-/// @throws ShapeError; InputError if the answer lacks a joint of the features
-MatrixD fit_to_track(const PoseFeatures& pose_features, const MatrixD& features,
-                     const Motion& answer, const std::vector<std::string>& joint_names,
-                     const Track2d& track, const Camera& camera, const TrackFitSettings& fit = {});
+/// A motion that meets its track.
+struct FittedClip {
+  Motion motion;  ///< at the model's rate
+  Track2d shown;  ///< all its joints as the camera sees them; image size as the track's
+};
+
+/// The likeliest motion given a prior and the 2D track. The root goes where the track shows it;
+/// with settings, orientations are turned so that joints lie where the track shows them, and feet
+/// that stand say how fast the root travels. Without a camera only the path's shape is known: it
+/// starts above the origin, at the height that the features say.
+/// @param features what decodes features to poses, and the joints to look at
+/// @param track at the model's rate, as many frames as the prior; joined by name
+/// @param settings unset: orientations stay as the prior's mean has them
+/// @throws ShapeError; InputError if the skeleton lacks a joint of the model, no frame shows enough
+///         joints, or a deviation is negative or not finite
+FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, const Track2d& track,
+                        const KnownOfClip& known, const std::optional<TrackFitSettings>& settings);
 
 }  // namespace mcdbn

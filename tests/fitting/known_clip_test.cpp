@@ -1,17 +1,20 @@
-// Where a regenerated clip stands, and whose body it moves.
+// Where a fitted clip stands, and whose body it moves, step by step.
 
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "camera/track_noise.hpp"
+#include "features/clip_modalities.hpp"
+#include "fitting/joint_fit.hpp"
 #include "fitting/planted_velocity.hpp"
 #include "fitting/root_trajectory.hpp"
-#include "mcdbn/motion_model/clip_regeneration.hpp"
+#include "fitting/track_smoothing.hpp"
+#include "mcdbn/fitting/track_fit.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"
 #include "motion/foot_joints.hpp"
-#include "motion_model/clip_scene.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -27,8 +30,8 @@ struct Scene {
   Track2d track = project_motion(truth, camera);
   MatrixF pose = modalities.encode_pose(truth, camera.camera_from_world);
 
-  Motion placed(const ClipPlacement& placement) const {
-    return motion_from_features(modalities, pose, track, placement);
+  Motion placed(const KnownOfClip& known, const std::optional<TrackFitSettings>& fit) const {
+    return fit_to_track(PosePrior::around(pose), modalities, track, known, fit).motion;
   }
   std::string root() const { return modalities.root_name(); }
 };
@@ -63,10 +66,10 @@ double largest(const MatrixD& difference) {
 
 }  // namespace
 
-TEST_CASE("placement: without a fit the answer's joints are decoded as they are") {
+TEST_CASE("known of a clip: without a fit the answer's joints are decoded as they are") {
   const Scene scene;
   const Modalities& m = scene.modalities;
-  const Motion got = scene.placed({scene.camera, scene.truth.skeleton, std::nullopt});
+  const Motion got = scene.placed({scene.camera, scene.truth.skeleton}, std::nullopt);
   const MatrixD features = m.pose_scale.invert(scene.pose);
   const auto decoded = [&](const MatrixD& root) {
     return m.pose_features.decode(features, scene.camera.camera_from_world, scene.truth.skeleton,
@@ -80,7 +83,8 @@ TEST_CASE("placement: without a fit the answer's joints are decoded as they are"
   const MatrixD velocity = file_units_per_metre(scene.truth.skeleton) *
                            m.pose_features.root_features(features).rightCols(3) *
                            scene.camera.camera_from_world;
-  const MatrixD root = root_trajectory(about, names, scene.track, scene.camera, velocity);
+  const TrackRays seen = track_rays(names, scene.track, scene.camera);
+  const MatrixD root = root_trajectory(about, seen, scene.camera, velocity);
   CHECK(largest(got.channels - decoded(root).channels) < 1e-9);
   CHECK(got.fps() == doctest::Approx(m.fps));
   // And that is the truth, as the answer was: a walk of some metres.
@@ -88,7 +92,7 @@ TEST_CASE("placement: without a fit the answer's joints are decoded as they are"
   CHECK(largest(joint_positions(got) - joint_positions(scene.truth)) < 1.0);
 }
 
-TEST_CASE("placement: with a fit joints are turned and planted feet lead the root") {
+TEST_CASE("known of a clip: with a fit joints are turned and planted feet lead the root") {
   Scene scene;
   add_pixel_noise(scene.track, 3.0, 5);
   const Modalities& m = scene.modalities;
@@ -96,7 +100,7 @@ TEST_CASE("placement: with a fit joints are turned and planted feet lead the roo
   TrackFitSettings fit;
   fit.turn_deg = 12;
   fit.caution = 3;
-  const Motion got = scene.placed({scene.camera, skeleton, fit});
+  const Motion got = scene.placed({scene.camera, skeleton}, fit);
   std::vector<std::string> names = m.track_features.joint_names();
   names.push_back(scene.root());
   MatrixD features = m.pose_scale.invert(scene.pose);
@@ -109,29 +113,31 @@ TEST_CASE("placement: with a fit joints are turned and planted feet lead the roo
   const MatrixD velocity = file_units_per_metre(skeleton) *
                            m.pose_features.root_features(features).rightCols(3) *
                            scene.camera.camera_from_world;
-  const MatrixD first = root_trajectory(about(), names, scene.track, scene.camera, velocity);
-  features = fit_to_track(m.pose_features, features, decoded(first), names, scene.track,
-                          scene.camera, fit);
-  const MatrixD fitted = root_trajectory(about(), names, scene.track, scene.camera, velocity);
+  const TrackRays seen = track_rays(names, scene.track, scene.camera);
+  const MatrixD first = root_trajectory(about(), seen, scene.camera, velocity);
+  const auto turns = static_cast<Eigen::Index>(m.pose_features.joints().size());
+  features =
+      fit_joints(m.pose_features, features,
+                 MatrixD::Constant(features.rows(), turns, fit.turn_deg * std::numbers::pi / 180),
+                 decoded(first), seen, track_noise_px(scene.track), scene.camera, fit);
+  const MatrixD fitted = root_trajectory(about(), seen, scene.camera, velocity);
   const MatrixD planted = planted_velocity(decoded(fitted), skeleton.find(scene.root()),
                                            foot_joints(skeleton), velocity);
-  const MatrixD root = root_trajectory(about(), names, scene.track, scene.camera, planted, 0.5);
+  const MatrixD root = root_trajectory(about(), seen, scene.camera, planted, 0.5);
   CHECK(largest(got.channels - decoded(root).channels) < 1e-9);
   // Each of these steps shows.
   CHECK(largest(root - fitted) > 1e-3);
   CHECK(largest(fitted - first) > 1e-3);
 }
 
-TEST_CASE("placement: without a camera it is the model's view with the track's image") {
+TEST_CASE("known of a clip: without a camera it is the model's view with the track's image") {
   Scene scene;
   add_pixel_noise(scene.track, 2.0, 5);
   for (const bool fit : {false, true}) {
     CAPTURE(fit);
-    ClipPlacement placement;
-    if (!fit) placement.fit.reset();
-    const Motion got = scene.placed(placement);
-    placement.camera = camera_of_view(scene);
-    const Motion there = scene.placed(placement);
+    const auto settings = fit ? std::optional(TrackFitSettings{}) : std::nullopt;
+    const Motion got = scene.placed({}, settings);
+    const Motion there = scene.placed({camera_of_view(scene), std::nullopt}, settings);
     CHECK(largest(turns_of(got, scene.root()) - turns_of(there, scene.root())) < 1e-9);
     // The same path, but for where it stands: above the origin at first, as high on average as
     // the answer says.
@@ -146,29 +152,28 @@ TEST_CASE("placement: without a camera it is the model's view with the track's i
   }
 }
 
-TEST_CASE("placement: the root's travel is kept where no camera is given") {
+TEST_CASE("known of a clip: the root's travel is kept where no camera is given") {
   const Scene scene;
   const MatrixD truth = path_of(scene.truth, scene.root());
   REQUIRE((truth.bottomRows(1) - truth.topRows(1)).norm() > 200);  // cm
   for (const bool fit : {false, true}) {
     CAPTURE(fit);
-    ClipPlacement placement;
-    if (!fit) placement.fit.reset();
-    const MatrixD got = path_of(scene.placed(placement), scene.root());
+    const auto settings = fit ? std::optional(TrackFitSettings{}) : std::nullopt;
+    const MatrixD got = path_of(scene.placed({}, settings), scene.root());
     const MatrixD travel = got.rowwise() - got.row(0), want = truth.rowwise() - truth.row(0);
     CHECK(largest(travel - want) < 5.0);  // of some metres
   }
 }
 
-TEST_CASE("placement: a skeleton that is not the person's may have other proportions") {
+TEST_CASE("known of a clip: a skeleton that is not the person's may have other proportions") {
   Scene scene;
   add_pixel_noise(scene.track, 2.0, 5);
   const auto with = [&](bool own_skeleton, double proportions_m) {
     TrackFitSettings fit;
     fit.proportions_m = proportions_m;
-    ClipPlacement placement{scene.camera, std::nullopt, fit};
-    if (own_skeleton) placement.skeleton = scene.modalities.pose_features.skeleton();
-    return scene.placed(placement).channels;
+    KnownOfClip known{scene.camera, std::nullopt};
+    if (own_skeleton) known.skeleton = scene.modalities.pose_features.skeleton();
+    return scene.placed(known, fit).channels;
   };
   // Joints are then taken to be off by 7 cm at least.
   CHECK(with(false, 0.0) == with(true, 0.07));
@@ -177,7 +182,7 @@ TEST_CASE("placement: a skeleton that is not the person's may have other proport
   CHECK(with(false, 0.02) == with(false, 0.07));
 }
 
-TEST_CASE("placement: motion goes onto the skeleton that is given") {
+TEST_CASE("known of a clip: motion goes onto the skeleton that is given") {
   const Scene scene;
   Skeleton larger = scene.truth.skeleton;
   for (Joint& joint : larger.joints) {
@@ -185,9 +190,9 @@ TEST_CASE("placement: motion goes onto the skeleton that is given") {
     for (Eigen::Vector3d& end : joint.end_sites) end *= 1.25;
   }
   for (const bool camera : {true, false}) {
-    ClipPlacement placement{std::nullopt, larger, std::nullopt};
-    if (camera) placement.camera = scene.camera;
-    const Motion got = scene.placed(placement);
+    KnownOfClip known{std::nullopt, larger};
+    if (camera) known.camera = scene.camera;
+    const Motion got = scene.placed(known, std::nullopt);
     for (std::size_t j = 0; j < larger.joints.size(); ++j)
       CHECK(got.skeleton.joints[j].offset == larger.joints[j].offset);
     const auto names = scene.modalities.track_features.joint_names();
