@@ -7,12 +7,10 @@
 #include <limits>
 
 #include "mcdbn/base/errors.hpp"
+#include "motion/planted_foot.hpp"
 
 namespace mcdbn {
 namespace {
-
-constexpr double kPlantedWithin_mm = 40.0;
-constexpr double kPlantedBelow_mm_s = 400.0;
 
 void check(const MatrixD& truth, const MatrixD& regenerated, const std::vector<int>& feet) {
   if (truth.rows() != regenerated.rows() || truth.cols() != regenerated.cols())
@@ -30,15 +28,14 @@ FootSlide foot_slide(const MatrixD& truth, const MatrixD& regenerated, const std
   check(truth, regenerated, feet);
   FootSlide slide;
   for (const int foot : feet) {
-    const auto true_path = truth.middleCols<3>(3 * foot);
-    const auto path = regenerated.middleCols<3>(3 * foot);
-    const double ground_mm = true_path.rows() ? true_path.col(1).minCoeff() : 0;
-    for (Eigen::Index frame = 0; frame + 1 < truth.rows(); ++frame) {
-      const Eigen::RowVector3d true_step = true_path.row(frame + 1) - true_path.row(frame);
-      const double height_mm = true_path.col(1).segment<2>(frame).maxCoeff() - ground_mm;
-      if (height_mm > kPlantedWithin_mm || true_step.norm() * fps > kPlantedBelow_mm_s) continue;
-      const Eigen::RowVector3d step = path.row(frame + 1) - path.row(frame);
-      slide.truth_mm_s += std::hypot(true_step(0), true_step(2)) * fps;
+    const double ground_mm = truth.rows() ? truth.col(3 * foot + 1).minCoeff() : 0;
+    for (Eigen::Index frame = 1; frame < truth.rows(); ++frame) {
+      const JointStep true_step = step_to(truth, foot, frame);
+      if (!kPlantedInCapture.holds((true_step.height - ground_mm) / 1000,
+                                   true_step.moved.norm() * fps / 1000))
+        continue;
+      const Eigen::RowVector3d step = step_to(regenerated, foot, frame).moved;
+      slide.truth_mm_s += std::hypot(true_step.moved(0), true_step.moved(2)) * fps;
       slide.regenerated_mm_s += std::hypot(step(0), step(2)) * fps;
       ++slide.planted;
     }

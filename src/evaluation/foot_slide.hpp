@@ -6,10 +6,8 @@
 
 namespace mcdbn {
 
-/// How fast planted feet move over the ground. A foot joint is planted from one frame to the next
-/// where, in the truth, it is within 40 mm of its lowest height of the clip at both and slower than
-/// 400 mm/s; both clips are measured at the truth's planted frames. NaN where no foot is ever
-/// planted.
+/// How fast planted feet move over the ground: where they are planted in the truth
+/// (kPlantedInCapture), both clips are measured. NaN where no foot is ever planted.
 struct FootSlide {
   double truth_mm_s = 0;        ///< mean horizontal speed; capture has some slide of its own
   double regenerated_mm_s = 0;  ///< the same of the regenerated clip

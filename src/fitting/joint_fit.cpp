@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "fitting/frame_fit.hpp"
+#include "fitting/robust_residuals.hpp"
 #include "fitting/rows_around.hpp"
 #include "fitting/series_smoother.hpp"
 #include "fitting/standing_foot.hpp"
@@ -17,22 +18,22 @@
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
 #include "motion/foot_joints.hpp"
+#include "motion/planted_foot.hpp"
 
 namespace mcdbn {
 namespace {
 
 constexpr double kUnseen = std::numeric_limits<double>::infinity();
-/// The noise is told from so many frames, spread over the clip, in so many rounds.
+/// The noise is told from so many frames, spread over the clip (more than a thousand residuals), in
+/// so many rounds.
 constexpr Eigen::Index kNoiseFrames = 40;
 constexpr int kNoiseRounds = 4;
-constexpr double kFirstNoise_px = 4;
+constexpr double kFirstNoise_px = 4;  ///< a guess; the rounds leave it behind
 /// How far around a frame its neighbours are asked, and how many times as far, round by round: a
 /// bone may be taken for the wrong one over many frames.
 constexpr double kNeighbours_s = 1.0 / 15;
 constexpr std::array<double, 5> kNeighbourRounds{8, 4, 2, 1, 1};
-/// A foot that is seen within that of where it was stands, on a 1.7 m body; it is the frames so far
-/// around that tell.
-constexpr double kStill_m = 0.0025, kStanding_s = 2.0 / 15;
+constexpr StandingOnImage kStanding;
 
 /// One frame of the answer and what the track says of it.
 struct Frame {
@@ -177,9 +178,7 @@ double best_width_frames(double noise_m, double bend_m_s2, double frame_time_s) 
 double usual_depth(const std::vector<Frame>& frames) {
   std::vector<double> depths;
   for (const Frame& frame : frames) depths.push_back(frame.prior.root.z());
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return upper_median(std::move(depths));
 }
 
 FramePrior prior_alone(const TurnedBones& bones, const TrackFitSettings& fit, double units_per_m) {
@@ -237,8 +236,8 @@ std::vector<FootDepth> depths_around(const Clip& clip, std::size_t foot,
                     shown ? 1 / std::max(1.0, observation.variance) : 0,
                     corrected_position(observation.levers, frame.prior.root, correction).z()});
   }
-  return standing_depths(seen, kStill_m * clip.units_per_m / clip.depth,
-                         std::max(0.5, kStanding_s / clip.frame_time_s));
+  return standing_depths(seen, kStanding.still_m * clip.units_per_m / clip.depth,
+                         std::max(0.5, kStanding.around_s / clip.frame_time_s));
 }
 
 /// The feet that stand, by frame, at the depth they have in the frames around.

@@ -7,9 +7,8 @@
 namespace mcdbn {
 
 /// The root's velocity as planted feet tell it: a foot that stands still moves the root by as much
-/// as it moves against it. Feet count by how low they are (against the lowest of the frame, within
-/// some 5 cm) and how slow (within some 0.4 m/s, on a 1.7 m body); where none does, in flight, the
-/// velocity that was given stays.
+/// as it moves against it. Feet count by how surely they are planted (kPlantedInAnswer, over the
+/// lowest of the frame); where none is, in flight, the velocity that was given stays.
 /// @param motion in the world, fps as it says  @param root joint  @param feet joints, may be none
 /// @param velocity [frames x 3] of the root, world axes, file units per second: what else is known
 /// @return the same shape  @throws ShapeError

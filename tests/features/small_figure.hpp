@@ -19,9 +19,10 @@ class SmallFigure {
     return static_cast<std::size_t>(modalities_.pose_scale.output_dimension());
   }
 
-  /// Joint places by the motion layer's own decoding, relative to the root, in the camera's axes.
+  /// Joint positions by the motion layer's own decoding, relative to the root, in the camera's
+  /// axes.
   /// @param pose standardized [frames x dimension]  @return [frames x 3·joints that stand apart]
-  MatrixD places_m(const MatrixD& pose) const {
+  MatrixD positions_m(const MatrixD& pose) const {
     const MatrixD raw = raw_features(pose);
     const PoseFeatures& features = modalities_.pose_features;
     const Skeleton& skeleton = features.skeleton();
@@ -30,18 +31,18 @@ class SmallFigure {
     const MatrixD all = joint_positions(motion);
     const MatrixD root = all.middleCols(3 * features.root(), 3);
     const auto names = modalities_.track_features.joint_names();
-    MatrixD places(pose.rows(), 3 * static_cast<Eigen::Index>(names.size()));
+    MatrixD positions(pose.rows(), 3 * static_cast<Eigen::Index>(names.size()));
     for (std::size_t i = 0; i < names.size(); ++i)
-      places.middleCols(3 * static_cast<Eigen::Index>(i), 3) =
+      positions.middleCols(3 * static_cast<Eigen::Index>(i), 3) =
           (all.middleCols(3 * skeleton.find(names[i]), 3) - root) / file_units_per_metre(skeleton);
-    return places;
+    return positions;
   }
 
   /// Of these, the foot's. @return [frames x 3]
   MatrixD foot_m(const MatrixD& pose) const {
     const auto names = modalities_.track_features.joint_names();
     const auto foot = std::find(names.begin(), names.end(), "Foot") - names.begin();
-    return places_m(pose).middleCols(3 * foot, 3);
+    return positions_m(pose).middleCols(3 * foot, 3);
   }
 
   /// In the camera's axes. @return [frames x 3]

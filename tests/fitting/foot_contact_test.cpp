@@ -14,17 +14,18 @@ using namespace mcdbn::test;
 namespace {
 
 constexpr double kFps = 25;
-/// What contact() of the code under test calls low and slow, and what a given velocity weighs.
+/// What the code under test takes for low and slow (kPlantedInAnswer), and what a given velocity
+/// weighs.
 constexpr double kLow_m = 0.05, kSlow_m_s = 0.4, kGivenWeight = 0.1;
 
 /// A root below the world and two feet that go where their channels say, a body of 170 units.
 Motion feet_alone() {
   Motion motion;
-  const std::vector<Channel> place{x_position, y_position, z_position};
+  const std::vector<Channel> shift{x_position, y_position, z_position};
   motion.skeleton.joints = {make_joint("World", -1, {0, 0, 0}, {}),
-                            make_joint("Hips", 0, {0, 0, 0}, place),
-                            make_joint("LeftFoot", 0, {10, -170, 0}, place),
-                            make_joint("RightFoot", 0, {-10, -170, 0}, place)};
+                            make_joint("Hips", 0, {0, 0, 0}, shift),
+                            make_joint("LeftFoot", 0, {10, -170, 0}, shift),
+                            make_joint("RightFoot", 0, {-10, -170, 0}, shift)};
   motion.frame_time_s = 1 / kFps;
   motion.channels.resize(4, 9);
   motion.channels << 0, 90, 0, 10, 5, 0, -10, 6, 0,  //

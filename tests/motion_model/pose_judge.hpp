@@ -43,11 +43,11 @@ class PoseJudge {
 
  private:
   struct Seen {
-    MatrixD pose, places_m, foot_m, travel_m;
+    MatrixD pose, positions_m, foot_m, travel_m;
   };
 
   Seen seen(const MatrixD& pose) const {
-    return {pose, figure_.places_m(pose), figure_.foot_m(pose),
+    return {pose, figure_.positions_m(pose), figure_.foot_m(pose),
             figure_.root_velocity_m_s(pose) / figure_.modalities().fps};
   }
 
@@ -56,7 +56,7 @@ class PoseJudge {
   }
 
   bool is_planted(const Seen& truth, Eigen::Index t) const {
-    return foot_step_m(truth, t).norm() * figure_.modalities().fps <= weights_.planted_below_m_s;
+    return foot_step_m(truth, t).norm() * figure_.modalities().fps <= 0.4;
   }
 
   /// What each judged frame adds to the loss.
@@ -65,14 +65,16 @@ class PoseJudge {
     const auto rows = static_cast<double>(pose.rows()),
                steps = rows - rows / static_cast<double>(judged),
                features = static_cast<double>(pose.cols()),
-               places = static_cast<double>(own.places_m.cols());
-    const double place = weights_.positions / std::pow(PoseLoss::kPosition_m, 2) / (rows * places),
-                 step = weights_.velocities / std::pow(PoseLoss::kStep_m, 2) / (steps * places),
+               coordinates = static_cast<double>(own.positions_m.cols());
+    const double position =
+                     weights_.positions / std::pow(PoseLoss::kPosition_m, 2) / (rows * coordinates),
+                 step =
+                     weights_.velocities / std::pow(PoseLoss::kStep_m, 2) / (steps * coordinates),
                  contact = weights_.contacts / std::pow(PoseLoss::kStep_m, 2) / (steps * 3);
-    const MatrixD off = own.places_m - truth.places_m;
+    const MatrixD off = own.positions_m - truth.positions_m;
     Eigen::VectorXd result =
         weights_.features / (rows * features) * (pose - truth.pose).rowwise().squaredNorm() +
-        place * off.rowwise().squaredNorm();
+        position * off.rowwise().squaredNorm();
     for (Eigen::Index t = 0; t < pose.rows(); ++t) {
       if (t % judged == 0) continue;
       result[t] += step * (off.row(t) - off.row(t - 1)).squaredNorm();

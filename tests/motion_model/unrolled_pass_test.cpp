@@ -100,7 +100,7 @@ MatrixD planted_steps(const SmallFigure& figure, double planted_below_m_s,
   return difference;
 }
 
-/// What the loss is on the host, in double: features, and for 3D places and steps by the motion
+/// What the loss is on the host, in double: features, and for 3D positions and steps by the motion
 /// layer's own decoding and forward kinematics.
 double loss_in_double(const SmallFigure& figure, const PoseLossWeights& weights, int absent,
                       const MatrixD& prediction, const MatrixD& target) {
@@ -108,11 +108,12 @@ double loss_in_double(const SmallFigure& figure, const PoseLossWeights& weights,
   const MatrixD difference = (prediction - target).bottomRows(judged);
   double loss = weights.features * difference.array().square().mean();
   if (absent == 0) return loss;
-  const MatrixD places = (figure.places_m(prediction) - figure.places_m(target)).bottomRows(judged);
-  const MatrixD steps = places.bottomRows(judged - 1) - places.topRows(judged - 1);
-  loss += weights.positions * places.array().square().mean() /
+  const MatrixD positions =
+      (figure.positions_m(prediction) - figure.positions_m(target)).bottomRows(judged);
+  const MatrixD steps = positions.bottomRows(judged - 1) - positions.topRows(judged - 1);
+  loss += weights.positions * positions.array().square().mean() /
           (PoseLoss::kPosition_m * PoseLoss::kPosition_m);
-  const MatrixD planted = planted_steps(figure, weights.planted_below_m_s, prediction, target);
+  const MatrixD planted = planted_steps(figure, 0.4, prediction, target);
   return loss + (weights.velocities * steps.array().square().mean() +
                  weights.contacts * planted.array().square().mean()) /
                     (PoseLoss::kStep_m * PoseLoss::kStep_m);

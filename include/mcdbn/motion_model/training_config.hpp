@@ -13,9 +13,9 @@ struct PoseLossWeights {
   double features = 1.0;    ///< of squared standardized features
   double positions = 0.0;   ///< of squared distances of joints from the truth, in units of 5 cm
   double velocities = 0.0;  ///< of squared differences of steps from frame to frame, units of 1 cm
-  /// The same through the world, the root's travel included, of feet that are planted in truth.
+  /// The same through the world, the root's travel included, of feet that are planted in truth,
+  /// told by their speed alone (kPlantedInCapture).
   double contacts = 0.0;
-  double planted_below_m_s = 0.4;  ///< a foot slower than this is planted, on a 1.7 m body
 };
 
 /// Everything that shapes a training run on clips: how they become sequences, and how those are
