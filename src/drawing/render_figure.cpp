@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -18,30 +17,11 @@ const cv::Scalar kInk(70, 62, 58);
 
 constexpr int kSubpixelBits = 4;
 
-/// Left or right by the usual spellings: LeftArm, LHipJoint, l_arm, arm.L, Hand_R.
-Part part_of(const std::string& name) {
-  std::string lower = name;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (lower.find("left") != std::string::npos) return Part::left;
-  if (lower.find("right") != std::string::npos) return Part::right;
-  const auto is_separator = [](char c) { return c == '_' || c == '.' || c == '-' || c == ' '; };
-  const auto is_upper = [](char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; };
-  if (name.size() < 3) return Part::middle;
-  char side = 0;
-  if (is_separator(name[name.size() - 2])) {
-    side = lower.back();
-  } else if (is_separator(name[1]) || (is_upper(name[1]) && !is_upper(name[2]))) {
-    side = lower.front();
-  }
-  return side == 'l' ? Part::left : side == 'r' ? Part::right : Part::middle;
-}
-
-cv::Scalar colour_of(Part part, Palette palette) {
+cv::Scalar colour_of(Side side, Palette palette) {
   static const std::array<std::array<cv::Scalar, 3>, 2> kColours{
       {{cv::Scalar(186, 110, 32), cv::Scalar(80, 72, 66), cv::Scalar(62, 52, 208)},
        {cv::Scalar(132, 158, 20), cv::Scalar(120, 120, 126), cv::Scalar(40, 142, 240)}}};
-  return kColours[static_cast<std::size_t>(palette)][static_cast<std::size_t>(part)];
+  return kColours[static_cast<std::size_t>(palette)][static_cast<std::size_t>(side)];
 }
 
 cv::Scalar mix(const cv::Scalar& from, const cv::Scalar& to, double weight) {
@@ -103,11 +83,11 @@ Figure::Figure(const Motion& motion) : fps(motion.fps()) {
   std::vector<int> site_joints;
   for (int j = 0; j < joints; ++j) {
     const Joint& joint = skeleton.joints[static_cast<std::size_t>(j)];
-    const Part part = part_of(joint.name);
-    if (joint.parent >= 0) bones.push_back({joint.parent, j, part, false});
+    const Side side = side_of(joint.name);
+    if (joint.parent >= 0) bones.push_back({joint.parent, j, side, false});
     for (const Eigen::Vector3d& site : joint.end_sites) {
       const bool is_head = joint.name.find("ead") != std::string::npos && site.norm() > 0;
-      bones.push_back({j, joints + static_cast<int>(sites.size()), part, is_head});
+      bones.push_back({j, joints + static_cast<int>(sites.size()), side, is_head});
       sites.push_back(site);
       site_joints.push_back(j);
     }
@@ -184,7 +164,7 @@ void draw_figure(cv::Mat& image, const Camera& camera, const Figure& figure, int
   for (const Figure::Bone& bone : bones) {
     const double behind = (depth_of(camera, middle(bone)) - centre_depth) / figure.height;
     const double paleness = std::clamp(0.18 + 0.75 * behind, 0.0, 0.5);
-    const cv::Scalar colour = mix(colour_of(bone.part, palette), kPaper, paleness);
+    const cv::Scalar colour = mix(colour_of(bone.side, palette), kPaper, paleness);
     const Eigen::Vector2d from = pixels.row(bone.from), to = pixels.row(bone.to);
     if (bone.is_head) {
       const double length = (points.row(bone.from) - points.row(bone.to)).norm();

@@ -6,16 +6,15 @@
 
 #include "mcdbn/camera/camera.hpp"
 #include "mcdbn/motion/skeleton.hpp"
+#include "motion/joint_sides.hpp"
 
 namespace mcdbn::rendering {
-
-enum class Part { left, middle, right };
 
 /// A clip made ready to draw.
 struct Figure {
   struct Bone {
     int from, to;  ///< points
-    Part part;
+    Side side;
     bool is_head;  ///< drawn as a head, not as a line
   };
 

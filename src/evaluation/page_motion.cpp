@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "evaluation/motion_code.hpp"
+#include "motion/joint_sides.hpp"
 
 namespace mcdbn {
 namespace {
@@ -36,6 +37,18 @@ std::string encoded(const MatrixD& values, int step) {
   return encode_series(kept);
 }
 
+/// Of each point: −1 left, 1 right, 0 neither; an end of a limb is on its joint's side.
+std::vector<int> sides_of(const ReportClip& clip) {
+  std::vector<int> sides;
+  for (std::size_t i = 0; i < clip.point_names.size(); ++i) {
+    const bool end = i >= static_cast<std::size_t>(clip.joints);
+    const Side side =
+        side_of(clip.point_names[end ? static_cast<std::size_t>(clip.parents[i]) : i]);
+    sides.push_back(side == Side::left ? -1 : side == Side::right ? 1 : 0);
+  }
+  return sides;
+}
+
 class ClipWriter {
  public:
   ClipWriter(const ReportClip& clip, const Detail& detail) : clip_(clip), detail_(detail) {
@@ -47,6 +60,7 @@ class ClipWriter {
              {"joints", clip.joints},
              {"points", clip.point_names},
              {"parents", clip.parents},
+             {"sides", sides_of(clip)},
              {"width", clip.width_px},
              {"height", clip.height_px},
              {"truth", code(clip.truth_mm)},

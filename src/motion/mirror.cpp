@@ -1,11 +1,10 @@
 #include "motion/mirror.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <string>
-#include <utility>
 #include <vector>
+
+#include "motion/joint_sides.hpp"
 
 namespace mcdbn {
 namespace {
@@ -15,29 +14,6 @@ constexpr double kMostDifference = 0.25;
 
 using Axes = Eigen::Vector3d;  ///< the diagonal of a reflection along one axis
 const Axes kWorldMirror(-1, 1, 1);
-
-/// The name with one side's mark exchanged for the other's; empty if it has none.
-std::string other_side(const std::string& name) {
-  constexpr std::array<std::pair<const char*, const char*>, 4> kWords{
-      {{"Left", "Right"}, {"Right", "Left"}, {"left", "right"}, {"right", "left"}}};
-  for (const auto& [mark, opposite] : kWords)
-    if (const auto at = name.find(mark); at != std::string::npos)
-      return std::string(name).replace(at, std::string(mark).size(), opposite);
-  constexpr std::array<std::pair<char, char>, 4> kLetters{
-      {{'L', 'R'}, {'R', 'L'}, {'l', 'r'}, {'r', 'l'}}};
-  std::string result = name;
-  const std::size_t n = name.size();
-  for (const auto& [mark, opposite] : kLetters) {
-    const bool ends = n > 2 && name[n - 1] == mark && (name[n - 2] == '_' || name[n - 2] == '.');
-    const bool begins = n > 1 && name[0] == mark &&
-                        (std::isupper(static_cast<unsigned char>(name[1])) || name[1] == '_');
-    if (ends || begins) {
-      result[ends ? n - 1 : 0] = opposite;
-      return result;
-    }
-  }
-  return {};
-}
 
 struct Reflection {
   Axes axes = kWorldMirror;

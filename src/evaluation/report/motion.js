@@ -39,7 +39,7 @@ class Clip {
     this.truth = decodeSeries(data.truth, data.frames);
     this.track = decodeSeries(data.track, data.frames);
     this.ground = Math.min(...this.truth.filter((_, i) => i % 3 === 1).map(column => Math.min(...column)));
-    this.sides = data.points.map(sideOf);
+    this.sides = data.sides;
     this.motions = data.motions.map(motion => ({...motion, columns: null}));
   }
   motion(index) {
@@ -68,10 +68,4 @@ class Clip {
     }
     return errors;
   }
-}
-
-function sideOf(name) {
-  if (/left|^l[_.\- ]|[_.\- ]l( end)?$|^L[A-Z][a-z]/.test(name.replace(/Left/i, "left"))) return -1;
-  if (/right|^r[_.\- ]|[_.\- ]r( end)?$|^R[A-Z][a-z]/.test(name.replace(/Right/i, "right"))) return 1;
-  return 0;
 }

@@ -1,0 +1,40 @@
+#include "motion/joint_sides.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace mcdbn;
+
+TEST_CASE("joint sides: by a word or a letter of the name") {
+  for (const char* name :
+       {"LeftArm", "leftArm", "UPPER_LEFT_LEG", "arm.left", "LHipJoint", "l_arm", "L.arm", "L-arm",
+        "l arm", "lArm", "Arm_L", "arm.l", "arm-L", "arm L", "L_Finger_1"}) {
+    CAPTURE(name);
+    CHECK(side_of(name) == Side::left);
+  }
+  for (const char* name : {"RightArm", "forearm_right", "RHipJoint", "r_arm", "Hand_R", "rArm"}) {
+    CAPTURE(name);
+    CHECK(side_of(name) == Side::right);
+  }
+  for (const char* name :
+       {"", "L", "Hips", "ROOT", "Root", "LHIP", "Lower", "lumbar", "Spine_1", "Collar", "R2"}) {
+    CAPTURE(name);
+    CHECK(side_of(name) == Side::middle);
+  }
+}
+
+TEST_CASE("joint sides: the other side's name, in the same case") {
+  const std::pair<const char*, const char*> pairs[] = {
+      {"LeftArm", "RightArm"},    {"upleft", "upright"}, {"UPPER_LEFT_LEG", "UPPER_RIGHT_LEG"},
+      {"LHipJoint", "RHipJoint"}, {"LHIP", "RHIP"},      {"l_arm", "r_arm"},
+      {"arm.L", "arm.R"},         {"arm-l", "arm-r"},    {"L_Finger_1", "R_Finger_1"},
+      {"LFoot_end", "RFoot_end"}};
+  for (const auto& [left, right] : pairs) {
+    CAPTURE(left);
+    CHECK(other_side(left) == right);
+    CHECK(other_side(right) == left);
+  }
+  for (const char* name : {"", "L", "Hips", "Spine_1", "Lower"}) {
+    CAPTURE(name);
+    CHECK(other_side(name).empty());
+  }
+}
