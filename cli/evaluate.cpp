@@ -68,7 +68,8 @@ void add_views(const Model& model, TestRunOptions& run) {
     if (!std::filesystem::exists(clip.path)) return;  // run_test says so
     if (files.empty() || files.back() != clip.path) files.emplace_back(clip.path);
   }
-  TrainingSet views = make_augmented_views(files, model.modalities, config);
+  TrainingSet views =
+      make_augmented_views(load_clips(files, config.keep_first_frame), model.modalities, config);
   run.view_tracks = std::move(views.tracks);
   run.view_poses = std::move(views.poses);
 }

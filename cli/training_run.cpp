@@ -59,11 +59,12 @@ void make_run_folder(const std::filesystem::path& run, const TrainingConfig& con
 }  // namespace
 
 TrainedRun train_to_folder(const CommandContext& context, Device& device,
-                           const std::vector<std::filesystem::path>& clips,
+                           const std::vector<std::filesystem::path>& files,
                            const TrainingConfig& config, const std::filesystem::path& run,
                            const InterruptGuard& interrupt) {
   std::vector<std::string> notices;
-  const TrainingSet data = make_training_set(clips, config, &notices);
+  std::vector<LoadedClip> clips = load_clips(files, config.keep_first_frame, &notices);
+  const TrainingSet data = make_training_set(clips, config);
   for (const std::string& notice : notices) spdlog::info("{}", notice);
   make_run_folder(run, config);
   spdlog::info("{} clips, {} frames at {:g} fps on {}; 3D {} values a frame, 2D {}",
@@ -79,7 +80,7 @@ TrainedRun train_to_folder(const CommandContext& context, Device& device,
                               report.epoch, report.epochs, report.loss, report.windows_per_s),
                   report.overall_progress);
   };
-  auto [network, stopped] = train_network(device, data, clips, config, observer);
+  auto [network, stopped] = train_network(device, data, std::move(clips), config, observer);
   if (stopped)
     spdlog::info("{} kept out to stop early: stopped after {} of {} mini-batches",
                  fmt::join(stopped->held_out, ", "), stopped->steps, config.fine_tuning.steps);

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <regex>
 
 #include "comparison/baseline.hpp"
 #include "comparison/mlp_window.hpp"
+#include "corpus/people.hpp"
 #include "evaluation/bone_length.hpp"
 #include "evaluation/foot_slide.hpp"
 #include "fitting/track_smoothing.hpp"
@@ -178,15 +178,6 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
 }
 
 }  // namespace
-
-std::string person_of(const std::filesystem::path& file) {
-  static const std::regex cmu("(\\d+)_\\d+.*"), synthesized(".*_(s\\d+)_\\d+");
-  const std::string name = file.stem().string();
-  std::smatch found;
-  const bool tells =
-      std::regex_match(name, found, cmu) || std::regex_match(name, found, synthesized);
-  return tells ? found[1].str() : "";
-}
 
 ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                      const std::string& root_name) {

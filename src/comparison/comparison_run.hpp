@@ -52,10 +52,6 @@ struct ClipResult {
   std::map<std::string, Regeneration> others;
 };
 
-/// Who a clip shows, where its name tells: `08` of CMU's 08_01.bvh, `s02` of walk_s02_01.bvh as
-/// `synthesize` names them. Empty where it does not.
-std::string person_of(const std::filesystem::path& file);
-
 /// @throws InputError if a clip was trained on, or a training clip that the baselines need is gone
 std::vector<ClipResult> run_test(const Model& model,
                                  const std::vector<std::filesystem::path>& files,

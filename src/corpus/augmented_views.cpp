@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/missing_values.hpp"
-#include "corpus/people_count.hpp"
+#include "corpus/people.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/features/standardizer.hpp"
 
@@ -14,12 +14,11 @@ namespace {
 constexpr std::uint16_t kStream = 192;  // of random numbers
 
 /// Fewer views of much data: it varies by itself, and all views are kept in memory.
-std::size_t views_that_fit(const std::vector<std::filesystem::path>& files,
-                           const ClipOptions& options, const CorpusSettings& settings) {
+std::size_t views_that_fit(const std::vector<LoadedClip>& clips, const CorpusSettings& settings) {
   constexpr double kMostFrames = 200'000;
   double frames = 0;
-  for (const auto& file : files) {
-    const Motion raw = load_clip(file, options);
+  for (const LoadedClip& loaded : clips) {
+    const Motion& raw = loaded.motion;
     frames += static_cast<double>(raw.frames()) * raw.frame_time_s * settings.fps;
   }
   const double fitting = std::max(1.0, std::floor(kMostFrames / std::max(frames, 1.0)));
@@ -28,18 +27,14 @@ std::size_t views_that_fit(const std::vector<std::filesystem::path>& files,
 
 }  // namespace
 
-TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files,
-                                 const Modalities& modalities, const CorpusSettings& settings,
-                                 std::uint64_t seed) {
-  const ClipOptions options{.fps = 0, .keep_first_frame = settings.keep_first_frame};
-  const std::size_t count = views_that_fit(files, options, settings);
+TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Modalities& modalities,
+                                 const CorpusSettings& settings, std::uint64_t seed) {
+  const std::size_t count = views_that_fit(clips, settings);
   TrainingSet views{modalities, {}, {}, {}, {}};
   PeopleCount people;
   RandomKey key{seed, 0, kStream, 0};
-  for (const auto& file : files) {
-    const Motion raw = load_clip(file, options);
+  for (const auto& [clip, raw] : clips) {
     const std::size_t person = people.number_of(raw.skeleton);
-    const TrainingClip clip = identify_clip(file);
     for (std::size_t i = 0; i < count; ++i, ++key.step) {
       views.people.push_back(person);
       views.clips.push_back(clip);

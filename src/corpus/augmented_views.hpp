@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "mcdbn/corpus/training_set.hpp"
@@ -9,9 +8,8 @@ namespace mcdbn {
 
 /// Views of the training clips (augmented_view), standardized, for fine-tuning:
 /// config.augment.views of each clip, fewer where that would be more than some two hours.
-/// @param files as make_training_set read them  @throws InputError
-TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files,
-                                 const Modalities& modalities, const CorpusSettings& settings,
-                                 std::uint64_t seed);
+/// @param clips at their own rate, as make_training_set took them
+TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Modalities& modalities,
+                                 const CorpusSettings& settings, std::uint64_t seed);
 
 }  // namespace mcdbn

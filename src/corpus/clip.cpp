@@ -41,14 +41,9 @@ std::vector<fs::path> clips_below(const fs::path& folder) {
   return clips;
 }
 
-}  // namespace
-
-Motion load_clip(const fs::path& path, const ClipOptions& options,
-                 std::vector<std::string>* notices) {
-  if (!std::isfinite(options.fps) || options.fps < 0) {
-    throw ConfigError(fmt::format("fps is {}; give a rate, or 0 for the file's own", options.fps));
-  }
-  Motion motion = read_bvh(path, notices);
+/// What ClipOptions say is done to a clip that was read.
+Motion prepared(Motion motion, const fs::path& path, const ClipOptions& options,
+                std::vector<std::string>* notices) {
   if (!options.keep_first_frame && has_leading_calibration_pose(motion)) {
     motion = without_first_frame(motion);
     if (notices) {
@@ -62,6 +57,32 @@ Motion load_clip(const fs::path& path, const ClipOptions& options,
   }
   const bool resampling = options.fps > 0 && std::abs(options.fps - motion.fps()) > kSameRate_hz;
   return resampling ? resample(motion, options.fps) : motion;
+}
+
+TrainingClip identified(const fs::path& path, const std::string& text) {
+  return {fs::absolute(path).lexically_normal().string(), fmt::format("{:016x}", fnv1a(text))};
+}
+
+}  // namespace
+
+Motion load_clip(const fs::path& path, const ClipOptions& options,
+                 std::vector<std::string>* notices) {
+  if (!std::isfinite(options.fps) || options.fps < 0) {
+    throw ConfigError(fmt::format("fps is {}; give a rate, or 0 for the file's own", options.fps));
+  }
+  return prepared(read_bvh(path, notices), path, options, notices);
+}
+
+std::vector<LoadedClip> load_clips(const std::vector<fs::path>& files, bool keep_first_frame,
+                                   std::vector<std::string>* notices) {
+  std::vector<LoadedClip> clips;
+  for (const fs::path& file : files) {
+    const std::string text = read_text_file(file);
+    clips.push_back({identified(file, text),
+                     prepared(parse_bvh(text, file.string(), notices), file,
+                              {.fps = 0, .keep_first_frame = keep_first_frame}, notices)});
+  }
+  return clips;
 }
 
 std::vector<fs::path> find_clips(const std::vector<fs::path>& paths) {
@@ -84,9 +105,8 @@ std::vector<fs::path> find_clips(const std::vector<fs::path>& paths) {
   return clips;
 }
 
-TrainingClip identify_clip(const std::filesystem::path& path) {
-  return {std::filesystem::absolute(path).lexically_normal().string(),
-          fmt::format("{:016x}", fnv1a(read_text_file(path)))};
+TrainingClip identify_clip(const fs::path& path) {
+  return identified(path, read_text_file(path));
 }
 
 }  // namespace mcdbn

@@ -64,21 +64,19 @@ std::size_t TrainingSet::frames() const {
   return sum;
 }
 
-TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
-                              const CorpusSettings& settings, std::uint64_t seed, bool with_views,
-                              std::vector<std::string>* notices) {
-  if (files.empty())
+TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const CorpusSettings& settings,
+                              std::uint64_t seed, bool with_views) {
+  if (clips.empty())
     throw InputError("no training clips; name BVH files or folders that hold some");
   std::vector<TrainingClip> recorded;
   std::vector<Motion> motions;
   std::vector<AugmentedView> views;
   RandomKey key{seed, 0, kStream, 0};
-  for (const auto& file : files) {
-    const Motion raw =
-        load_clip(file, {.fps = 0, .keep_first_frame = settings.keep_first_frame}, notices);
-    for (Motion& motion : resampled_phases(raw, settings)) motions.push_back(std::move(motion));
-    if (with_views) add_views(raw, settings, key, views);
-    recorded.push_back(identify_clip(file));
+  for (const LoadedClip& loaded : clips) {
+    for (Motion& motion : resampled_phases(loaded.motion, settings))
+      motions.push_back(std::move(motion));
+    if (with_views) add_views(loaded.motion, settings, key, views);
+    recorded.push_back(loaded.clip);
   }
   std::vector<const Motion*> all;
   all.reserve(motions.size());
@@ -92,7 +90,7 @@ TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
     pairs.push_back({track_features.encode(project_motion(motion, camera)),
                      pose_features.encode(motion, camera.camera_from_world)});
   }
-  const std::size_t clips = pairs.size();
+  const std::size_t without_views = pairs.size();
   for (const AugmentedView& view : views)
     pairs.push_back({track_features.encode(view.track),
                      pose_features.encode(view.motion, view.camera.camera_from_world)});
@@ -103,7 +101,7 @@ TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
                   {},
                   std::move(recorded),
                   {}};
-  pairs.resize(clips);
+  pairs.resize(without_views);
   for (const Pair& pair : pairs) {
     set.tracks.push_back(set.modalities.track_scale.apply(pair.track));
     set.poses.push_back(set.modalities.pose_scale.apply(pair.pose));

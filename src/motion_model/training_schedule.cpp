@@ -27,14 +27,13 @@ SequenceLossMaker pose_loss_maker(const Modalities& modalities, const PoseLossWe
 
 }  // namespace
 
-TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
-                              const TrainingConfig& config, std::vector<std::string>* notices) {
-  return make_training_set(files, config, config.seed, config.fine_tuning.steps > 0, notices);
+TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const TrainingConfig& config) {
+  return make_training_set(clips, config, config.seed, config.fine_tuning.steps > 0);
 }
 
-TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files,
-                                 const Modalities& modalities, const TrainingConfig& config) {
-  return make_augmented_views(files, modalities, config, config.seed);
+TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Modalities& modalities,
+                                 const TrainingConfig& config) {
+  return make_augmented_views(clips, modalities, config, config.seed);
 }
 
 PairedClips paired_clips(const TrainingSet& set) {
@@ -55,12 +54,12 @@ TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& 
           EarlyStopping{clip_names(stranger), tuned.kept->steps, tuned.kept->loss}};
 }
 
-TrainedNetwork train_network(Device& device, const TrainingSet& data,
-                             const std::vector<std::filesystem::path>& files,
+TrainedNetwork train_network(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
                              const TrainingConfig& config, const EpochObserver& observer) {
   if (config.fine_tuning.steps == 0)
     return {train_greedy(device, paired_clips(data), config, observer), {}};
-  const TrainingSet views = make_augmented_views(files, data.modalities, config);
+  const TrainingSet views = make_augmented_views(clips, data.modalities, config);
+  clips = {};
   Mcdbn start = random_start(device, static_cast<std::size_t>(data.tracks.front().cols()),
                              static_cast<std::size_t>(data.poses.front().cols()), config);
   double greedy_share = 0.0;  // of the time, about

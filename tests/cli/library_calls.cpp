@@ -19,9 +19,10 @@ LibraryTraining train_by_library(const std::vector<std::filesystem::path>& clips
                                  const TrainingConfig& config, const nlohmann::json& record) {
   LibraryTraining result;
   std::vector<std::string> notices;
-  const TrainingSet data = make_training_set(clips, config, &notices);
+  const auto loaded = load_clips(clips, config.keep_first_frame, &notices);
+  const TrainingSet data = make_training_set(loaded, config);
   auto [network, stopped] =
-      train_network(usual_device(), data, clips, config,
+      train_network(usual_device(), data, loaded, config,
                     [&](const EpochReport& report) { result.epochs.push_back(report); });
   if (config.fine_tuning.steps > 0)
     network.sampling = calibrated_sampling(network, data.modalities, data.tracks, data.poses);

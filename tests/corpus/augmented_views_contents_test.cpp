@@ -3,7 +3,7 @@
 #include "corpus/augmented_views.hpp"
 #include "corpus/corpus_config.hpp"
 #include "corpus/held_out_person.hpp"
-#include "corpus/people_count.hpp"
+#include "corpus/people.hpp"
 #include "corpus/training_files.hpp"
 #include "mcdbn/corpus/clip.hpp"
 

@@ -73,6 +73,30 @@ TEST_CASE("clip: rates that are none and clips without frames are refused") {
   CHECK_THROWS_AS(load_clip(folder / "none.bvh"), InputError);
 }
 
+TEST_CASE("clips to train on: each at its own rate, known by its file") {
+  const test::ScratchFolder folder;
+  const fs::path a = write(folder, "a.bvh", calibrated()),
+                 b = write(folder, "b.bvh", test::swinging(test::small_body(), 20, 25));
+  std::vector<std::string> notices;
+  const std::vector<LoadedClip> clips = load_clips({a, b}, false, &notices);
+  REQUIRE(clips.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CAPTURE(i);
+    const fs::path& path = i == 0 ? a : b;
+    CHECK(clips[i].clip.path == identify_clip(path).path);
+    CHECK(clips[i].clip.fingerprint == identify_clip(path).fingerprint);
+    CHECK(clips[i].motion.channels == load_clip(path, {.fps = 0}).channels);
+    CHECK(clips[i].motion.fps() == doctest::Approx(i == 0 ? 60 : 25));
+  }
+  REQUIRE(notices.size() == 1);
+  CHECK(notices[0].find("a.bvh: dropped the calibration pose") != std::string::npos);
+  CHECK(load_clips({a}, true).front().motion.frames() == 41);
+  CHECK_THROWS_AS(load_clips({a, folder / "none.bvh"}), InputError);
+  Motion empty = calibrated();
+  empty.channels.resize(0, empty.channels.cols());
+  CHECK_THROWS_AS(load_clips({write(folder, "empty.bvh", empty)}), InputError);
+}
+
 TEST_CASE("clips of a command line: files in its order, folders by path, each once") {
   const test::ScratchFolder folder;
   const Motion motion = calibrated();

@@ -41,7 +41,7 @@ class SmallRun {
     config.fine_tuning.steps = 40;
     config.fine_tuning.windows = 8;
     config.fine_tuning.window_frames = 8;
-    data = std::make_unique<TrainingSet>(make_training_set(files, config, nullptr));
+    data = std::make_unique<TrainingSet>(make_training_set(load_clips(files), config));
   }
 
   Mcdbn start(Device& device) const {
@@ -77,7 +77,8 @@ bool same_bits(const Mcdbn& x, const Mcdbn& y) {
 
 TEST_CASE("fine-tuning lowers its loss, and the same seed gives the same bits") {
   const SmallRun run;
-  const TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
+  const TrainingSet views =
+      make_augmented_views(load_clips(run.files), run.data->modalities, run.config);
   REQUIRE(views.poses.size() == 4);
   CHECK(views.poses[0] != views.poses[1]);
   on_every_device([&](Device& device) {
@@ -103,7 +104,8 @@ TEST_CASE("one of several people is held out, and nothing is learnt from them") 
   SmallRun run(4);
   run.config.fine_tuning.steps = 75;
   run.config.hold_out_among = 4;
-  const TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
+  const TrainingSet views =
+      make_augmented_views(load_clips(run.files), run.data->modalities, run.config);
   const auto person = person_to_hold_out(views, 4);
   REQUIRE(person);
   const TrainingSet others = views_without(views, *person);
@@ -136,7 +138,7 @@ TEST_CASE("parameters of before the person held out fared worse are kept") {
   SmallRun run(4);
   run.config.fine_tuning.steps = 200;
   run.config.hold_out_among = 4;
-  TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
+  TrainingSet views = make_augmented_views(load_clips(run.files), run.data->modalities, run.config);
   // Somebody who does the opposite: the more is learnt from others, the worse.
   const auto person = person_to_hold_out(views, 4);
   for (std::size_t i = 0; i < views.poses.size(); ++i)
@@ -153,7 +155,8 @@ TEST_CASE("parameters of before the person held out fared worse are kept") {
 
 TEST_CASE("an observer stops fine-tuning, and windows need their histories") {
   const SmallRun run;
-  const TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
+  const TrainingSet views =
+      make_augmented_views(load_clips(run.files), run.data->modalities, run.config);
   on_every_device([&](Device& device) {
     const Mcdbn start = run.start(device);
     const auto stop = [](const EpochReport&) { throw InputError("enough"); };
@@ -169,7 +172,8 @@ TEST_CASE("greedy stages before fine-tuning go on from its own starting weights"
   run.config.gaussian.rate = run.config.gaussian.rate_A = run.config.gaussian.rate_B = 1e-9;
   run.config.binary = run.config.gaussian;
   run.config.mrbm.rate = 1e-9;
-  const TrainingSet views = make_augmented_views(run.files, run.data->modalities, run.config);
+  const TrainingSet views =
+      make_augmented_views(load_clips(run.files), run.data->modalities, run.config);
   on_every_device([&](Device& device) {
     const Mcdbn start = run.start(device);
     const Mcdbn still = train_greedy(device, paired_clips(views), run.config, {}, &start);

@@ -20,14 +20,14 @@ namespace {
 struct SmallTraining {
   TrainingFiles walks{{{1, 1, 30.0, 1.2}, {2, 1, 30.0, 1.0}}};
   TrainingConfig config = settings();
-  TrainingSet data = make_training_set(walks.files(), config, nullptr);
+  TrainingSet data = make_training_set(load_clips(walks.files()), config);
 
   TrainedNetwork train(Device& device, const TrainingConfig& with,
                        const EpochObserver& observer = {}) const {
-    return train_network(device, data, walks.files(), with, observer);
+    return train_network(device, data, load_clips(walks.files()), with, observer);
   }
   TrainingSet views(const TrainingConfig& with) const {
-    return make_augmented_views(walks.files(), data.modalities, with);
+    return make_augmented_views(load_clips(walks.files()), data.modalities, with);
   }
   Mcdbn start(Device& device, const TrainingConfig& with) const {
     return random_start(device, static_cast<std::size_t>(data.tracks.front().cols()),

@@ -34,4 +34,15 @@ struct TrainingClip {
 /// @throws InputError if the file cannot be read
 TrainingClip identify_clip(const std::filesystem::path& path);
 
+/// A clip to train on, its file read once for all that is made of it.
+struct LoadedClip {
+  TrainingClip clip;
+  Motion motion;  ///< at the file's own rate
+};
+
+/// @param notices as load_clip collects them  @throws InputError as load_clip does
+std::vector<LoadedClip> load_clips(const std::vector<std::filesystem::path>& files,
+                                   bool keep_first_frame = false,
+                                   std::vector<std::string>* notices = nullptr);
+
 }  // namespace mcdbn

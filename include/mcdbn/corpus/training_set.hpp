@@ -5,8 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <string>
 #include <vector>
 
 #include "mcdbn/corpus/augmentation.hpp"
@@ -38,12 +36,12 @@ struct TrainingSet {
   std::size_t frames() const;
 };
 
-/// Reads BVH files, resamples each on `phases` shifted grids, projects it through the camera and
-/// learns the features and their scaling.
+/// Resamples each clip on `phases` shifted grids, projects it through the camera and learns the
+/// features and their scaling.
+/// @param clips at their own rate (load_clips)
 /// @param with_views the scaling is learnt from augmented views, too (make_augmented_views)
 /// @throws InputError
-TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
-                              const CorpusSettings& settings, std::uint64_t seed, bool with_views,
-                              std::vector<std::string>* notices);
+TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const CorpusSettings& settings,
+                              std::uint64_t seed, bool with_views);
 
 }  // namespace mcdbn

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -18,11 +17,10 @@ struct TrainedNetwork {
 };
 
 /// make_training_set as a training run's settings say.
-TrainingSet make_training_set(const std::vector<std::filesystem::path>& files,
-                              const TrainingConfig& config, std::vector<std::string>* notices);
+TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const TrainingConfig& config);
 /// make_augmented_views likewise.
-TrainingSet make_augmented_views(const std::vector<std::filesystem::path>& files,
-                                 const Modalities& modalities, const TrainingConfig& config);
+TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Modalities& modalities,
+                                 const TrainingConfig& config);
 
 /// A training set as `learning` takes it; `set` must live on.
 PairedClips paired_clips(const TrainingSet& set);
@@ -35,10 +33,9 @@ TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& 
 
 /// The greedy stages (Algorithm 1) on the clips as they are, or on augmented views of them and then
 /// fine-tuning, or that alone, as config.fine_tuning says.
-/// @param files as make_training_set read them, for the views
+/// @param clips as make_training_set took them, for the views; gone once those are made
 /// The observer may throw to stop. @throws DivergenceError, InputError
-TrainedNetwork train_network(Device& device, const TrainingSet& data,
-                             const std::vector<std::filesystem::path>& files,
+TrainedNetwork train_network(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
                              const TrainingConfig& config, const EpochObserver& observer = {});
 
 }  // namespace mcdbn

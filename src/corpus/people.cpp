@@ -1,7 +1,8 @@
-#include "corpus/people_count.hpp"
+#include "corpus/people.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 namespace mcdbn {
 
@@ -16,6 +17,15 @@ std::size_t PeopleCount::number_of(const Skeleton& skeleton) {
   const auto number = static_cast<std::size_t>(found - bones_.begin());
   if (found == bones_.end()) bones_.push_back(std::move(bones));
   return number;
+}
+
+std::string person_of(const std::filesystem::path& file) {
+  static const std::regex cmu("(\\d+)_\\d+.*"), synthesized(".*_(s\\d+)_\\d+");
+  const std::string name = file.stem().string();
+  std::smatch found;
+  const bool tells =
+      std::regex_match(name, found, cmu) || std::regex_match(name, found, synthesized);
+  return tells ? found[1].str() : "";
 }
 
 }  // namespace mcdbn

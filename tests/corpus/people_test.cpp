@@ -1,4 +1,4 @@
-#include "corpus/people_count.hpp"
+#include "corpus/people.hpp"
 
 #include <doctest/doctest.h>
 
@@ -16,4 +16,13 @@ TEST_CASE("people are told by their bones") {
   CHECK(people.number_of(small.skeleton) == 1);
   CHECK(people.number_of(turned.skeleton) == 0);
   CHECK(people.number_of(tall.skeleton) == 0);
+}
+
+TEST_CASE("a person is read off a clip's name, where it tells") {
+  CHECK(person_of("cmu/walk/08_01.bvh") == "08");
+  CHECK(person_of("13_13or19.bvh") == "13");
+  CHECK(person_of("motion/walk_s02_01.bvh") == "s02");
+  CHECK(person_of("motion/jumping-jacks_s12_03.bvh") == "s12");
+  CHECK(person_of("dataset-2_wave-both-hands_active_001.bvh").empty());
+  CHECK(person_of("my_clip.bvh").empty());
 }
