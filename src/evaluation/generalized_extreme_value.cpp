@@ -5,9 +5,8 @@
 #include <boost/math/differentiation/autodiff.hpp>
 #include <cmath>
 #include <limits>
+#include <opencv2/core/optim.hpp>
 #include <type_traits>
-
-#include "evaluation/nelder_mead.hpp"
 
 namespace mcdbn {
 namespace {
@@ -19,6 +18,43 @@ constexpr double kGumbelBelow = 1e-12;  ///< shapes that are zero for all purpos
 /// Shape, logarithm of the scale, location: free of constraints but for the shape.
 GeneralizedExtremeValue from_search(const Eigen::Vector3d& at) {
   return {at(0), std::exp(at(1)), at(2)};
+}
+
+/// What the search makes smallest: −log likelihood, +infinity where the distribution is not
+/// allowed.
+class Cost : public cv::MinProblemSolver::Function {
+ public:
+  explicit Cost(const Eigen::VectorXd& samples) : samples_(samples) {}
+
+  int getDims() const override { return 3; }
+  double calc(const double* at) const override {
+    return at[0] < -1
+               ? kInfinity
+               : -from_search(Eigen::Map<const Eigen::Vector3d>(at)).log_likelihood(samples_);
+  }
+
+ private:
+  const Eigen::VectorXd& samples_;
+};
+
+/// By the simplex method of Nelder and Mead, which needs no derivatives and takes +infinity. It may
+/// stop on a slope, so it starts over from where it stopped until that gains nothing.
+Eigen::Vector3d smallest(const cv::Ptr<Cost>& cost, Eigen::Vector3d at) {
+  constexpr int kStarts = 10, kEvaluations = 4000;
+  constexpr double kStep = 0.1, kSmallestGain = 1e-9;
+  const auto solver = cv::DownhillSolver::create(
+      cost, cv::Mat(1, 3, CV_64F, cv::Scalar(kStep)),
+      {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kEvaluations, kSmallestGain});
+  double value = cost->calc(at.data());
+  for (int start = 0; start < kStarts; ++start) {
+    Eigen::Vector3d found = at;
+    cv::Mat there(1, 3, CV_64F, found.data());
+    const double found_value = solver->minimize(there);
+    if (found_value < value) at = found;
+    if (!(value - found_value > kSmallestGain)) break;
+    value = found_value;
+  }
+  return at;
 }
 
 /// log(1 + shape·z) / shape, smooth with its derivatives through shape 0 (Gumbel).
@@ -87,14 +123,11 @@ GeneralizedExtremeValueFit fit_generalized_extreme_value(
   const double mean = samples.mean();
   const double deviation = std::sqrt((samples.array() - mean).square().mean());
   const Eigen::VectorXd standardized = (samples.array() - mean) / deviation;
-  const auto cost = [&](const Eigen::Vector3d& at) {
-    return at(0) < -1 ? kInfinity : -from_search(at).log_likelihood(standardized);
-  };
   // The Gumbel distribution of the same mean and variance: no sample is outside of its support.
   using namespace boost::math::double_constants;
   const double gumbel_scale = std::sqrt(6.0) / pi;
   const Eigen::Vector3d start(0, std::log(gumbel_scale), -euler * gumbel_scale);
-  GeneralizedExtremeValue fit = from_search(nelder_mead(cost, start, 0.1));
+  GeneralizedExtremeValue fit = from_search(smallest(cv::makePtr<Cost>(standardized), start));
 
   Eigen::Vector3d errors = standard_errors(standardized, fit);
   errors.tail<2>() *= deviation;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -14,11 +15,6 @@ namespace mcdbn {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-double median_of_sorted(const std::vector<double>& sorted) {
-  const std::size_t middle = sorted.size() / 2;
-  return sorted.size() % 2 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
-}
 
 double mode_of(const Histogram& histogram) {
   const auto fullest = std::max_element(histogram.counts.begin(), histogram.counts.end());
@@ -64,7 +60,7 @@ SummaryStatistics summarize(const std::vector<double>& values, int bins) {
   summary.mean = x.mean();
   summary.standard_deviation =
       summary.count > 1 ? std::sqrt((x - summary.mean).square().sum() / (summary.count - 1)) : kNaN;
-  summary.median = median_of_sorted(sorted);
+  summary.median = boost::math::statistics::median(sorted.begin(), sorted.end());
   summary.minimum = sorted.front();
   summary.maximum = sorted.back();
   summary.histogram = histogram_of(sorted, summary.minimum, summary.maximum, bins);
