@@ -177,6 +177,7 @@ double best_width_frames(double noise_m, double bend_m_s2, double frame_time_s) 
 /// How far the root is from the camera in the middle frame by distance.
 double usual_depth(const std::vector<Frame>& frames) {
   std::vector<double> depths;
+  depths.reserve(frames.size());
   for (const Frame& frame : frames) depths.push_back(frame.prior.root.z());
   return upper_median(std::move(depths));
 }
