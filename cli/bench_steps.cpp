@@ -130,7 +130,7 @@ BenchStep mrbm_step(Device& device, std::size_t visible, std::size_t hidden, std
           pose(Matrix::from_host(device, random_frames(kFrames, visible, VisibleKind::binary))),
           index(scattered_rows(device, batch, 0)),
           mrbm(device, MrbmParameters::random(visible, visible, hidden, kWeightDeviation, {})),
-          multi_prediction(mrbm, steps, batch),
+          multi_prediction(mrbm, batch, {.mean_field_steps = steps}),
           losses(device, 2, batch) {}
   };
   const auto state = std::make_shared<State>(device, visible, hidden, batch, mean_field_steps);
@@ -146,8 +146,8 @@ BenchStep mrbm_step(Device& device, std::size_t visible, std::size_t hidden, std
           2.0 * multiply_adds * static_cast<double>(batch),
           [state, batch] {
             state->multi_prediction.step(Rows::indexed(state->track, state->index, 0, batch),
-                                         Rows::indexed(state->pose, state->index, 0, batch), {},
-                                         state->losses);
+                                         Rows::indexed(state->pose, state->index, 0, batch),
+                                         UpdateRule::adam(), state->losses);
           }};
 }
 

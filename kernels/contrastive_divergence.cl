@@ -6,6 +6,7 @@
 //
 // global: (blocks · GROUP), local: (GROUP). Compile-time: VISIBLE, HIDDEN (units), ORDER (frames of
 // history), GAUSSIAN (1, or 0 for binary visible units), ROWS, COLUMNS, GROUP (tile.clh).
+// parameters_at: the first floats of W, A, B, a and b.
 // Outputs are [blocks · ROWS x V_LD or H_LD]; rows past `rows` repeat the last one.
 //   visible_data, hidden_data          v and p(h | v, H) of the data
 //   visible, hidden                    the same at the chain's end
@@ -40,13 +41,17 @@ INLINE void store_change(floatN end[ROWS][COLUMNS], const int count, global cons
 
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
     global const float* frames, global const int* index, int first, int shift, int rows,
-    global const float* w, global const float* w_transposed, global const float* weights_a,
-    global const float* weights_b, global const float* bias_a, global const float* bias_b,
+    global const float* parameters, int8 parameters_at, global const float* w_transposed,
     global float* visible_data, global float* visible, global float* visible_change,
     global float* hidden_data, global float* hidden, global float* hidden_change,
     global float* loss, int gibbs_steps, uint4 random) {
   local float v[ROWS * V_LD];
   local float s[ROWS * H_LD];
+  global const float* w = parameters + parameters_at.s0;
+  global const float* weights_a = parameters + parameters_at.s1;
+  global const float* weights_b = parameters + parameters_at.s2;
+  global const float* bias_a = parameters + parameters_at.s3;
+  global const float* bias_b = parameters + parameters_at.s4;
   const int row0 = get_group_id(0) * ROWS;
   int at[ROWS];
   for (int r = 0; r < ROWS; ++r) at[r] = index[first + min(row0 + r, rows - 1)] + shift;

@@ -4,11 +4,11 @@
 // modality starts from zeros, so that the first hidden pass sees the present one alone, counted
 // twice with `doubled`. Sums are those of gemm.cl, bias last: the same bits as product by product.
 //
-// global: (blocks · GROUP), local: (GROUP). Compile-time: VISIBLE_0, VISIBLE_1, HIDDEN (units of the
-// present and of the absent modality, shared ones; mrbm_shape.clh), ROWS, COLUMNS, GROUP
-// (tile.clh). Row r of `present` is row index[first + r] + shift if `indexed`, else r, of rows
-// that are present_ld floats apart; row r of `absent` likewise, without index. `drive` is scratch,
-// [blocks · ROWS x H_LD]: what the present modality says to the hidden units.
+// global: (blocks · GROUP), local: (GROUP). Compile-time: mrbm_shape.clh, which has `layout` too, and
+// tile.clh's ROWS, COLUMNS, GROUP. Modality p is present, q absent. Row r of `present` is row
+// index[first + r] + shift if `indexed`, else r, of rows that are present_ld floats apart; row r of
+// `absent` likewise, without index. `drive` is scratch, [blocks · ROWS x H_LD]: b and the present
+// modality's products.
 //
 // With a temperature other than 0 units are drawn as SAMPLE says, 1 or 3 (tile.clh), phase
 // 2 · step for the hidden ones and 2 · step + 1 for the absent ones; the last step's absent ones stay
@@ -21,9 +21,7 @@
 #include "tile.clh"
 #include "mrbm_shape.clh"
 
-#define P_LD PADDED(VISIBLE_0)
-#define Q_LD PADDED(VISIBLE_1)
-#define X_LD (P_LD > Q_LD ? P_LD : Q_LD)
+#define X_LD PADDED(LARGEST)
 
 // Probabilities of this tile become what lies between them and their draws.
 INLINE void draw_tile(local float* x, const int ld, const int count, int column, int row0,
@@ -35,13 +33,19 @@ INLINE void draw_tile(local float* x, const int ld, const int count, int column,
 
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
     global const float* present, int present_offset, int present_ld, global const int* index,
-    int indexed, int first, int shift, int rows, global const float* w_p, global const float* b,
-    global const float* w_q, global const float* wt_q, global const float* a_q,
-    global float* drive, global float* absent, int absent_offset, int absent_ld, int steps,
-    int doubled, float temperature, uint4 random) {
+    int indexed, int first, int shift, int rows, global const int* layout, int p, int q,
+    global const float* parameters, global const float* transposed, global float* drive,
+    global float* absent, int absent_offset, int absent_ld, int steps, int doubled,
+    float temperature, uint4 random) {
   local float x[ROWS * X_LD];  // the present modality, then the absent one
   local float h[ROWS * H_LD];
   const int row0 = get_group_id(0) * ROWS;
+  const int P = UNITS(p), Q = UNITS(q), P_LD = PADDED(P), Q_LD = PADDED(Q);
+  global const float* w_p = parameters + W_AT(p);
+  global const float* w_q = parameters + W_AT(q);
+  global const float* wt_q = transposed + WT_AT(q);
+  global const float* a_q = parameters + A_AT(q);
+  global const float* b = parameters + B_AT;
   for (int r = 0; r < ROWS; ++r) {
     const int row = min(row0 + r, rows - 1);
     const int at = present_offset + (indexed ? index[first + row] + shift : row) * present_ld;
@@ -55,14 +59,14 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
 
   FOR_TILES(H_LD, {
     clear_tile(sum, count);
-    add_products(sum, count, x, X_LD, VISIBLE_0, w_p, H_LD, column);
+    add_products(sum, count, x, X_LD, P, w_p, H_LD, column);
     add_tile(sum, count, b, 0, column);
     store_tile(sum, count, drive, H_LD, column);
   });
   for (int step = 0; step < steps; ++step) {
     const bool last = step + 1 == steps;
-    // What is in x: the present modality at first, of which the drive has all that it says.
-    const int units = step > 0 ? VISIBLE_1 : doubled ? VISIBLE_0 : 0;
+    // What is in x: the present modality at first, whose products the drive has.
+    const int units = step > 0 ? Q : doubled ? P : 0;
     global const float* weights = step > 0 ? w_q : w_p;
     FOR_TILES(H_LD, {
       clear_tile(sum, count);
@@ -77,7 +81,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
       clear_tile(sum, count);
       add_products(sum, count, h, H_LD, HIDDEN, wt_q, Q_LD, column);
       add_tile(sum, count, a_q, 0, column);
-      apply_sigmoid(sum, count, column, VISIBLE_1);
+      apply_sigmoid(sum, count, column, Q);
       if (last) {
         store_first_rows(sum, count, absent, absent_ld, column, rows - row0);
       } else {

@@ -1,13 +1,15 @@
 #include "comparison/mlp_window.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/missing_values.hpp"
 #include "comparison/clip_pairs.hpp"
 #include "device/gemm.hpp"
+#include "device/optimizer.hpp"
 #include "device/pointwise.hpp"
-#include "device/updates.hpp"
 #include "learning/minibatch.hpp"
 #include "mcdbn/features/standardizer.hpp"
 
@@ -28,18 +30,32 @@ MatrixF extended(const MatrixF& track) {
   return rows;
 }
 
-/// One layer in training: parameters, their transposed copy, gradients and Adam's moments.
+/// `0.W`
+std::string name_of(std::size_t layer, const char* letter) {
+  return fmt::format("{}.{}", layer, letter);
+}
+
+std::vector<ParameterShape> parameter_shapes(const std::vector<MlpWindow::Layer>& layers) {
+  std::vector<ParameterShape> shapes;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const auto rows = static_cast<std::size_t>(layers[i].W.rows());
+    const auto columns = static_cast<std::size_t>(layers[i].W.cols());
+    shapes.push_back({.name = name_of(i, "W"), .rows = rows, .columns = columns});
+    shapes.push_back({.name = name_of(i, "b"), .rows = 1, .columns = columns, .is_weight = false});
+  }
+  return shapes;
+}
+
+/// One layer in training: its parameters and gradients, and the transposed copy of W.
 class TrainedLayer {
  public:
-  TrainedLayer(Device& device, const MlpWindow::Layer& initial)
-      : W_(Matrix::from_host(device, initial.W)),
-        b_(Matrix::from_host(device, initial.b)),
-        W_transposed_(device, W_.columns(), W_.rows()),
-        gradient_W_(device, W_.rows(), W_.columns()),
-        gradient_b_(device, 1, W_.columns()),
-        moments_W_{Matrix::like(W_), Matrix::like(W_)},
-        moments_b_{Matrix::like(b_), Matrix::like(b_)} {
-    transpose(W_, W_transposed_);
+  TrainedLayer(const Parameters& parameters, const Parameters& gradients, std::size_t number)
+      : W_(parameters.matrix(name_of(number, "W"))),
+        b_(parameters.matrix(name_of(number, "b"))),
+        gradient_W_(gradients.matrix(name_of(number, "W"))),
+        gradient_b_(gradients.matrix(name_of(number, "b"))),
+        W_transposed_(W_.device(), W_.columns(), W_.rows()) {
+    refresh();
   }
 
   void forward(const Rows& input, const Rows& output, Activation activation) const {
@@ -60,21 +76,18 @@ class TrainedLayer {
     gemm(error, W_transposed_, error_below, options);
   }
 
-  void update(const Rows& input, const Rows& error, const AdamRule& rule, int step) {
+  void differentiate(const Rows& input, const Rows& error) {
     gemm_transposed_a(input, error, gradient_W_);
     column_sum(error, 1.0F, 0.0F, gradient_b_);
-    AdamRule bias_rule = rule;
-    bias_rule.weight_decay = 0.0F;
-    adam_update(W_, moments_W_[0], moments_W_[1], gradient_W_, rule, step);
-    adam_update(b_, moments_b_[0], moments_b_[1], gradient_b_, bias_rule, step);
-    transpose(W_, W_transposed_);
   }
+
+  /// After W changed.
+  void refresh() { transpose(W_, W_transposed_); }
 
   MlpWindow::Layer to_host() const { return {W_.to_host(), b_.to_host()}; }
 
  private:
-  Matrix W_, b_, W_transposed_, gradient_W_, gradient_b_;
-  std::array<Matrix, 2> moments_W_, moments_b_;
+  Matrix W_, b_, gradient_W_, gradient_b_, W_transposed_;
 };
 
 /// Variance 1 / (3 · inputs), as PyTorch starts its linear layers: with the variance of He et al.,
@@ -113,7 +126,8 @@ class Trainer {
       : settings_(settings),
         tracks_(tracks),
         poses_(poses),
-        layers_(make_layers(device, settings, tracks, poses)),
+        optimizer_(start(device, first_layers(settings, tracks, poses)), OptimizerKind::adam),
+        layers_(make_layers()),
         hidden_{Matrix(device, batch, settings.hidden), Matrix(device, batch, settings.hidden)},
         errors_{Matrix(device, batch, settings.hidden), Matrix(device, batch, settings.hidden)},
         output_(device, batch, poses.columns()),
@@ -136,12 +150,16 @@ class Trainer {
     scaled_difference(output_, target_, 1.0F / static_cast<float>(n), output_);
     layers_[2].backward(output_, hidden_[1], kept, errors_[1]);
     layers_[1].backward(errors_[1], hidden_[0], kept, errors_[0]);
-    AdamRule rule;
-    rule.rate = static_cast<float>(rate);
-    rule.weight_decay = static_cast<float>(settings_.weight_decay);
-    layers_[2].update(hidden_[1], output_, rule, steps_);
-    layers_[1].update(hidden_[0], errors_[1], rule, steps_);
-    layers_[0].update(input, errors_[0], rule, steps_);
+    layers_[2].differentiate(hidden_[1], output_);
+    layers_[1].differentiate(hidden_[0], errors_[1]);
+    layers_[0].differentiate(input, errors_[0]);
+    const UpdateRule rule =
+        UpdateRule::adam(static_cast<float>(rate), static_cast<float>(settings_.weight_decay));
+    optimizer_.next_step();
+    optimizer_.update([&rule](const ParameterShape& shape) {
+      return shape.is_weight ? rule : rule.without_decay();
+    });
+    for (TrainedLayer& layer : layers_) layer.refresh();
   }
 
   std::array<MlpWindow::Layer, 3> to_host() const {
@@ -149,19 +167,34 @@ class Trainer {
   }
 
  private:
-  static std::array<TrainedLayer, 3> make_layers(Device& device,
-                                                 const MlpWindow::Settings& settings,
-                                                 const Matrix& tracks, const Matrix& poses) {
+  static std::vector<MlpWindow::Layer> first_layers(const MlpWindow::Settings& settings,
+                                                    const Matrix& tracks, const Matrix& poses) {
     RandomKey key{settings.seed, 0, kStream, kWeightPhase};
     const auto layer = [&](std::size_t inputs, std::size_t rows, std::size_t outputs) {
       ++key.step;
-      return TrainedLayer(device, random_layer(inputs, rows, outputs, key));
+      return random_layer(inputs, rows, outputs, key);
     };
     // Read in place, a window of frames has their padding in it.
     return {layer(MlpWindow::kFrames * tracks.columns(), MlpWindow::kFrames * tracks.stride(),
                   settings.hidden),
             layer(settings.hidden, settings.hidden, settings.hidden),
             layer(settings.hidden, settings.hidden, poses.columns())};
+  }
+
+  static Parameters start(Device& device, const std::vector<MlpWindow::Layer>& layers) {
+    Parameters parameters(device, parameter_shapes(layers));
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      parameters.upload(name_of(i, "W"), layers[i].W);
+      parameters.upload(name_of(i, "b"), layers[i].b);
+    }
+    return parameters;
+  }
+
+  std::array<TrainedLayer, 3> make_layers() {
+    const Parameters& parameters = optimizer_.parameters();
+    const Parameters gradients = parameters.in(optimizer_.gradients());
+    return {TrainedLayer(parameters, gradients, 0), TrainedLayer(parameters, gradients, 1),
+            TrainedLayer(parameters, gradients, 2)};
   }
 
   void drop(std::size_t layer) {
@@ -175,6 +208,7 @@ class Trainer {
   const Matrix& tracks_;
   const Matrix& poses_;
   int steps_ = 0;
+  Optimizer optimizer_;
   std::array<TrainedLayer, 3> layers_;
   std::array<Matrix, 2> hidden_, errors_;
   Matrix output_, target_;

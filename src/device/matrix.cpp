@@ -44,6 +44,23 @@ Matrix Matrix::from_host(Device& device, const Eigen::Ref<const MatrixF>& values
   return matrix;
 }
 
+Matrix Matrix::part(std::size_t first, std::size_t rows, std::size_t columns) const {
+  Matrix matrix;
+  matrix.device_ = device_;
+  matrix.rows_ = rows;
+  matrix.columns_ = columns;
+  require_shape(first + matrix.element_count() <= element_count(),
+                "a part reaches past its matrix");
+  if (matrix.empty()) return matrix;
+  const cl_buffer_region region{first * sizeof(float), matrix.element_count() * sizeof(float)};
+  checked("taking a part of a matrix", [&] {
+    cl::Buffer whole = buffer_;
+    matrix.buffer_ =
+        whole.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region);
+  });
+  return matrix;
+}
+
 Matrix Matrix::filled_with_row(const Matrix& row, std::size_t rows) {
   return from_host(row.device(), row.to_host().replicate(static_cast<Eigen::Index>(rows), 1));
 }

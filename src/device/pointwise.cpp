@@ -46,6 +46,17 @@ void gather(const Rows& rows, const Rows& out) {
          to_int(rows.columns), out.matrix->buffer(), out.offset(), out.stride());
 }
 
+void gather_at(const Rows& rows, const Matrix& buffer, std::size_t first) {
+  const std::size_t stride = padded(rows.columns);
+  require(rows.index != nullptr && first + rows.count * stride <= buffer.element_count(),
+          "gather: wants an index, and room for its rows");
+  Device& device = buffer.device();
+  const std::size_t vectors = stride / static_cast<std::size_t>(vector_width(device));
+  launch(device, units_kernel(device, "gather_rows"), {{vectors, rows.count}},
+         rows.matrix->buffer(), rows.stride(), rows.index->buffer(), to_int(rows.index_first),
+         rows.shift, to_int(rows.columns), buffer.buffer(), to_int(first), to_int(stride));
+}
+
 void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& out) {
   require(same_shape(x, y) && same_shape(x, out), "difference: shapes differ");
   Device& device = out.matrix->device();

@@ -11,8 +11,15 @@ namespace mcdbn {
 /// folder MCDBN_KERNEL_DIR if that is set, else as embedded. @throws DeviceError if there is none
 std::string kernel_source(const std::string& file);
 
+/// A number or a word.
+struct DefineValue {
+  DefineValue(int number = 0) : text(std::to_string(number)) {}  // NOLINT: numbers are values
+  DefineValue(const char* word) : text(word) {}                  // NOLINT: words too
+  std::string text;
+};
+
 /// Compile-time settings of a kernel file: -D NAME=VALUE each.
-using Defines = std::map<std::string, int>;
+using Defines = std::map<std::string, DefineValue>;
 
 /// Programs built for one device, kept in memory and as binaries in the user's cache folder
 /// ($XDG_CACHE_HOME/mcdbn-cl or ~/.cache/mcdbn-cl), keyed by device, driver, source and options;

@@ -14,33 +14,52 @@ std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& 
       fmt::format("Gibbs chain of {} visible, {} hidden units", shape.visible, shape.hidden));
 }
 
-ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch)
-    : ContrastiveDivergence(crbm, largest_batch,
-                            choose_chain_tile(crbm.device(), crbm.shape(), largest_batch)) {}
+CdRule cd_rule_for(const CdSettings& settings, std::size_t epoch) {
+  const auto momentum =
+      static_cast<float>(epoch > settings.momentum_from_epoch ? settings.momentum : 0.0);
+  const auto decay = static_cast<float>(settings.weight_decay);
+  CdRule rule;
+  rule.gibbs_steps = settings.gibbs_steps;
+  rule.W = {static_cast<float>(settings.rate), momentum, decay};
+  rule.A = {static_cast<float>(settings.rate_A), momentum, decay};
+  rule.B = {static_cast<float>(settings.rate_B), momentum, decay};
+  return rule;
+}
 
 ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch,
-                                             std::optional<RowTile> tile)
+                                             const CdSettings& settings, OptimizerKind optimizer)
+    : ContrastiveDivergence(crbm, largest_batch,
+                            choose_chain_tile(crbm.device(), crbm.shape(), largest_batch), settings,
+                            optimizer) {}
+
+ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch,
+                                             std::optional<RowTile> tile,
+                                             const CdSettings& settings, OptimizerKind optimizer)
     : crbm_(crbm),
+      settings_(settings),
       tile_(tile),
+      optimizer_(crbm.parameters(), optimizer),
       visible_data_(crbm.device(), whole_blocks(largest_batch, tile), crbm.shape().visible),
       visible_(Matrix::like(visible_data_)),
       visible_bias_(Matrix::like(visible_data_)),
       hidden_data_(crbm.device(), visible_data_.rows(), crbm.shape().hidden),
       hidden_(Matrix::like(hidden_data_)),
       hidden_bias_(Matrix::like(hidden_data_)),
-      row_losses_(crbm.device(), 1, visible_data_.rows()),
-      velocity_W_(Matrix::like(crbm.W)),
-      velocity_A_(Matrix::like(crbm.A)),
-      velocity_B_(Matrix::like(crbm.B)),
-      velocity_a_(Matrix::like(crbm.a)),
-      velocity_b_(Matrix::like(crbm.b)) {
+      row_losses_(crbm.device(), 1, visible_data_.rows()) {
   if (tile_) return;
   hidden_sample_ = Matrix::like(hidden_data_);
-  gradient_W_ = Matrix::like(crbm.W);
-  gradient_A_ = Matrix::like(crbm.A);
-  gradient_B_ = Matrix::like(crbm.B);
-  gradient_a_ = Matrix::like(crbm.a);
-  gradient_b_ = Matrix::like(crbm.b);
+  const Parameters gradients = crbm.parameters().in(optimizer_.gradients());
+  gradient_W_ = gradients.matrix("W");
+  gradient_A_ = gradients.matrix("A");
+  gradient_B_ = gradients.matrix("B");
+  gradient_a_ = gradients.matrix("a");
+  gradient_b_ = gradients.matrix("b");
+}
+
+void ContrastiveDivergence::learn(std::span<const Rows> visible, const LearningStep& step,
+                                  LossAccumulator& losses) {
+  require(visible.size() == 1, "CD: wants one sequence");
+  this->step(visible.front(), cd_rule_for(settings_, step.epoch), step.random, losses);
 }
 
 void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const RandomKey& key,
@@ -54,6 +73,7 @@ void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const Ran
     composed_step(rows, rule, key, losses);
     return;
   }
+  optimizer_.next_step();
   fused_chain(rows, rule.gibbs_steps, key);
   fused_update(rows, rule, losses);
 }
@@ -65,7 +85,13 @@ void ContrastiveDivergence::composed_step(const Rows& rows, const CdRule& rule,
   const Rows data(visible_data_, 0, rows.count), reconstruction(visible_, 0, rows.count);
   losses.add_squared_error(0, data, reconstruction,
                            1.0F / static_cast<float>(rows.count * crbm_.shape().visible));
-  update(rows, rule);
+  composed_gradients(rows);
+  optimizer_.next_step();
+  optimizer_.update([&rule](const ParameterShape& shape) {
+    if (!shape.is_weight) return rule.W.without_decay();
+    return shape.name == "A" ? rule.A : shape.name == "B" ? rule.B : rule.W;
+  });
+  crbm_.refresh_transposed();
 }
 
 void ContrastiveDivergence::clamp_data(const Rows& rows, const RandomKey& key) {
@@ -104,32 +130,28 @@ void ContrastiveDivergence::gibbs_chain(std::size_t count, std::size_t gibbs_ste
   }
 }
 
-void ContrastiveDivergence::update(const Rows& rows, const CdRule& rule) {
+/// The optimizer descends: end − data.
+void ContrastiveDivergence::composed_gradients(const Rows& rows) {
   const std::size_t n = rows.count;
   const float mean = 1.0F / static_cast<float>(n);
   const Rows visible_data(visible_data_, 0, n), hidden_data(hidden_data_, 0, n);
   const Rows visible(visible_, 0, n), hidden(hidden_, 0, n);
   // eq 37
-  gemm_transposed_a(visible_data, hidden_data, gradient_W_, mean);
-  gemm_transposed_a(visible, hidden, gradient_W_, -mean, 1.0F);
-  // What the directed weights and biases learn from: data − reconstruction (eq 38 to 41, errata).
-  scaled_difference(visible_data, visible, mean, visible);
-  scaled_difference(hidden_data, hidden, mean, hidden);
+  gemm_transposed_a(visible_data, hidden_data, gradient_W_, -mean);
+  gemm_transposed_a(visible, hidden, gradient_W_, mean, 1.0F);
+  // What the directed weights and biases learn from (eq 38 to 41, errata).
+  scaled_difference(visible, visible_data, mean, visible);
+  scaled_difference(hidden, hidden_data, mean, hidden);
   column_sum(visible, 1.0F, 0.0F, gradient_a_);
   column_sum(hidden, 1.0F, 0.0F, gradient_b_);
-  MomentumRule biases = rule.W;
-  biases.weight_decay = 0.0F;
-  if (crbm_.shape().order > 0) {
-    const Rows history = crbm_.history(rows);
-    gemm_transposed_a(history, visible, gradient_A_);
-    gemm_transposed_a(history, hidden, gradient_B_);
-    momentum_update(crbm_.A, velocity_A_, gradient_A_, rule.A);
-    momentum_update(crbm_.B, velocity_B_, gradient_B_, rule.B);
-  }
-  momentum_update(crbm_.W, velocity_W_, gradient_W_, rule.W);
-  momentum_update(crbm_.a, velocity_a_, gradient_a_, biases);
-  momentum_update(crbm_.b, velocity_b_, gradient_b_, biases);
-  crbm_.refresh_transposed();
+  if (crbm_.shape().order == 0) return;
+  const Rows history = crbm_.history(rows);
+  gemm_transposed_a(history, visible, gradient_A_);
+  gemm_transposed_a(history, hidden, gradient_B_);
+}
+
+CrbmParameters ContrastiveDivergence::gradients() {
+  return CrbmParameters::read(crbm_.parameters().in(optimizer_.gradients()), crbm_.shape());
 }
 
 }  // namespace mcdbn

@@ -118,10 +118,10 @@ class FineTuner {
       track_loss_.differentiate(reverse_.prediction(), track_target_, reverse_.prediction_error());
       reverse_.backward();
     }
-    AdamRule rule;
-    rule.rate = static_cast<float>(rate_at(settings_.rate, step, settings_.steps));
+    UpdateRule rule =
+        UpdateRule::adam(static_cast<float>(rate_at(settings_.rate, step, settings_.steps)),
+                         static_cast<float>(settings_.weight_decay));
     rule.beta2 = 0.99F;
-    rule.weight_decay = static_cast<float>(settings_.weight_decay);
     // A young average is that of few steps.
     const double young = static_cast<double>(step + 1) / static_cast<double>(step + 10);
     network_.update(rule, kLongestGradient, static_cast<float>(std::min(settings_.average, young)));

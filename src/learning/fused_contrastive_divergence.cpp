@@ -13,13 +13,10 @@ Defines shape_defines(const CrbmShape& shape, const RowTile& tile) {
           {"ORDER", to_int(shape.order)}};
 }
 
-cl_float4 rule_argument(const MomentumRule& rule) {
-  return {{rule.rate, rule.momentum, rule.weight_decay, 0.0F}};
-}
-
-/// A matrix without elements has no buffer; the kernels do not read it, but want one.
-const cl::Buffer& buffer_of(const Matrix& matrix, const Matrix& substitute) {
-  return matrix.empty() ? substitute.buffer() : matrix.buffer();
+/// The first floats of W, A, B, a and b.
+cl_int8 first_floats(const Parameters& parameters) {
+  const auto first = [&](const char* name) { return to_int(parameters.entry(name).first); };
+  return {{first("W"), first("A"), first("B"), first("a"), first("b"), 0, 0, 0}};
 }
 
 std::size_t update_work_items(const CrbmShape& shape, const RowTile& tile) {
@@ -44,10 +41,10 @@ void ContrastiveDivergence::fused_chain(const Rows& rows, std::size_t gibbs_step
   const std::size_t blocks = ceil_divide(rows.count, static_cast<std::size_t>(tile_->rows));
   launch(device, kernel, {{blocks * group, 1}, {group, 1}}, rows.matrix->buffer(),
          rows.index->buffer(), to_int(rows.index_first), rows.shift, to_int(rows.count),
-         crbm_.W.buffer(), crbm_.W_transposed.buffer(), buffer_of(crbm_.A, crbm_.W),
-         buffer_of(crbm_.B, crbm_.W), crbm_.a.buffer(), crbm_.b.buffer(), visible_data_.buffer(),
-         visible_.buffer(), visible_bias_.buffer(), hidden_data_.buffer(), hidden_.buffer(),
-         hidden_bias_.buffer(), row_losses_.buffer(), to_int(gibbs_steps), random_argument(key));
+         crbm_.parameters().all().buffer(), first_floats(crbm_.parameters()),
+         crbm_.W_transposed.buffer(), visible_data_.buffer(), visible_.buffer(),
+         visible_bias_.buffer(), hidden_data_.buffer(), hidden_.buffer(), hidden_bias_.buffer(),
+         row_losses_.buffer(), to_int(gibbs_steps), random_argument(key));
 }
 
 void ContrastiveDivergence::fused_update(const Rows& rows, const CdRule& rule,
@@ -55,6 +52,7 @@ void ContrastiveDivergence::fused_update(const Rows& rows, const CdRule& rule,
   const CrbmShape& shape = crbm_.shape();
   Defines defines = shape_defines(shape, *tile_);
   defines["TILE_ROWS"] = tile_->update_rows;
+  defines["OPTIMIZER"] = optimizer_.define();
   Device& device = crbm_.device();
   cl::Kernel& kernel =
       device.programs().kernel("contrastive_divergence_update.cl", "cd_update", defines);
@@ -64,12 +62,11 @@ void ContrastiveDivergence::fused_update(const Rows& rows, const CdRule& rule,
   launch(device, kernel, {{groups * group, 1}, {group, 1}}, rows.matrix->buffer(),
          rows.index->buffer(), to_int(rows.index_first), rows.shift, to_int(rows.count),
          visible_data_.buffer(), visible_.buffer(), visible_bias_.buffer(), hidden_data_.buffer(),
-         hidden_.buffer(), hidden_bias_.buffer(), crbm_.W.buffer(), crbm_.W_transposed.buffer(),
-         buffer_of(crbm_.A, crbm_.W), buffer_of(crbm_.B, crbm_.W), crbm_.a.buffer(),
-         crbm_.b.buffer(), velocity_W_.buffer(), buffer_of(velocity_A_, crbm_.W),
-         buffer_of(velocity_B_, crbm_.W), velocity_a_.buffer(), velocity_b_.buffer(),
-         rule_argument(rule.W), rule_argument(rule.A), rule_argument(rule.B), row_losses_.buffer(),
-         losses.buffer(), loss_scale);
+         hidden_.buffer(), hidden_bias_.buffer(), first_floats(crbm_.parameters()),
+         crbm_.parameters().all().buffer(), crbm_.W_transposed.buffer(),
+         optimizer_.gradient_buffer(), optimizer_.state_buffer(), optimizer_.size(),
+         optimizer_.argument(rule.W), optimizer_.argument(rule.A), optimizer_.argument(rule.B),
+         row_losses_.buffer(), losses.buffer(), loss_scale);
 }
 
 }  // namespace mcdbn

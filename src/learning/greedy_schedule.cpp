@@ -44,57 +44,57 @@ bool is_health_epoch(std::size_t epoch, std::size_t epochs) {
   return epoch == 1 || epoch == epochs || epoch % kEvery == 0;
 }
 
-/// Runs one stage's epochs: shuffle, all mini-batches, one read of the losses, guard, report.
-/// @param health called now and then for the report
-/// @param mini_batch called with (epoch, first index entry, global step)
-template <typename Health, typename MiniBatch>
-void run_epochs(const std::string& stage, std::size_t epochs, MinibatchSchedule& schedule,
-                LossAccumulator& losses, DivergenceGuard guard, const RandomKey& shuffle_key,
-                const EpochObserver& observer, const Health& health, const MiniBatch& mini_batch) {
+/// One stage of Algorithm 1: a machine's rule and the mini-batches that it learns from.
+struct Stage {
+  std::string name;
+  std::size_t epochs = 0;
+  LearningRule& rule;
+  /// The sequences that the machine sees, and by how many frames each is ahead of the window's row.
+  std::vector<std::pair<const Matrix*, int>> sequences;
+  std::function<LayerHealth()> health;  ///< called now and then for the report
+};
+
+/// All epochs: shuffle, all mini-batches, one read of the losses, guard, report.
+/// @param random of the mini-batches' draws; the stage's own shuffles have another phase
+void run_epochs(const Stage& stage, MinibatchSchedule& schedule, DivergenceGuard guard,
+                const RandomKey& random, const EpochObserver& observer) {
+  const std::size_t batches = schedule.batch_count();
+  LossAccumulator losses(stage.sequences.front().first->device(), stage.rule.loss_count(),
+                         schedule.batch());
   EpochClock clock;
-  std::uint32_t step = 0;
-  for (std::size_t epoch = 1; epoch <= epochs; ++epoch) {
-    RandomKey key = shuffle_key;
-    key.step = static_cast<std::uint32_t>(epoch);
-    schedule.shuffle(key);
-    for (std::size_t i = 0; i < schedule.batch_count(); ++i)
-      mini_batch(epoch, schedule.first_of(i), step++);
+  LearningStep step;
+  step.random = random;
+  for (step.epoch = 1; step.epoch <= stage.epochs; ++step.epoch) {
+    RandomKey shuffle = random;
+    shuffle.phase = kShufflePhase;
+    shuffle.step = static_cast<std::uint32_t>(step.epoch);
+    schedule.shuffle(shuffle);
+    for (std::size_t i = 0; i < batches; ++i) {
+      std::vector<Rows> visible;
+      for (const auto& [values, ahead] : stage.sequences)
+        visible.push_back(Rows::indexed(*values, schedule.index(), schedule.first_of(i),
+                                        schedule.batch(), ahead));
+      step.progress =
+          static_cast<double>(step.random.step) / static_cast<double>(stage.epochs * batches);
+      stage.rule.learn(visible, step, losses);
+      ++step.random.step;
+    }
     double loss = 0;
     const auto sums = losses.read_and_reset();
-    for (const float sum : sums)
-      loss += sum / static_cast<double>(schedule.batch_count() * sums.size());
-    guard.check(epoch, loss);
-    if (observer) {
-      EpochReport report;
-      report.stage = stage;
-      report.epoch = epoch;
-      report.epochs = epochs;
-      report.loss = loss;
-      report.windows_per_s = clock.windows_per_s(schedule.batch_count() * schedule.batch());
-      report.stage_progress = static_cast<double>(epoch) / static_cast<double>(epochs);
-      if (is_health_epoch(epoch, epochs)) report.health = health();
-      observer(report);
-      clock.restart();
-    }
+    for (const float sum : sums) loss += sum / static_cast<double>(batches * sums.size());
+    guard.check(step.epoch, loss);
+    if (!observer) continue;
+    EpochReport report;
+    report.stage = stage.name;
+    report.epoch = step.epoch;
+    report.epochs = stage.epochs;
+    report.loss = loss;
+    report.windows_per_s = clock.windows_per_s(batches * schedule.batch());
+    report.stage_progress = static_cast<double>(step.epoch) / static_cast<double>(stage.epochs);
+    if (is_health_epoch(step.epoch, stage.epochs)) report.health = stage.health();
+    observer(report);
+    clock.restart();
   }
-}
-
-CdRule rule_for(const CdSettings& settings, std::size_t epoch) {
-  const auto momentum =
-      static_cast<float>(epoch > settings.momentum_from_epoch ? settings.momentum : 0.0);
-  const auto decay = static_cast<float>(settings.weight_decay);
-  CdRule rule;
-  rule.gibbs_steps = settings.gibbs_steps;
-  rule.W = {static_cast<float>(settings.rate), momentum, decay};
-  rule.A = {static_cast<float>(settings.rate_A), momentum, decay};
-  rule.B = {static_cast<float>(settings.rate_B), momentum, decay};
-  return rule;
-}
-
-/// Adam's rate over the run: flat, then falling, so that the last epochs average out the noise.
-double falling_rate(double rate, double progress) {
-  constexpr double kFlat = 0.5, kEnd = 0.02;
-  return progress < kFlat ? rate : rate * (1.0 - (1.0 - kEnd) * (progress - kFlat) / (1.0 - kFlat));
 }
 
 /// Mean over the rows that have a code. @return [1 x dimension]
@@ -108,7 +108,7 @@ MatrixF mean_of(const Sequences& sequences) {
 
 /// Work of a stage in multiply-adds, to show progress over all of them.
 double crbm_cost(const CrbmShape& shape, const CdSettings& settings) {
-  const auto v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
+  const double v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
   const double histories = 2.0 * static_cast<double>(shape.order) * v * (v + h);
   return static_cast<double>(settings.epochs) *
          (histories + (2.0 * static_cast<double>(settings.gibbs_steps) + 3.0) * v * h);
@@ -237,8 +237,7 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
   Crbm crbm(device, initial);
   MinibatchSchedule schedule(device, visible.window_rows(shape.order), learning.batch,
                              learning.least_batches);
-  ContrastiveDivergence cd(crbm, schedule.batch());
-  LossAccumulator losses(device, 1, schedule.batch());
+  ContrastiveDivergence cd(crbm, schedule.batch(), settings);
   const std::vector<MatrixF> windows =
       observer ? health_windows(visible, shape.order + kFreeRunFrames) : std::vector<MatrixF>{};
   const std::string kind = shape.kind == VisibleKind::gaussian ? "gaussian" : "binary";
@@ -248,13 +247,12 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
                   "--{0}-initial-deviation ({4:g})",
                   kind, settings.rate, settings.rate_A, settings.rate_B,
                   settings.initial_deviation));
-  run_epochs(
-      stage, settings.epochs, schedule, losses, guard, key_of(learning, stream, 0, kShufflePhase),
-      observer, [&] { return crbm_health(crbm.to_host(), windows); },
-      [&](std::size_t epoch, std::size_t first, std::uint32_t step) {
-        const Rows rows = Rows::indexed(visible.values, schedule.index(), first, schedule.batch());
-        cd.step(rows, rule_for(settings, epoch), key_of(learning, stream, step, 0), losses);
-      });
+  run_epochs({stage,
+              settings.epochs,
+              cd,
+              {{&visible.values, 0}},
+              [&] { return crbm_health(crbm.to_host(), windows); }},
+             schedule, guard, key_of(learning, stream, 0, 0), observer);
   return crbm;
 }
 
@@ -265,26 +263,17 @@ Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
   Mrbm mrbm(device, initial);
   MinibatchSchedule schedule(device, paired_rows(pose, learning.look_ahead), learning.batch,
                              learning.least_batches);
-  MultiPrediction multi_prediction(mrbm, settings.mean_field_steps, schedule.batch());
-  LossAccumulator losses(device, 2, schedule.batch());
+  MultiPrediction multi_prediction(mrbm, schedule.batch(), settings);
   DivergenceGuard guard(
       "mrbm", fmt::format("lower --mrbm-rate (now {:g}) or --mrbm-initial-deviation (now {:g})",
                           settings.rate, settings.initial_deviation));
-  const auto pairs = some_pairs(track, pose, learning.look_ahead);
-  AdamRule rule;
-  rule.weight_decay = static_cast<float>(settings.weight_decay);
-  run_epochs(
-      "mrbm", settings.epochs, schedule, losses, guard, key_of(learning, stream, 0, kShufflePhase),
-      observer, [&] { return mrbm_health(mrbm.to_host(), pairs.first, pairs.second); },
-      [&](std::size_t, std::size_t first, std::uint32_t step) {
-        const double progress = static_cast<double>(step) /
-                                static_cast<double>(settings.epochs * schedule.batch_count());
-        rule.rate = static_cast<float>(falling_rate(settings.rate, progress));
-        const auto ahead = static_cast<int>(learning.look_ahead);
-        multi_prediction.step(
-            Rows::indexed(track.values, schedule.index(), first, schedule.batch(), ahead),
-            Rows::indexed(pose.values, schedule.index(), first, schedule.batch()), rule, losses);
-      });
+  const std::pair<MatrixF, MatrixF> pairs = some_pairs(track, pose, learning.look_ahead);
+  run_epochs({"mrbm",
+              settings.epochs,
+              multi_prediction,
+              {{&track.values, static_cast<int>(learning.look_ahead)}, {&pose.values, 0}},
+              [&] { return mrbm_health(mrbm.to_host(), pairs.first, pairs.second); }},
+             schedule, guard, key_of(learning, stream, 0, 0), observer);
   return mrbm;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "device/gemm.hpp"
+#include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -17,59 +18,97 @@ std::optional<RowTile> choose_tile(const Mrbm& mrbm, std::size_t batch) {
   return choose_chain_tile(mrbm.device(), shape, batch);
 }
 
+/// Flat, then falling, so that the last epochs average out the noise.
+double falling_rate(double rate, double progress) {
+  constexpr double kFlat = 0.5, kEnd = 0.02;
+  return progress < kFlat ? rate : rate * (1.0 - (1.0 - kEnd) * (progress - kFlat) / (1.0 - kFlat));
+}
+
 }  // namespace
 
-MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::size_t batch)
-    : MultiPrediction(mrbm, mean_field_steps, batch, choose_tile(mrbm, batch)) {}
+MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch,
+                                 const MultiPredictionSettings& settings, OptimizerKind optimizer)
+    : MultiPrediction(mrbm, batch, settings, choose_tile(mrbm, batch), optimizer) {}
 
-MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::size_t batch,
-                                 std::optional<RowTile> tile)
+MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch,
+                                 const MultiPredictionSettings& settings,
+                                 std::optional<RowTile> tile, OptimizerKind optimizer)
     : mrbm_(mrbm),
-      steps_(mean_field_steps),
+      settings_(settings),
+      steps_(settings.mean_field_steps),
       batch_(batch),
       tile_(tile),
       block_(whole_blocks(batch, tile)),
+      optimizer_(mrbm.parameters(), optimizer),
       drive_(mrbm.device(), (tile ? 2 : 1) * block_, mrbm.hidden()),
       drive_error_(Matrix::like(drive_)),
       hidden_(mrbm.device(), steps_ * drive_.rows(), mrbm.hidden()),
       hidden_errors_(Matrix::like(hidden_)),
-      row_losses_(mrbm.device(), 1, 2 * block_),
-      gradient_b_(Matrix::like(mrbm.b)),
-      moments_b_{Matrix::like(mrbm.b), Matrix::like(mrbm.b)} {
+      row_losses_(mrbm.device(), 1, 2 * block_) {
   if (steps_ == 0) throw ConfigError("mrbm.mean-field-steps must be at least 1");
-  for (std::size_t m = 0; m < 2; ++m) {
-    const std::size_t visible = mrbm.W[m].rows();
-    target_[m] = Matrix(mrbm.device(), block_, visible);
-    values_[m] = Matrix(mrbm.device(), (steps_ + (tile ? 0 : 1)) * block_, visible);
-    value_errors_[m] = Matrix(mrbm.device(), steps_ * block_, visible);
-    gradient_W_[m] = Matrix::like(mrbm.W[m]);
-    gradient_a_[m] = Matrix::like(mrbm.a[m]);
-    moments_W_[m] = {Matrix::like(mrbm.W[m]), Matrix::like(mrbm.W[m])};
-    moments_a_[m] = {Matrix::like(mrbm.a[m]), Matrix::like(mrbm.a[m])};
-  }
+  if (tile_)
+    make_stacks();
+  else
+    make_matrices();
 }
 
-void MultiPrediction::step(const Rows& track, const Rows& pose, const AdamRule& rule,
+/// Room for the stacks of multi_prediction.cl.
+void MultiPrediction::make_stacks() {
+  Device& device = mrbm_.device();
+  codes_ = Matrix(device, 1, block_ * all_units());
+  stacked_values_ = Matrix(device, 1, steps_ * codes_.columns());
+  stacked_value_errors_ = Matrix::like(stacked_values_);
+}
+
+void MultiPrediction::make_matrices() {
+  const Parameters gradients = mrbm_.parameters().in(optimizer_.gradients());
+  for (std::size_t m = 0; m < 2; ++m) {
+    const std::size_t visible = mrbm_.W[m].rows();
+    target_[m] = Matrix(mrbm_.device(), block_, visible);
+    values_[m] = Matrix(mrbm_.device(), (steps_ + 1) * block_, visible);
+    value_errors_[m] = Matrix(mrbm_.device(), steps_ * block_, visible);
+    gradient_W_[m] = gradients.matrix(std::string("W_") + kModalityNames[m]);
+    gradient_a_[m] = gradients.matrix(std::string("a_") + kModalityNames[m]);
+  }
+  gradient_b_ = gradients.matrix("b");
+}
+
+void MultiPrediction::learn(std::span<const Rows> visible, const LearningStep& step,
+                            LossAccumulator& losses) {
+  require(visible.size() == 2, "multi-prediction: wants two sequences");
+  const UpdateRule rule =
+      UpdateRule::adam(static_cast<float>(falling_rate(settings_.rate, step.progress)),
+                       static_cast<float>(settings_.weight_decay));
+  this->step(visible[0], visible[1], rule, losses);
+}
+
+void MultiPrediction::step(const Rows& track, const Rows& pose, const UpdateRule& rule,
                            LossAccumulator& losses) {
   if (track.count != pose.count)
     throw ShapeError("multi-prediction: the modalities differ in rows");
   if (track.count != batch_)
     throw ShapeError("multi-prediction: the mini-batch has another size than it was made for");
   if (!track.index || !pose.index) throw ShapeError("multi-prediction: wants indexed codes");
+  optimizer_.next_step();
   if (tile_) {
-    fused_gradients(track, pose);
+    gather_at(track, codes_, 0);
+    gather_at(pose, codes_, block_ * padded(track.columns));
+    fused_chain();
     fused_update(rule, losses);
     return;
   }
   gather(track, target_[index_of(Modality::track)]);
   gather(pose, target_[index_of(Modality::pose)]);
-  back_propagate(Modality::track, track.count, false, losses);
-  back_propagate(Modality::pose, track.count, true, losses);
-  update(rule);
+  back_propagate(Modality::track, false, losses);
+  back_propagate(Modality::pose, true, losses);
+  optimizer_.update([&rule](const ParameterShape& shape) {
+    return shape.is_weight ? rule : rule.without_decay();
+  });
+  mrbm_.refresh_transposed();
 }
 
-void MultiPrediction::back_propagate(Modality present, std::size_t n, bool add,
-                                     LossAccumulator& losses) {
+void MultiPrediction::back_propagate(Modality present, bool add, LossAccumulator& losses) {
+  const std::size_t n = batch_;
   const std::size_t p = index_of(present), q = index_of(other(present));
   const Matrix& W = mrbm_.W[q];
   const Matrix& Wt = mrbm_.W_transposed[q];
@@ -92,7 +131,7 @@ void MultiPrediction::back_propagate(Modality present, std::size_t n, bool add,
     down.activation = Activation::sigmoid;
     gemm(hidden(t), Wt, value(t), down);
   }
-  losses.add_cross_entropy(p, target_[q], value(steps_), 1.0F / static_cast<float>(n * W.rows()));
+  losses.add_cross_entropy(q, target_[q], value(steps_), 1.0F / static_cast<float>(n * W.rows()));
 
   // Backward: the cross-entropy's error before the sigmoid is prediction − target.
   scaled_difference(value(steps_), target_[q], 1.0F / static_cast<float>(n), value_error(steps_));
@@ -117,24 +156,8 @@ void MultiPrediction::back_propagate(Modality present, std::size_t n, bool add,
   column_sum(drive_error_, 1.0F, beta, gradient_b_);
 }
 
-void MultiPrediction::update(const AdamRule& rule) {
-  ++update_count_;
-  AdamRule biases = rule;
-  biases.weight_decay = 0.0F;
-  for (std::size_t m = 0; m < 2; ++m) {
-    adam_update(mrbm_.W[m], moments_W_[m].mean, moments_W_[m].square, gradient_W_[m], rule,
-                update_count_);
-    adam_update(mrbm_.a[m], moments_a_[m].mean, moments_a_[m].square, gradient_a_[m], biases,
-                update_count_);
-  }
-  adam_update(mrbm_.b, moments_b_.mean, moments_b_.square, gradient_b_, biases, update_count_);
-  mrbm_.refresh_transposed();
-}
-
-MrbmParameters MultiPrediction::gradients() const {
-  return {{gradient_W_[0].to_host(), gradient_W_[1].to_host()},
-          {gradient_a_[0].to_host(), gradient_a_[1].to_host()},
-          gradient_b_.to_host()};
+MrbmParameters MultiPrediction::gradients() {
+  return MrbmParameters::read(mrbm_.parameters().in(optimizer_.gradients()));
 }
 
 }  // namespace mcdbn

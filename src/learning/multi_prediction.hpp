@@ -1,9 +1,9 @@
 #pragma once
 
-#include "device/losses.hpp"
-#include "device/program.hpp"
+#include "device/optimizer.hpp"
 #include "device/row_tile.hpp"
-#include "device/updates.hpp"
+#include "learning/learning_rule.hpp"
+#include "mcdbn/learning/settings.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 
 namespace mcdbn {
@@ -12,56 +12,65 @@ namespace mcdbn {
 /// modality is predicted from the other by the unrolled mean field of eq 32 and 33, and the
 /// cross-entropy of that prediction is back-propagated through all steps, in both directions.
 ///
-/// A mini-batch is three launches (multi_prediction.cl, multi_prediction_update.cl) where a block
-/// of rows fits the device's local memory, else one product after another.
-class MultiPrediction {
+/// A mini-batch is gathered, then taken in three launches (multi_prediction.cl,
+/// multi_prediction_update.cl) where a block of rows fits the device's local memory, else in one
+/// product after another.
+class MultiPrediction : public LearningRule {
  public:
-  MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::size_t batch);
+  /// @throws ConfigError without a mean-field step
+  MultiPrediction(Mrbm& mrbm, std::size_t batch, const MultiPredictionSettings& settings,
+                  OptimizerKind optimizer = OptimizerKind::adam);
   /// With a tile of the caller's, or without the fused kernels.
-  MultiPrediction(Mrbm& mrbm, std::size_t mean_field_steps, std::size_t batch,
-                  std::optional<RowTile> tile);
+  MultiPrediction(Mrbm& mrbm, std::size_t batch, const MultiPredictionSettings& settings,
+                  std::optional<RowTile> tile, OptimizerKind optimizer = OptimizerKind::adam);
 
-  /// One mini-batch with its Adam update: enqueues and returns. Adds to `losses` the mean
-  /// cross-entropy of a unit: slot 0 for pose from track, slot 1 for track from pose.
+  std::size_t loss_count() const override { return 2; }
+  /// step() by the rule that the settings say. @param visible the track's codes, the pose's
+  void learn(std::span<const Rows> visible, const LearningStep& step,
+             LossAccumulator& losses) override;
+
+  /// One mini-batch with its update: enqueues and returns. Adds to `losses` the mean cross-entropy
+  /// of a unit: in slot m that of the modality m, predicted from the other.
   /// @param track, pose the same windows' codes, indexed, `batch` of them  @throws ShapeError
-  void step(const Rows& track, const Rows& pose, const AdamRule& rule, LossAccumulator& losses);
+  void step(const Rows& track, const Rows& pose, const UpdateRule& rule, LossAccumulator& losses);
 
-  /// The gradients of eq 42 (mean over the mini-batch, summed over both directions) as the last
-  /// step left them, for tests.
-  MrbmParameters gradients() const;
+  /// The gradients of eq 42 (mean over the mini-batch, summed over both directions) of the last
+  /// step, where they are kept: composed, or with the optimizer none; for tests.
+  MrbmParameters gradients();
 
  private:
   /// Gradients of −log p(absent | present), added to those of the other direction if `add`.
-  void back_propagate(Modality present, std::size_t count, bool add, LossAccumulator& losses);
-  void update(const AdamRule& rule);
+  void back_propagate(Modality present, bool add, LossAccumulator& losses);
+  std::size_t all_units() const;
+  void make_stacks();
+  void make_matrices();
 
-  void fused_gradients(const Rows& track, const Rows& pose);
+  void fused_chain();
   std::size_t fused_products(const Defines& defines);
-  void fused_update(const AdamRule& rule, LossAccumulator& losses);
+  void fused_update(const UpdateRule& rule, LossAccumulator& losses);
   Defines fused_defines() const;
 
   /// Rows of the stacks that are added up at once: two pieces should fit a core's cache.
   static constexpr std::size_t kPieceRows = 1024;
 
   Mrbm& mrbm_;
+  MultiPredictionSettings settings_;
   std::size_t steps_, batch_;
   std::optional<RowTile> tile_;
   std::size_t block_;  ///< rows of one mean-field step in the stacks: the batch, or whole blocks
-  int update_count_ = 0;
-  std::array<Matrix, 2> target_;                 // [block x visible]
-  std::array<Matrix, 2> values_, value_errors_;  // [steps·block x visible]; composed: zeros first
+  Optimizer optimizer_;
+  // Stacks of both modalities [1 x floats] as multi_prediction.cl has them, fused.
+  Matrix codes_, stacked_values_, stacked_value_errors_;
+  // Composed.
+  std::array<Matrix, 2> target_;                 // [batch x visible]
+  std::array<Matrix, 2> values_, value_errors_;  // [steps·batch x visible], zeros before the values
   // Composed: of one direction; fused: of both, one after the other.
-  Matrix drive_, drive_error_;     // [block x hidden]
-  Matrix hidden_, hidden_errors_;  // [steps·block x hidden]
-  Matrix row_losses_;              // [1 x 2·block], fused
-  Matrix partial_;                 // [pieces x floats of both W], fused
-  std::array<Matrix, 2> gradient_W_, gradient_a_;
+  Matrix drive_, drive_error_;                     // [block x hidden]
+  Matrix hidden_, hidden_errors_;                  // [steps·block x hidden]
+  Matrix row_losses_;                              // [1 x 2·block], fused
+  Matrix partial_;                                 // [pieces x floats of both W], fused
+  std::array<Matrix, 2> gradient_W_, gradient_a_;  // within the optimizer's, composed
   Matrix gradient_b_;
-  struct Moments {
-    Matrix mean, square;
-  };
-  std::array<Moments, 2> moments_W_, moments_a_;
-  Moments moments_b_;
 };
 
 }  // namespace mcdbn

@@ -1,5 +1,7 @@
 #include "learning/unrolled_network.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "device/pointwise.hpp"
@@ -8,6 +10,7 @@ namespace mcdbn {
 namespace {
 
 constexpr float kCenter = 0.5F;
+constexpr const char* kMrbmPrefix = "mrbm.";
 
 /// What moving the units' zero by `sign` halves does to the biases.
 CrbmParameters shifted(CrbmParameters layer, float sign) {
@@ -27,6 +30,31 @@ MrbmParameters shifted(MrbmParameters mrbm, float sign) {
   return mrbm;
 }
 
+/// `track.0.`
+std::string prefix_of(Modality modality, std::size_t layer) {
+  return fmt::format("{}.{}.", kModalityNames[index_of(modality)], layer);
+}
+
+std::vector<ParameterShape> parameter_shapes(const Mcdbn& network) {
+  std::vector<ParameterShape> all;
+  const auto add = [&all](std::vector<ParameterShape> shapes, const std::string& prefix) {
+    for (ParameterShape& shape : shapes) {
+      shape.name.insert(0, prefix);
+      all.push_back(std::move(shape));
+    }
+  };
+  for (const Modality modality : {Modality::track, Modality::pose}) {
+    const auto& layers = network.cdbn(modality).layers;
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      add(Crbm::parameter_shapes(layers[i].shape()), prefix_of(modality, i));
+  }
+  const Mrbm& mrbm = network.mrbm;
+  add(Mrbm::parameter_shapes({mrbm.visible(Modality::track), mrbm.visible(Modality::pose)},
+                             mrbm.hidden()),
+      kMrbmPrefix);
+  return all;
+}
+
 }  // namespace
 
 CrbmParameters centered(CrbmParameters layer) {
@@ -42,71 +70,58 @@ MrbmParameters uncentered(MrbmParameters mrbm) {
   return shifted(std::move(mrbm), -1.0F);
 }
 
-TrainedParameter::TrainedParameter(Matrix& trained, bool weights)
-    : value(&trained),
-      is_weight(weights),
-      gradient(Matrix::like(trained)),
-      mean(Matrix::like(trained)),
-      square(Matrix::like(trained)),
-      average(Matrix::like(trained)) {
-  average.copy_from(trained);
+UnrolledNetwork::CrbmGradient::CrbmGradient(const Parameters& gradients)
+    : W(gradients.matrix("W")),
+      A(gradients.matrix("A")),
+      B(gradients.matrix("B")),
+      a(gradients.matrix("a")),
+      b(gradients.matrix("b")) {}
+
+UnrolledNetwork::MrbmGradient::MrbmGradient(const Parameters& gradients)
+    : b(gradients.matrix("b")) {
+  for (std::size_t m = 0; m < 2; ++m) {
+    W[m] = gradients.matrix(std::string("W_") + kModalityNames[m]);
+    a[m] = gradients.matrix(std::string("a_") + kModalityNames[m]);
+  }
 }
 
-UnrolledNetwork::Layer::Layer(Device& device, const CrbmParameters& parameters)
-    : crbm(device, parameters),
-      W(crbm.W, true),
-      A(crbm.A, true),
-      B(crbm.B, true),
-      a(crbm.a, false),
-      b(crbm.b, false),
-      A_following(device, parameters.shape.order * crbm.A.stride(), parameters.shape.visible),
-      B_following(device, parameters.shape.order * crbm.B.stride(), parameters.shape.visible) {}
+UnrolledNetwork::Layer::Layer(const Parameters& parameters, const Parameters& gradients,
+                              const CrbmParameters& start)
+    : crbm(parameters, start),
+      gradient(gradients),
+      A_following(parameters.device(), start.shape.order * crbm.A.stride(), start.shape.visible),
+      B_following(parameters.device(), start.shape.order * crbm.B.stride(), start.shape.visible) {}
 
 UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t mean_field_steps)
     : look_ahead_(start.look_ahead),
       mean_field_steps_(mean_field_steps),
-      mrbm_(device, centered(start.mrbm.to_host())),
-      mrbm_b_(mrbm_.b, false),
-      limit_(device, 5 * (start.track.layers.size() + start.pose.layers.size()) + 5) {
-  for (const Modality modality : {Modality::track, Modality::pose}) {
-    for (const Crbm& layer : start.cdbn(modality).layers)
-      layers(modality).emplace_back(device, centered(layer.to_host()));
-    mrbm_W_.emplace_back(mrbm_.W[index_of(modality)], true);
-    mrbm_a_.emplace_back(mrbm_.a[index_of(modality)], false);
-  }
+      parameters_(device, parameter_shapes(start)),
+      optimizer_(parameters_, OptimizerKind::adam),
+      mrbm_(parameters_.part(kMrbmPrefix), centered(start.mrbm.to_host())),
+      mrbm_gradient_(parameters_.in(optimizer_.gradients()).part(kMrbmPrefix)),
+      limit_(parameters_),
+      averages_(Matrix::like(parameters_.all())),
+      spare_(Matrix::like(parameters_.all())) {
+  const Parameters gradients = parameters_.in(optimizer_.gradients());
+  for (const Modality modality : {Modality::track, Modality::pose})
+    for (const Crbm& layer : start.cdbn(modality).layers) {
+      const std::string prefix = prefix_of(modality, layers(modality).size());
+      layers(modality).emplace_back(parameters_.part(prefix), gradients.part(prefix),
+                                    centered(layer.to_host()));
+    }
+  averages_.copy_from(parameters_.all());
   refresh_copies();
 }
 
-std::vector<TrainedParameter*> UnrolledNetwork::parameters() {
-  std::vector<TrainedParameter*> all;
-  for (auto& stack : layers_)
-    for (Layer& layer : stack)
-      for (TrainedParameter* parameter : {&layer.W, &layer.A, &layer.B, &layer.a, &layer.b})
-        all.push_back(parameter);
-  for (std::size_t m = 0; m < 2; ++m) {
-    all.push_back(&mrbm_W_[m]);
-    all.push_back(&mrbm_a_[m]);
-  }
-  all.push_back(&mrbm_b_);
-  return all;
-}
-
-void UnrolledNetwork::clear_gradients() {
-  for (TrainedParameter* parameter : parameters()) parameter->gradient.set_zero();
-}
-
-void UnrolledNetwork::update(const AdamRule& rule, float longest_gradient, float average_kept) {
-  ++updates_;
-  std::vector<const Matrix*> gradients;
-  for (const TrainedParameter* parameter : parameters()) gradients.push_back(&parameter->gradient);
-  limit_.measure(gradients, longest_gradient);
-  AdamRule biases = rule;
-  biases.weight_decay = 0.0F;
-  for (TrainedParameter* parameter : parameters()) {
-    adam_update(*parameter->value, parameter->mean, parameter->square, parameter->gradient,
-                parameter->is_weight ? rule : biases, updates_, &limit_.scale());
-    average_update(parameter->average, *parameter->value, 1.0F - average_kept);
-  }
+void UnrolledNetwork::update(const UpdateRule& rule, float longest_gradient, float average_kept) {
+  limit_.measure(optimizer_.gradients(), longest_gradient);
+  optimizer_.next_step();
+  optimizer_.update(
+      [&rule](const ParameterShape& shape) {
+        return shape.is_weight ? rule : rule.without_decay();
+      },
+      &limit_.scale());
+  average_update(averages_, parameters_.all(), 1.0F - average_kept);
   refresh_copies();
 }
 
@@ -123,7 +138,9 @@ void UnrolledNetwork::refresh_copies() {
 }
 
 void UnrolledNetwork::exchange_averages() {
-  for (TrainedParameter* parameter : parameters()) std::swap(*parameter->value, parameter->average);
+  spare_.copy_from(parameters_.all());
+  parameters_.copy_from(averages_);
+  averages_.copy_from(spare_);
   refresh_copies();
 }
 

@@ -4,7 +4,7 @@
 #include <deque>
 #include <vector>
 
-#include "device/updates.hpp"
+#include "device/optimizer.hpp"
 #include "mcdbn/machines/mcdbn.hpp"
 
 namespace mcdbn {
@@ -17,17 +17,8 @@ CrbmParameters uncentered(CrbmParameters layer);
 MrbmParameters centered(MrbmParameters mrbm);
 MrbmParameters uncentered(MrbmParameters mrbm);
 
-/// One matrix of the network in training.
-struct TrainedParameter {
-  TrainedParameter(Matrix& trained, bool weights);
-  Matrix* value;
-  bool is_weight;  ///< biases do not decay
-  Matrix gradient, mean, square;
-  Matrix average;  ///< over the last steps
-};
-
-/// A whole MCDBN in training by back-propagation: all parameters in centered form with what Adam
-/// needs, and the copies that the backward pass reads.
+/// A whole MCDBN in training by back-propagation: all parameters in centered form in one buffer,
+/// the optimizer's, and the copies that the backward pass reads.
 class UnrolledNetwork {
  public:
   /// @param mean_field_steps that the result takes too, whatever `start` took
@@ -35,27 +26,35 @@ class UnrolledNetwork {
   UnrolledNetwork(const UnrolledNetwork&) = delete;
   UnrolledNetwork& operator=(const UnrolledNetwork&) = delete;
 
+  struct CrbmGradient {
+    explicit CrbmGradient(const Parameters& gradients);
+    Matrix W, A, B, a, b;
+  };
+  struct MrbmGradient {
+    explicit MrbmGradient(const Parameters& gradients);
+    std::array<Matrix, 2> W, a;
+    Matrix b;
+  };
   struct Layer {
-    Layer(Device& device, const CrbmParameters& parameters);
+    Layer(const Parameters& parameters, const Parameters& gradients, const CrbmParameters& start);
     Layer(const Layer&) = delete;
     Layer& operator=(const Layer&) = delete;
     Crbm crbm;  ///< centered
-    TrainedParameter W, A, B, a, b;
+    CrbmGradient gradient;
     Matrix A_following, B_following;  ///< transpose_lags of A and B
   };
   std::deque<Layer>& layers(Modality modality) { return layers_[index_of(modality)]; }
   Mrbm& mrbm() { return mrbm_; }
-  TrainedParameter& mrbm_W(Modality modality) { return mrbm_W_[index_of(modality)]; }
-  TrainedParameter& mrbm_a(Modality modality) { return mrbm_a_[index_of(modality)]; }
-  TrainedParameter& mrbm_b() { return mrbm_b_; }
+  MrbmGradient& mrbm_gradient() { return mrbm_gradient_; }
   std::size_t mean_field_steps() const { return mean_field_steps_; }
-  Device& device() const { return mrbm_.device(); }
+  Device& device() const { return parameters_.device(); }
 
-  std::vector<TrainedParameter*> parameters();
-  void clear_gradients();
+  /// track.0.W, track.0.A …, pose.0.W …, mrbm.W_track … mrbm.b
+  const Parameters& parameters() const { return parameters_; }
+  void clear_gradients() { optimizer_.gradients().set_zero(); }
   /// Adam on all parameters with a gradient of at most `longest_gradient`, then the moving average
   /// keeps `average_kept` of itself.
-  void update(const AdamRule& rule, float longest_gradient, float average_kept);
+  void update(const UpdateRule& rule, float longest_gradient, float average_kept);
   /// The moving average of the parameters in their place, to be judged; again: back.
   void exchange_averages();
   /// The network that the moving average of the parameters makes.
@@ -65,12 +64,13 @@ class UnrolledNetwork {
   void refresh_copies();
 
   std::size_t look_ahead_, mean_field_steps_;
+  Parameters parameters_;
+  Optimizer optimizer_;
   std::array<std::deque<Layer>, 2> layers_;
   Mrbm mrbm_;
-  std::deque<TrainedParameter> mrbm_W_, mrbm_a_;
-  TrainedParameter mrbm_b_;
+  MrbmGradient mrbm_gradient_;
   GradientLimit limit_;
-  int updates_ = 0;
+  Matrix averages_, spare_;  // [1 x floats]
 };
 
 }  // namespace mcdbn

@@ -192,11 +192,11 @@ void UnrolledPass::down_pass_backward() {
     const bool is_top = i + 1 == down_layers_.size();
     const Rows above =
         is_top ? Rows(values_, steps_ * rows_ + first, rows_ - first) : from(states_[i + 1], first);
-    gemm_transposed_a(error, above, layer.W.gradient, 1.0F, 1.0F);
+    gemm_transposed_a(error, above, layer.gradient.W, 1.0F, 1.0F);
     if (order > 0)
-      gemm_transposed_a(layer.crbm.history(from(states_[i], first)), error, layer.A.gradient, 1.0F,
+      gemm_transposed_a(layer.crbm.history(from(states_[i], first)), error, layer.gradient.A, 1.0F,
                         1.0F);
-    column_sum(error, 1.0F, 1.0F, layer.a.gradient);
+    column_sum(error, 1.0F, 1.0F, layer.gradient.a);
     if (is_top)
       gemm(error, layer.crbm.W, Rows(value_errors_, (steps_ - 1) * rows_ + first, rows_ - first),
            through_units(&above));
@@ -207,8 +207,7 @@ void UnrolledPass::down_pass_backward() {
 
 void UnrolledPass::mean_field_backward() {
   Mrbm& mrbm = network_.mrbm();
-  const Modality absent = other(present_);
-  const std::size_t p = index_of(present_), q = index_of(absent);
+  const std::size_t p = index_of(present_), q = index_of(other(present_));
   const auto value_error = [&](std::size_t t) {
     return Rows(value_errors_, (t - 1) * rows_, rows_);
   };
@@ -221,12 +220,12 @@ void UnrolledPass::mean_field_backward() {
     if (t > 1) gemm(hidden_error(t), mrbm.W_transposed[q], value_error(t - 1), through_units(&v));
   }
   block_sum(hidden_errors_, drive_error_);
-  Matrix& gradient = network_.mrbm_W(absent).gradient;
-  gemm_transposed_a(value_errors_, hidden_, gradient, 1.0F, 1.0F);
-  gemm_transposed_a(Rows(values_, 0, steps_ * rows_), hidden_errors_, gradient, 1.0F, 1.0F);
-  column_sum(value_errors_, 1.0F, 1.0F, network_.mrbm_a(absent).gradient);
-  gemm_transposed_a(up_.back(), drive_error_, network_.mrbm_W(present_).gradient, 1.0F, 1.0F);
-  column_sum(drive_error_, 1.0F, 1.0F, network_.mrbm_b().gradient);
+  UnrolledNetwork::MrbmGradient& gradient = network_.mrbm_gradient();
+  gemm_transposed_a(value_errors_, hidden_, gradient.W[q], 1.0F, 1.0F);
+  gemm_transposed_a(Rows(values_, 0, steps_ * rows_), hidden_errors_, gradient.W[q], 1.0F, 1.0F);
+  column_sum(value_errors_, 1.0F, 1.0F, gradient.a[q]);
+  gemm_transposed_a(up_.back(), drive_error_, gradient.W[p], 1.0F, 1.0F);
+  column_sum(drive_error_, 1.0F, 1.0F, gradient.b);
   const Rows code(up_.back());
   gemm(drive_error_, mrbm.W_transposed[p], Rows(up_errors_.back(), 0, rows_),
        through_units(&code, kept_share_));
@@ -238,11 +237,11 @@ void UnrolledPass::up_pass_backward() {
     const std::size_t order = layer.crbm.shape().order;
     const Matrix& below = i > 0 ? up_[i - 1] : input_;
     const Rows error(up_errors_[i], order, rows_ - order);
-    gemm_transposed_a(from(below, order), error, layer.W.gradient, 1.0F, 1.0F);
+    gemm_transposed_a(from(below, order), error, layer.gradient.W, 1.0F, 1.0F);
     if (order > 0)
-      gemm_transposed_a(layer.crbm.history(from(below, order)), error, layer.B.gradient, 1.0F,
+      gemm_transposed_a(layer.crbm.history(from(below, order)), error, layer.gradient.B, 1.0F,
                         1.0F);
-    column_sum(error, 1.0F, 1.0F, layer.b.gradient);
+    column_sum(error, 1.0F, 1.0F, layer.gradient.b);
     if (i == 0) break;
     const Rows units(below), error_below(up_errors_[i - 1], 0, rows_);
     GemmOptions options = through_units(&units, kept_share_);

@@ -21,27 +21,6 @@ MatrixF normal_matrix(Eigen::Index rows, Eigen::Index columns, double deviation,
   return values;
 }
 
-/// [order·visible x n] → [order·padded(visible) x n], each frame's rows followed by rows of zeros.
-MatrixF with_frame_padding(const MatrixF& weights, const CrbmShape& shape) {
-  const auto order = static_cast<Eigen::Index>(shape.order);
-  const auto visible = static_cast<Eigen::Index>(shape.visible);
-  const auto stride = static_cast<Eigen::Index>(padded(shape.visible));
-  MatrixF wide = MatrixF::Zero(order * stride, weights.cols());
-  for (Eigen::Index q = 0; q < order; ++q)
-    wide.middleRows(q * stride, visible) = weights.middleRows(q * visible, visible);
-  return wide;
-}
-
-MatrixF without_frame_padding(const MatrixF& wide, const CrbmShape& shape) {
-  const auto order = static_cast<Eigen::Index>(shape.order);
-  const auto visible = static_cast<Eigen::Index>(shape.visible);
-  const auto stride = static_cast<Eigen::Index>(padded(shape.visible));
-  MatrixF weights(order * visible, wide.cols());
-  for (Eigen::Index q = 0; q < order; ++q)
-    weights.middleRows(q * visible, visible) = wide.middleRows(q * stride, visible);
-  return weights;
-}
-
 }  // namespace
 
 CrbmParameters CrbmParameters::zeros(const CrbmShape& shape) {
@@ -69,29 +48,50 @@ CrbmParameters CrbmParameters::random(const CrbmShape& shape, double deviation,
   return parameters;
 }
 
-Crbm::Crbm(Device& device, const CrbmParameters& parameters)
-    : W(Matrix::from_host(device, parameters.W)),
-      A(Matrix::from_host(device, with_frame_padding(parameters.A, parameters.shape))),
-      B(Matrix::from_host(device, with_frame_padding(parameters.B, parameters.shape))),
-      a(Matrix::from_host(device, parameters.a)),
-      b(Matrix::from_host(device, parameters.b)),
-      W_transposed(device, parameters.shape.hidden, parameters.shape.visible),
-      visible_mean(Matrix::from_host(device, parameters.visible_mean)),
-      shape_(parameters.shape) {
-  if (W.rows() != shape_.visible || W.columns() != shape_.hidden || a.columns() != shape_.visible ||
-      b.columns() != shape_.hidden)
-    throw ShapeError("CRBM: the parameters do not fit the shape");
+CrbmParameters CrbmParameters::read(const Parameters& from, const CrbmShape& shape) {
+  return {shape,
+          from.to_host("W"),
+          from.to_host("A"),
+          from.to_host("B"),
+          from.to_host("a"),
+          from.to_host("b"),
+          MatrixF::Zero(1, static_cast<Eigen::Index>(shape.visible))};
+}
+
+std::vector<ParameterShape> Crbm::parameter_shapes(const CrbmShape& shape) {
+  const std::size_t history = shape.order * shape.visible;
+  return {{.name = "W", .rows = shape.visible, .columns = shape.hidden},
+          {.name = "A", .rows = history, .columns = shape.visible, .frame_rows = shape.visible},
+          {.name = "B", .rows = history, .columns = shape.hidden, .frame_rows = shape.visible},
+          {.name = "a", .rows = 1, .columns = shape.visible, .is_weight = false},
+          {.name = "b", .rows = 1, .columns = shape.hidden, .is_weight = false}};
+}
+
+Crbm::Crbm(Device& device, const CrbmParameters& start)
+    : Crbm(Parameters(device, parameter_shapes(start.shape)), start) {}
+
+Crbm::Crbm(const Parameters& place, const CrbmParameters& start)
+    : shape_(start.shape),
+      parameters_(place),
+      W(place.matrix("W")),
+      A(place.matrix("A")),
+      B(place.matrix("B")),
+      a(place.matrix("a")),
+      b(place.matrix("b")),
+      W_transposed(place.device(), shape_.hidden, shape_.visible),
+      visible_mean(Matrix::from_host(place.device(), start.visible_mean)) {
+  parameters_.upload("W", start.W);
+  parameters_.upload("A", start.A);
+  parameters_.upload("B", start.B);
+  parameters_.upload("a", start.a);
+  parameters_.upload("b", start.b);
   refresh_transposed();
 }
 
 CrbmParameters Crbm::to_host() const {
-  return {shape_,
-          W.to_host(),
-          without_frame_padding(A.to_host(), shape_),
-          without_frame_padding(B.to_host(), shape_),
-          a.to_host(),
-          b.to_host(),
-          visible_mean.to_host()};
+  CrbmParameters host = CrbmParameters::read(parameters_, shape_);
+  host.visible_mean = visible_mean.to_host();
+  return host;
 }
 
 Rows Crbm::history(const Rows& rows) const {

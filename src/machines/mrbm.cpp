@@ -9,6 +9,42 @@
 
 namespace mcdbn {
 
+namespace {
+
+std::size_t columns_of(const MatrixF& matrix) {
+  return static_cast<std::size_t>(matrix.cols());
+}
+
+std::array<std::size_t, 2> visible_of(const MrbmParameters& start) {
+  return {columns_of(start.a[0]), columns_of(start.a[1])};
+}
+
+std::vector<ParameterShape> transposed_shapes(const std::array<std::size_t, 2>& visible,
+                                              std::size_t hidden) {
+  std::vector<ParameterShape> shapes;
+  for (std::size_t m = 0; m < visible.size(); ++m)
+    shapes.push_back({.name = kModalityNames[m], .rows = hidden, .columns = visible[m]});
+  return shapes;
+}
+
+/// The ints that mrbm_shape.clh describes.
+std::vector<std::int32_t> layout_of(const Parameters& parameters, const Parameters& transposed) {
+  std::vector<std::int32_t> layout;
+  std::size_t units_before = 0;
+  for (const std::string name : kModalityNames) {
+    const Parameters::Entry& W = parameters.entry("W_" + name);
+    for (const std::size_t value :
+         {W.rows, units_before, W.first, parameters.entry("a_" + name).first,
+          transposed.entry(name).first})
+      layout.push_back(static_cast<std::int32_t>(value));
+    units_before += padded(W.rows);
+  }
+  layout.push_back(static_cast<std::int32_t>(parameters.entry("b").first));
+  return layout;
+}
+
+}  // namespace
+
 MrbmParameters MrbmParameters::random(std::size_t track, std::size_t pose, std::size_t hidden,
                                       double deviation, const RandomKey& key) {
   MrbmParameters parameters;
@@ -25,20 +61,50 @@ MrbmParameters MrbmParameters::random(std::size_t track, std::size_t pose, std::
   return parameters;
 }
 
-Mrbm::Mrbm(Device& device, const MrbmParameters& parameters)
-    : b(Matrix::from_host(device, parameters.b)) {
+MrbmParameters MrbmParameters::read(const Parameters& from) {
+  MrbmParameters host;
   for (std::size_t m = 0; m < 2; ++m) {
-    W[m] = Matrix::from_host(device, parameters.W[m]);
-    a[m] = Matrix::from_host(device, parameters.a[m]);
-    if (W[m].columns() != b.columns() || W[m].rows() != a[m].columns())
-      throw ShapeError("MRBM: the parameters do not fit together");
-    W_transposed[m] = Matrix(device, W[m].columns(), W[m].rows());
+    host.W[m] = from.to_host(std::string("W_") + kModalityNames[m]);
+    host.a[m] = from.to_host(std::string("a_") + kModalityNames[m]);
   }
+  host.b = from.to_host("b");
+  return host;
+}
+
+std::vector<ParameterShape> Mrbm::parameter_shapes(const std::array<std::size_t, 2>& visible,
+                                                   std::size_t hidden) {
+  std::vector<ParameterShape> shapes;
+  for (std::size_t m = 0; m < visible.size(); ++m) {
+    const std::string name = kModalityNames[m];
+    shapes.push_back({.name = "W_" + name, .rows = visible[m], .columns = hidden});
+    shapes.push_back({.name = "a_" + name, .rows = 1, .columns = visible[m], .is_weight = false});
+  }
+  shapes.push_back({.name = "b", .rows = 1, .columns = hidden, .is_weight = false});
+  return shapes;
+}
+
+Mrbm::Mrbm(Device& device, const MrbmParameters& start)
+    : Mrbm(Parameters(device, parameter_shapes(visible_of(start), columns_of(start.b))), start) {}
+
+Mrbm::Mrbm(const Parameters& place, const MrbmParameters& start)
+    : parameters_(place),
+      transposed_(place.device(), transposed_shapes(visible_of(start), columns_of(start.b))),
+      layout_(place.device(), layout_of(parameters_, transposed_)),
+      b(place.matrix("b")) {
+  for (std::size_t m = 0; m < 2; ++m) {
+    const std::string name = kModalityNames[m];
+    parameters_.upload("W_" + name, start.W[m]);
+    parameters_.upload("a_" + name, start.a[m]);
+    W[m] = place.matrix("W_" + name);
+    a[m] = place.matrix("a_" + name);
+    W_transposed[m] = transposed_.matrix(name);
+  }
+  parameters_.upload("b", start.b);
   refresh_transposed();
 }
 
 MrbmParameters Mrbm::to_host() const {
-  return {{W[0].to_host(), W[1].to_host()}, {a[0].to_host(), a[1].to_host()}, b.to_host()};
+  return MrbmParameters::read(parameters_);
 }
 
 void Mrbm::infer(Modality modality, const Rows& present, std::size_t steps, const Rows& absent,

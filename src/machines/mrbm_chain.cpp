@@ -70,27 +70,35 @@ void MrbmChain::run(const Rows& present, const MrbmChainOptions& options, const 
     composed(present, options, absent);
 }
 
+Defines shape_defines(const Mrbm& mrbm) {
+  const std::array<int, 2> visible{to_int(mrbm.visible(Modality::track)),
+                                   to_int(mrbm.visible(Modality::pose))};
+  Defines defines{{"MODALITIES", to_int(visible.size())},
+                  {"LARGEST", *std::max_element(visible.begin(), visible.end())},
+                  {"HIDDEN", to_int(mrbm.hidden())}};
+  if (std::equal(visible.begin() + 1, visible.end(), visible.begin()))
+    defines["VISIBLE"] = visible.front();
+  return defines;
+}
+
 void MrbmChain::fused(const Rows& present, const MrbmChainOptions& options, const Rows& absent) {
   Device& device = mrbm_.device();
+  Defines defines = shape_defines(mrbm_);
+  defines["VEC"] = tile_->vector_width;
+  defines["SAMPLE"] = static_cast<int>(options.sampling);
   cl::Kernel& kernel =
-      device.programs().kernel("mrbm_inference.cl", "clamped_chain",
-                               with_tile({{"VEC", tile_->vector_width},
-                                          {"VISIBLE_0", to_int(present.columns)},
-                                          {"VISIBLE_1", to_int(absent.columns)},
-                                          {"HIDDEN", to_int(mrbm_.hidden())},
-                                          {"SAMPLE", static_cast<int>(options.sampling)}},
-                                         *tile_));
+      device.programs().kernel("mrbm_inference.cl", "clamped_chain", with_tile(defines, *tile_));
   const auto group = static_cast<std::size_t>(tile_->group);
   const std::size_t blocks = ceil_divide(present.count, static_cast<std::size_t>(tile_->rows));
   // Without an index its argument still needs a buffer.
   const cl::Buffer& index = present.index ? present.index->buffer() : drive_.buffer();
   launch(device, kernel, {{blocks * group, 1}, {group, 1}}, present.matrix->buffer(),
          present.offset(), present.stride(), index, present.index ? 1 : 0,
-         to_int(present.index_first), present.shift, to_int(present.count),
-         mrbm_.W[present_].buffer(), mrbm_.b.buffer(), mrbm_.W[absent_].buffer(),
-         mrbm_.W_transposed[absent_].buffer(), mrbm_.a[absent_].buffer(), drive_.buffer(),
-         absent.matrix->buffer(), absent.offset(), absent.stride(), to_int(options.steps),
-         options.doubled ? 1 : 0, options.temperature, random_argument(options.random));
+         to_int(present.index_first), present.shift, to_int(present.count), mrbm_.layout().buffer(),
+         to_int(present_), to_int(absent_), mrbm_.parameters().all().buffer(),
+         mrbm_.transposed().all().buffer(), drive_.buffer(), absent.matrix->buffer(),
+         absent.offset(), absent.stride(), to_int(options.steps), options.doubled ? 1 : 0,
+         options.temperature, random_argument(options.random));
 }
 
 void MrbmChain::composed(const Rows& present, const MrbmChainOptions& options, const Rows& absent) {

@@ -22,6 +22,9 @@ struct MrbmChainOptions {
   RandomKey random = {};
 };
 
+/// What mrbm_shape.clh wants but for STEPS.
+Defines shape_defines(const Mrbm& mrbm);
+
 /// The MRBM's chain with one modality clamped to what is present (Algorithm 5's inference): `steps`
 /// times the shared hidden units from both modalities, then the absent modality from them. The
 /// absent modality starts from zeros; what comes out is p(absent | hidden) of the last step, not

@@ -183,7 +183,7 @@ ClearDraws clear_draws(const Case& test, const reference::Crbm& model,
 /// comes out as that of the new one.
 void check_parameter(const char* name, const MatrixF& got, const MatrixD& before,
                      const MatrixD& want, const MatrixD& old_velocity, const MatrixD& gradient,
-                     const MatrixD& gradient_bound, const MomentumRule& rule,
+                     const MatrixD& gradient_bound, const UpdateRule& rule,
                      MatrixD& velocity_bound) {
   const MatrixD pull = magnitude(gradient) + gradient_bound + rule.weight_decay * magnitude(before);
   velocity_bound = rule.momentum * velocity_bound + rule.rate * gradient_bound +
@@ -197,7 +197,7 @@ void check_parameter(const char* name, const MatrixF& got, const MatrixD& before
 void check_against_reference(Device& device, const Case& test, std::optional<RowTile> tile) {
   const Problem problem(test);
   const CdRule rule = rule_of(test.gibbs_steps);
-  MomentumRule bias_rule = rule.W;
+  UpdateRule bias_rule = rule.W;
   bias_rule.weight_decay = 0.0F;
   const Matrix frames = Matrix::from_host(device, problem.frames);
   const IndexBuffer index(device, problem.index);

@@ -156,12 +156,12 @@ void check_cd(Device& device, const CdScene& scene, const CdWanted& want,
   CHECK(crbm.W_transposed.to_host() == got.W.transpose());
 }
 
-AdamRule adam_rule(std::size_t step) {
+UpdateRule adam_rule(std::size_t step) {
   return {.rate = 0.05F / static_cast<float>(step + 1),
-          .beta1 = 0.8F,
+          .momentum = 0.8F,
+          .weight_decay = 0.7F,
           .beta2 = 0.95F,
-          .epsilon = 1e-3F,
-          .weight_decay = 0.7F};
+          .epsilon = 1e-3F};
 }
 
 constexpr int kLookAhead = 2, kMeanFieldSteps = 3;
@@ -193,7 +193,7 @@ struct MrbmScene {
 
 struct MrbmWanted {
   reference::Mrbm model;
-  std::vector<std::array<double, 2>> losses;  ///< pose from track, track from pose
+  std::vector<std::array<double, 2>> losses;  ///< of the track, of the pose, each from the other
 };
 
 MrbmWanted wanted(const MrbmScene& scene) {
@@ -213,14 +213,14 @@ MrbmWanted wanted(const MrbmScene& scene) {
     std::array<double, 2> losses{};
     for (int present = 0; present < 2; ++present) {
       const auto trace = reference::mean_field(want.model, present, batch[present], options);
-      losses[present] =
+      losses[1 - present] =
           reference::cross_entropy_of_sigmoid(batch[1 - present], trace.missing_input) /
           static_cast<double>(batch[1 - present].size());
     }
     want.losses.push_back(losses);
     const MatrixD gradient =
         reference::multi_prediction(want.model, batch, options).gradient.flattened().transpose();
-    AdamRule rule = adam_rule(step);
+    UpdateRule rule = adam_rule(step);
     MatrixD parameters = want.model.flattened().transpose();
     const MatrixD shrunk =
         double{rule.rate} * double{rule.weight_decay} * parameters.cwiseProduct(decays);
@@ -279,8 +279,9 @@ TEST_CASE("steps of multi-prediction, each by its own rule, are the double refer
     const MrbmWanted want = wanted(scene);
     on_every_device([&](Device& device) {
       Mrbm fused(device, scene.start), composed(device, scene.start);
-      MultiPrediction fused_trainer(fused, kMeanFieldSteps, kBatch);
-      MultiPrediction composed_trainer(composed, kMeanFieldSteps, kBatch, std::nullopt);
+      const MultiPredictionSettings settings{.mean_field_steps = kMeanFieldSteps};
+      MultiPrediction fused_trainer(fused, kBatch, settings);
+      MultiPrediction composed_trainer(composed, kBatch, settings, std::nullopt);
       check_multi_prediction(scene, want, fused, fused_trainer);
       check_multi_prediction(scene, want, composed, composed_trainer);
     });

@@ -74,7 +74,7 @@ TEST_CASE("small: a CRBM's transposed weights follow W when they are told to") {
   on_every_device([](Device& device) {
     Crbm layer(device, filled({5, 5, 1, VisibleKind::gaussian}, 1));
     const MatrixF other = random_matrix(5, 5, 77);
-    layer.W = Matrix::from_host(device, other);
+    layer.W.upload(other);
     layer.refresh_transposed();
     CHECK(layer.W_transposed.to_host() == other.transpose());
     CHECK(layer.to_host().W == other);

@@ -29,7 +29,7 @@ CrbmParameters layer(std::size_t visible, std::size_t hidden, VisibleKind kind, 
 }
 
 /// A small MCDBN of two layers a modality, with parameters as after a training.
-struct Parameters {
+struct NetworkParameters {
   std::array<CrbmParameters, 2> track{layer(kTrack, kHidden, VisibleKind::gaussian, 10),
                                       layer(kHidden, kTop, VisibleKind::binary, 20)};
   std::array<CrbmParameters, 2> pose{layer(kPose, kHidden, VisibleKind::gaussian, 30),
@@ -78,7 +78,7 @@ std::vector<Bounded> up_pass(const CrbmParameters& p, const std::vector<Bounded>
 }
 
 /// eq 32 and 33 from zeros: the 3D code from the 2D code.
-Bounded pose_code(const Parameters& p, const Bounded& track_code) {
+Bounded pose_code(const NetworkParameters& p, const Bounded& track_code) {
   const Bounded W = exact(p.mrbm.W[1]);
   const Bounded drive = exact(p.mrbm.b) + product(track_code, exact(p.mrbm.W[0]));
   Bounded pose = Bounded::exact(MatrixD::Zero(1, kTop));
@@ -89,7 +89,7 @@ Bounded pose_code(const Parameters& p, const Bounded& track_code) {
 }
 
 /// Algorithm 3 by mean field, in double with bounds: what regenerate() promises.
-std::vector<Bounded> reference_regeneration(const Parameters& p, const MatrixF& track,
+std::vector<Bounded> reference_regeneration(const NetworkParameters& p, const MatrixF& track,
                                             std::size_t run_in) {
   const std::size_t lead = 2 * kOrder + run_in;
   std::vector<Bounded> frames;
@@ -127,7 +127,7 @@ RegenerationOptions options_with_run_in(std::size_t run_in) {
 TEST_CASE("mean-field regeneration is Algorithm 3 in double, within the rounding bound") {
   for (const std::size_t look_ahead : {0U, 1U, 4U})
     for (const Eigen::Index frames : {1, 3, 13}) {
-      Parameters parameters;
+      NetworkParameters parameters;
       parameters.look_ahead = look_ahead;
       const MatrixF track = random_matrix(static_cast<std::size_t>(frames), kTrack, 7, 1.7F);
       const auto want = reference_regeneration(parameters, track, 5);
@@ -146,7 +146,7 @@ TEST_CASE("mean-field regeneration is Algorithm 3 in double, within the rounding
 }
 
 TEST_CASE("clips that are regenerated together do not know of each other") {
-  const Parameters parameters;
+  const NetworkParameters parameters;
   const MatrixF one = random_matrix(9, kTrack, 1), other = random_matrix(4, kTrack, 2);
   on_every_device([&](Device& device) {
     const Mcdbn network = parameters.on(device);
@@ -160,7 +160,7 @@ TEST_CASE("clips that are regenerated together do not know of each other") {
 }
 
 TEST_CASE("samples differ, the same seed gives the same ones, a low temperature the mean") {
-  const Parameters parameters;
+  const NetworkParameters parameters;
   const MatrixF track = random_matrix(11, kTrack, 3);
   on_every_device([&](Device& device) {
     const Mcdbn network = parameters.on(device);
@@ -183,7 +183,7 @@ TEST_CASE("samples differ, the same seed gives the same ones, a low temperature 
 
 TEST_CASE(
     "with the MRBM's own Gibbs steps samples differ in the 3D code, without them they do not") {
-  const Parameters parameters;
+  const NetworkParameters parameters;
   const MatrixF track = random_matrix(11, kTrack, 3), other = random_matrix(5, kTrack, 4);
   on_every_device([&](Device& device) {
     const Mcdbn network = parameters.on(device);
@@ -217,7 +217,7 @@ TEST_CASE(
 }
 
 TEST_CASE("the start of a regeneration does not depend on the frames that follow the look-ahead") {
-  Parameters parameters;
+  NetworkParameters parameters;
   parameters.look_ahead = 2;
   MatrixF track = random_matrix(12, kTrack, 4);
   on_every_device([&](Device& device) {
@@ -232,7 +232,7 @@ TEST_CASE("the start of a regeneration does not depend on the frames that follow
 }
 
 TEST_CASE("missing joints are filled in, and what is seen stays as it was") {
-  const Parameters parameters;
+  const NetworkParameters parameters;
   const MatrixF track = random_matrix(10, kTrack, 5);
   MatrixF gappy = track;
   gappy.block(4, 2, 3, 2).setConstant(std::numeric_limits<float>::quiet_NaN());
@@ -253,7 +253,7 @@ TEST_CASE("missing joints are filled in, and what is seen stays as it was") {
 }
 
 TEST_CASE("regenerate: nothing from nothing, and a track without frames is refused") {
-  const Parameters parameters;
+  const NetworkParameters parameters;
   on_every_device([&](Device& device) {
     const Mcdbn network = parameters.on(device);
     CHECK(regenerate(network, {}).empty());

@@ -162,13 +162,13 @@ TEST_CASE("learning settings: what may be nothing is accepted as nothing") {
 }
 
 TEST_CASE("learning settings: what no setting says") {
-  const AdamRule adam;
+  const UpdateRule adam = UpdateRule::adam();
   CHECK(adam.rate == 1e-3F);
-  CHECK(adam.beta1 == 0.9F);
+  CHECK(adam.momentum == 0.9F);
   CHECK(adam.beta2 == 0.999F);
   CHECK(adam.epsilon == 1e-8F);
   CHECK(adam.weight_decay == 0);
-  const MomentumRule momentum;
+  const UpdateRule momentum;
   CHECK(momentum.rate == 1e-3F);
   CHECK(momentum.momentum == 0);
   CHECK(momentum.weight_decay == 0);

@@ -12,7 +12,7 @@ Bounded stacked(const Bounded& top, const Bounded& bottom) {
 }
 
 /// One parameter and its velocity after the update of `gradient`.
-void update_one(const MatrixD& parameter, const Bounded& gradient, const MomentumRule& rule,
+void update_one(const MatrixD& parameter, const Bounded& gradient, const UpdateRule& rule,
                 Bounded& updated, Bounded& velocity) {
   const Bounded exact = Bounded::exact(parameter);
   velocity = double{rule.rate} * (gradient - double{rule.weight_decay} * exact);
@@ -22,8 +22,8 @@ void update_one(const MatrixD& parameter, const Bounded& gradient, const Momentu
 }  // namespace
 
 BoundedCdStep bounded_cd_step(const Crbm& model, const CrbmBatch& batch, int k,
-                              const HiddenDraws& draws, const MomentumRule& rule_W,
-                              const MomentumRule& rule_A, const MomentumRule& rule_B) {
+                              const HiddenDraws& draws, const UpdateRule& rule_W,
+                              const UpdateRule& rule_A, const UpdateRule& rule_B) {
   const Bounded W = Bounded::exact(model.weights);
   const Bounded history = Bounded::exact(batch.history);
   const Bounded data = Bounded::exact(batch.visible);
@@ -52,7 +52,7 @@ BoundedCdStep bounded_cd_step(const Crbm& model, const CrbmBatch& batch, int k,
   // Data and reconstruction in one sum, whichever way the device splits it.
   const Bounded statistics_W =
       product(stacked(data, -1.0 * visible).transposed(), stacked(hidden_data, hidden));
-  MomentumRule biases = rule_W;
+  UpdateRule biases = rule_W;
   biases.weight_decay = 0.0F;
   BoundedCrbm &p = step.parameters, &v = step.velocities;
   update_one(model.weights, mean * statistics_W, rule_W, p.W, v.W);

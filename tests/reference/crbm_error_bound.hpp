@@ -1,6 +1,6 @@
 #pragma once
 
-#include "device/updates.hpp"
+#include "device/optimizer.hpp"
 #include "reference/crbm_reference.hpp"
 #include "reference/running_error.hpp"
 
@@ -20,7 +20,7 @@ struct BoundedCdStep {
 /// One mini-batch of CD-k in single precision: contrastive_divergence() and update(), from
 /// velocities of zero, each number with a bound on the device's error.
 BoundedCdStep bounded_cd_step(const Crbm& model, const CrbmBatch& batch, int k,
-                              const HiddenDraws& draws, const MomentumRule& rule_W,
-                              const MomentumRule& rule_A, const MomentumRule& rule_B);
+                              const HiddenDraws& draws, const UpdateRule& rule_W,
+                              const UpdateRule& rule_A, const UpdateRule& rule_B);
 
 }  // namespace mcdbn::reference

@@ -9,7 +9,7 @@ namespace mcdbn::reference {
 namespace {
 
 void update_row(RowVectorD& parameter, RowVectorD& velocity, const RowVectorD& gradient,
-                const MomentumRule& rule) {
+                const UpdateRule& rule) {
   MatrixD parameter_matrix = parameter;
   MatrixD velocity_matrix = velocity;
   momentum_update(parameter_matrix, velocity_matrix, gradient, rule);
@@ -95,9 +95,9 @@ CdResult contrastive_divergence(const Crbm& model, const CrbmBatch& batch, int k
   return result;
 }
 
-void update(Crbm& model, Crbm& velocity, const Crbm& gradient, const MomentumRule& rule_W,
-            const MomentumRule& rule_A, const MomentumRule& rule_B) {
-  MomentumRule biases = rule_W;
+void update(Crbm& model, Crbm& velocity, const Crbm& gradient, const UpdateRule& rule_W,
+            const UpdateRule& rule_A, const UpdateRule& rule_B) {
+  UpdateRule biases = rule_W;
   biases.weight_decay = 0.0F;
   momentum_update(model.weights, velocity.weights, gradient.weights, rule_W);
   momentum_update(model.visible_history, velocity.visible_history, gradient.visible_history,

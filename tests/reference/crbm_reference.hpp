@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "device/updates.hpp"
+#include "device/optimizer.hpp"
 #include "mcdbn/base/matrices.hpp"
 
 namespace mcdbn::reference {
@@ -62,7 +62,7 @@ CdResult contrastive_divergence(const Crbm& model, const CrbmBatch& batch, int k
                                 const HiddenDraws& draws);
 
 /// One update of all parameters, each by its own rule; the biases by that of W without decay.
-void update(Crbm& model, Crbm& velocity, const Crbm& gradient, const MomentumRule& rule_W,
-            const MomentumRule& rule_A, const MomentumRule& rule_B);
+void update(Crbm& model, Crbm& velocity, const Crbm& gradient, const UpdateRule& rule_W,
+            const UpdateRule& rule_A, const UpdateRule& rule_B);
 
 }  // namespace mcdbn::reference

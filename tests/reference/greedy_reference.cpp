@@ -170,7 +170,7 @@ GreedyStage train_mrbm(const GreedyPlan& plan, const GreedyCode& track, const Gr
       const Eigen::VectorXd gradient = multi_prediction(mrbm, batch, options).gradient.flattened();
       // Flat in the first half, then in a line to a fiftieth.
       const double progress = static_cast<double>(step) / (plan.mrbm.epochs * batches.count());
-      AdamRule rule{.beta1 = 0.9F, .beta2 = 0.999F, .epsilon = 1e-8F, .weight_decay = 0};
+      UpdateRule rule{.momentum = 0.9F, .weight_decay = 0, .beta2 = 0.999F, .epsilon = 1e-8F};
       rule.rate = static_cast<float>(plan.mrbm.rate *
                                      (progress < 0.5 ? 1.0 : 1.0 - 0.98 * (2.0 * progress - 1.0)));
       MatrixD updated = mrbm.flattened().transpose();
@@ -232,8 +232,8 @@ GreedyRun train_layer(const GreedyPlan& plan, const CdPlan& rule, const GreedyCo
     batches.shuffle(epoch);
     const double momentum = epoch > rule.momentum_from_epoch ? rule.momentum : 0.0;
     const auto rule_of = [&](double rate) {
-      return MomentumRule{static_cast<float>(rate), static_cast<float>(momentum),
-                          static_cast<float>(rule.weight_decay)};
+      return UpdateRule{static_cast<float>(rate), static_cast<float>(momentum),
+                        static_cast<float>(rule.weight_decay)};
     };
     double loss = 0;
     for (int number = 0; number < batches.count(); ++number, ++step) {

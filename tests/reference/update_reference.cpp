@@ -5,15 +5,15 @@
 namespace mcdbn::reference {
 
 void momentum_update(MatrixD& parameter, MatrixD& velocity, const MatrixD& gradient,
-                     const MomentumRule& rule) {
+                     const UpdateRule& rule) {
   velocity = double{rule.momentum} * velocity +
              double{rule.rate} * (gradient - double{rule.weight_decay} * parameter);
   parameter += velocity;
 }
 
 void adam_update(MatrixD& parameter, MatrixD& mean, MatrixD& square, const MatrixD& gradient,
-                 const AdamRule& rule, int step) {
-  const double beta1 = rule.beta1;
+                 const UpdateRule& rule, int step) {
+  const double beta1 = rule.momentum;
   const double beta2 = rule.beta2;
   mean = beta1 * mean + (1.0 - beta1) * gradient;
   square = beta2 * square + (1.0 - beta2) * gradient.cwiseAbs2();

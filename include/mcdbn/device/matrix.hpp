@@ -27,6 +27,11 @@ class Matrix {
     return {other.device(), other.rows(), other.columns()};
   }
 
+  /// Some of the floats of this matrix as one of its own, in place: rows of padded(columns) floats
+  /// from float `first` on. `first` must be a multiple of what the device can address
+  /// (parameters.hpp). @throws ShapeError if they do not lie within it
+  Matrix part(std::size_t first, std::size_t rows, std::size_t columns) const;
+
   /// `row` [1 x n] so many times. @return [rows x n]
   static Matrix filled_with_row(const Matrix& row, std::size_t rows);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mcdbn/base/random.hpp"
-#include "mcdbn/device/matrix.hpp"
+#include "mcdbn/device/parameters.hpp"
 
 namespace mcdbn {
 
@@ -30,6 +30,9 @@ struct CrbmParameters {
   static CrbmParameters zeros(const CrbmShape& shape);
   /// W, A and B drawn from N(0, deviation²), biases zero.
   static CrbmParameters random(const CrbmShape& shape, double deviation, const RandomKey& key);
+  /// What stands in a machine's buffer (Crbm::parameter_shapes), or in one of gradients;
+  /// visible_mean is zero.
+  static CrbmParameters read(const Parameters& from, const CrbmShape& shape);
 };
 
 /// A conditional RBM (eq 13 to 17; Gaussian units have variance 1, as data is standardized); an RBM
@@ -37,9 +40,15 @@ struct CrbmParameters {
 /// [frames x visible], so that the history of row t is the `order` rows before it, read in place.
 class Crbm {
  public:
-  Crbm(Device& device, const CrbmParameters& parameters);
+  /// W, A, B, a, b.
+  static std::vector<ParameterShape> parameter_shapes(const CrbmShape& shape);
+
+  Crbm(Device& device, const CrbmParameters& start);
+  /// In parameters that stand among those of a larger machine. @throws ShapeError
+  Crbm(const Parameters& place, const CrbmParameters& start);
   CrbmParameters to_host() const;
   const CrbmShape& shape() const { return shape_; }
+  const Parameters& parameters() const { return parameters_; }
   Device& device() const { return W.device(); }
 
   /// The history of each row: `order` frames that end before it. @param rows one frame each
@@ -54,14 +63,16 @@ class Crbm {
   /// Brings the transposed copy of W up to date after W changed.
   void refresh_transposed();
 
-  // The paper's letters, on the device. A and B have order·stride rows: a history is read with its
-  // padding, whose weights are zero and stay zero because the padding is.
+ private:
+  CrbmShape shape_;
+  Parameters parameters_;
+
+ public:
+  // The paper's letters, in parameters(). A and B have order·stride rows: a history is read with
+  // its padding, whose weights are zero and stay zero because the padding is.
   Matrix W, A, B, a, b;
   Matrix W_transposed;  ///< [hidden x visible]
   Matrix visible_mean;  ///< [1 x visible], see CrbmParameters
-
- private:
-  CrbmShape shape_;
 };
 
 }  // namespace mcdbn

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "mcdbn/base/random.hpp"
-#include "mcdbn/device/matrix.hpp"
+#include "mcdbn/device/parameters.hpp"
 
 namespace mcdbn {
 
@@ -12,6 +12,8 @@ enum class Modality : std::size_t { track = 0, pose = 1 };  // 2D, 3D
 constexpr std::size_t index_of(Modality modality) {
   return static_cast<std::size_t>(modality);
 }
+/// In names of tensors.
+constexpr std::array<const char*, 2> kModalityNames{"track", "pose"};
 constexpr Modality other(Modality modality) {
   return modality == Modality::track ? Modality::pose : Modality::track;
 }
@@ -23,15 +25,28 @@ struct MrbmParameters {
 
   static MrbmParameters random(std::size_t track, std::size_t pose, std::size_t hidden,
                                double deviation, const RandomKey& key);
+  /// What stands in a machine's buffer (Mrbm::parameter_shapes), or in one of gradients.
+  static MrbmParameters read(const Parameters& from);
 };
 
 /// Two binary RBMs that share their hidden layer (eq 18 to 23).
 class Mrbm {
  public:
-  Mrbm(Device& device, const MrbmParameters& parameters);
+  /// W_track, a_track, W_pose, a_pose, b.
+  static std::vector<ParameterShape> parameter_shapes(const std::array<std::size_t, 2>& visible,
+                                                      std::size_t hidden);
+
+  Mrbm(Device& device, const MrbmParameters& start);
+  /// In parameters that stand among those of a larger machine. @throws ShapeError
+  Mrbm(const Parameters& place, const MrbmParameters& start);
   MrbmParameters to_host() const;
   std::size_t visible(Modality modality) const { return W[index_of(modality)].rows(); }
   std::size_t hidden() const { return b.columns(); }
+  const Parameters& parameters() const { return parameters_; }
+  /// Where kernels find everything of each modality (mrbm_shape.clh).
+  const IndexBuffer& layout() const { return layout_; }
+  /// The transposed copies, one after another [1 x floats].
+  const Parameters& transposed() const { return transposed_; }
   Device& device() const { return b.device(); }
 
   /// Mean-field inference of the absent modality (eq 32, 33), started from zeros, `steps` times.
@@ -42,6 +57,12 @@ class Mrbm {
              bool doubled = false) const;
   void refresh_transposed();
 
+ private:
+  Parameters parameters_, transposed_;
+  IndexBuffer layout_;
+
+ public:
+  // The paper's letters, in parameters() and transposed().
   std::array<Matrix, 2> W, a;
   Matrix b;
   std::array<Matrix, 2> W_transposed;  ///< [hidden x visible]

@@ -4,8 +4,8 @@
 
 #include "device/gemm.hpp"
 #include "device/losses.hpp"
+#include "device/optimizer.hpp"
 #include "device/pointwise.hpp"
-#include "device/updates.hpp"
 #include "mcdbn/machines/crbm.hpp"
 #include "peer.hpp"
 
@@ -33,11 +33,10 @@ class CrbmStep {
         hidden_(like(hidden_data_)),
         sample_(like(hidden_data_)),
         bias_h_(like(hidden_data_)),
+        optimizer_(crbm_.parameters(), OptimizerKind::momentum),
         losses_(device, 1, batch) {
-    for (Matrix* parameter : {&crbm_.W, &crbm_.A, &crbm_.B, &crbm_.a, &crbm_.b}) {
-      gradients_.push_back(like(*parameter));
-      velocities_.push_back(like(*parameter));
-    }
+    const Parameters gradients = crbm_.parameters().in(optimizer_.gradients());
+    for (const char* name : {"W", "A", "B", "a", "b"}) gradients_.push_back(gradients.matrix(name));
   }
 
   void operator()() {
@@ -86,19 +85,18 @@ class CrbmStep {
 
   void update(float mean) {
     constexpr auto kClblast = GemmBackend::clblast;
-    gemm_transposed_a(data_, hidden_data_, gradients_[0], mean, 0.0F, kClblast);
-    gemm_transposed_a(visible_, hidden_, gradients_[0], -mean, 1.0F, kClblast);
-    scaled_difference(data_, visible_, mean, visible_);
-    scaled_difference(hidden_data_, hidden_, mean, hidden_);
+    gemm_transposed_a(data_, hidden_data_, gradients_[0], -mean, 0.0F, kClblast);
+    gemm_transposed_a(visible_, hidden_, gradients_[0], mean, 1.0F, kClblast);
+    scaled_difference(visible_, data_, mean, visible_);
+    scaled_difference(hidden_, hidden_data_, mean, hidden_);
     gemm_transposed_a(history_, visible_, gradients_[1], 1.0F, 0.0F, kClblast);
     gemm_transposed_a(history_, hidden_, gradients_[2], 1.0F, 0.0F, kClblast);
     column_sum(visible_, 1.0F, 0.0F, gradients_[3]);
     column_sum(hidden_, 1.0F, 0.0F, gradients_[4]);
-    const std::vector<Matrix*> parameters{&crbm_.W, &crbm_.A, &crbm_.B, &crbm_.a, &crbm_.b};
-    for (std::size_t i = 0; i < parameters.size(); ++i)
-      momentum_update(
-          *parameters[i], velocities_[i], gradients_[i],
-          {i == 1 ? peer::kRateA : peer::kRate, peer::kMomentum, i < 3 ? peer::kDecay : 0.0F});
+    optimizer_.update([](const ParameterShape& shape) {
+      return UpdateRule{shape.name == "A" ? peer::kRateA : peer::kRate, peer::kMomentum,
+                        shape.is_weight ? peer::kDecay : 0.0F};
+    });
     crbm_.refresh_transposed();
   }
 
@@ -107,7 +105,8 @@ class CrbmStep {
   IndexBuffer index_;
   std::size_t gibbs_steps_;
   Matrix data_, visible_, bias_v_, history_, hidden_data_, hidden_, sample_, bias_h_;
-  std::vector<Matrix> gradients_, velocities_;
+  Optimizer optimizer_;
+  std::vector<Matrix> gradients_;
   LossAccumulator losses_;
   RandomKey key_;
 };

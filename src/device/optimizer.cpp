@@ -1,0 +1,114 @@
+#include "device/optimizer.hpp"
+
+#include <cmath>
+
+#include "device/kernel_arguments.hpp"
+
+namespace mcdbn {
+namespace {
+
+std::size_t states_of(OptimizerKind kind) {
+  return kind == OptimizerKind::adam ? 2 : kind == OptimizerKind::momentum ? 1 : 0;
+}
+
+std::size_t vectors_of(const Device& device, std::size_t floats) {
+  return floats / static_cast<std::size_t>(vector_width(device));
+}
+
+cl::Kernel& optimizer_kernel(Device& device, const char* name, Defines defines = {}) {
+  defines["VEC"] = vector_width(device);
+  return device.programs().kernel("optimizer.cl", name, defines);
+}
+
+}  // namespace
+
+Optimizer::Optimizer(const Parameters& parameters, OptimizerKind kind)
+    : parameters_(parameters), kind_(kind) {
+  if (states_of(kind) > 0)
+    states_ = Matrix(parameters.device(), states_of(kind), parameters.all().columns());
+}
+
+const char* Optimizer::define() const {
+  switch (kind_) {
+    case OptimizerKind::momentum:
+      return "momentum";
+    case OptimizerKind::adam:
+      return "adam";
+    default:
+      return "none";
+  }
+}
+
+cl_float8 Optimizer::argument(const UpdateRule& rule) const {
+  const auto correction_of = [&](float beta) {
+    return static_cast<float>(1.0 - std::pow(static_cast<double>(beta), steps_));
+  };
+  return {{rule.rate, rule.momentum, rule.weight_decay, rule.beta2, rule.epsilon,
+           correction_of(rule.momentum), correction_of(rule.beta2), 0.0F}};
+}
+
+Matrix& Optimizer::gradients() {
+  if (gradients_.empty()) gradients_ = Matrix::like(parameters_.all());
+  return gradients_;
+}
+
+const cl::Buffer& Optimizer::gradient_buffer() {
+  return kind_ == OptimizerKind::none ? gradients().buffer() : parameters_.all().buffer();
+}
+
+const cl::Buffer& Optimizer::state_buffer() const {
+  return states_.empty() ? parameters_.all().buffer() : states_.buffer();
+}
+
+int Optimizer::size() const {
+  return to_int(parameters_.all().stride());
+}
+
+void Optimizer::update(const std::function<UpdateRule(const ParameterShape&)>& rule_of,
+                       const Matrix* gradient_scale) {
+  if (kind_ == OptimizerKind::none) return;
+  Device& device = parameters_.device();
+  for (const Parameters::Entry& entry : parameters_.entries()) {
+    if (entry.floats() == 0) continue;
+    const LaunchSize work{{vectors_of(device, entry.floats()), 1}};
+    const auto run = [&](cl::Kernel& kernel, const auto&... scale) {
+      launch(device, kernel, work, parameters_.all().buffer(), gradients().buffer(), state_buffer(),
+             size(), to_int(entry.first), argument(rule_of(entry)), scale...);
+    };
+    if (gradient_scale)
+      run(optimizer_kernel(device, "update_parameters", {{"OPTIMIZER", define()}, {"SCALED", 1}}),
+          gradient_scale->buffer());
+    else
+      run(optimizer_kernel(device, "update_parameters", {{"OPTIMIZER", define()}}));
+  }
+}
+
+GradientLimit::GradientLimit(const Parameters& parameters)
+    : parameters_(parameters),
+      squares_(parameters.device(), 1, kParts * parameters.entries().size()),
+      scale_(parameters.device(), 1, 1) {}
+
+void GradientLimit::measure(const Matrix& gradients, float longest) {
+  require(same_shape(gradients, parameters_.all()), "gradient limit: shapes differ");
+  Device& device = scale_.device();
+  int slot = 0;
+  for (const Parameters::Entry& entry : parameters_.entries()) {
+    launch(device, optimizer_kernel(device, "sum_squares"), {{kParts, 1}}, gradients.buffer(),
+           to_int(entry.first), to_int(vectors_of(device, entry.floats())), squares_.buffer(),
+           slot);
+    slot += to_int(kParts);
+  }
+  launch(device, optimizer_kernel(device, "limit_scale"), {}, squares_.buffer(), slot, longest,
+         scale_.buffer());
+}
+
+void average_update(Matrix& average, const Matrix& parameters, float share) {
+  require(same_shape(average, parameters), "average: shapes differ");
+  if (average.empty()) return;
+  Device& device = average.device();
+  launch(device, optimizer_kernel(device, "average_update"),
+         {{vectors_of(device, average.element_count()), 1}}, average.buffer(), parameters.buffer(),
+         share);
+}
+
+}  // namespace mcdbn

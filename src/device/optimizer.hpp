@@ -1,0 +1,94 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "device/program.hpp"
+#include "mcdbn/device/parameters.hpp"
+
+namespace mcdbn {
+
+/// How parameters move along the gradient of the loss (optimizer.clh). `none` only keeps the
+/// gradient.
+enum class OptimizerKind { none, momentum, adam };
+
+/// What one matrix takes of a step.
+struct UpdateRule {
+  float rate = 1e-3F;
+  float momentum = 0.0F;      ///< kept of the velocity; Adam's β1
+  float weight_decay = 0.0F;  ///< Adam's is decoupled; times the rate in both
+  float beta2 = 0.999F;       ///< Adam's
+  float epsilon = 1e-8F;      ///< Adam's
+
+  /// With β1 = 0.9 (Kingma and Ba 2015).
+  static UpdateRule adam(float rate = 1e-3F, float weight_decay = 0.0F) {
+    return {rate, 0.9F, weight_decay};
+  }
+  /// For biases.
+  UpdateRule without_decay() const {
+    UpdateRule rule = *this;
+    rule.weight_decay = 0.0F;
+    return rule;
+  }
+};
+
+/// SGD with momentum (eq 36), or Adam, on all parameters of a machine:
+/// velocity ← momentum·velocity − rate·(gradient + decay·parameter); parameter += velocity.
+/// Kernels that make a gradient and apply it at once are built with define() and take the other
+/// arguments from here; where the gradient is made elsewhere, update() applies it.
+class Optimizer {
+ public:
+  Optimizer(const Parameters& parameters, OptimizerKind kind);
+
+  OptimizerKind kind() const { return kind_; }
+  const Parameters& parameters() const { return parameters_; }
+  /// Value of -DOPTIMIZER.
+  const char* define() const;
+  /// A new step begins: Adam's corrections count them.
+  void next_step() { ++steps_; }
+  /// The kernels' `rule` at this step.
+  cl_float8 argument(const UpdateRule& rule) const;
+  /// [1 x floats]; without elements before gradients() was asked for by someone who fills it.
+  Matrix& gradients();
+  /// What kernels want where they neither write nor read it: some buffer.
+  const cl::Buffer& gradient_buffer();
+  const cl::Buffer& state_buffer() const;
+  /// [states x floats]: the velocity, or the mean and the square; none: empty.
+  Matrix& states() { return states_; }
+  /// Floats of one block of states.
+  int size() const;
+
+  /// Every parameter by its gradient in gradients().
+  /// @param rule_of what an entry takes  @param gradient_scale [1 x 1] what gradients are
+  /// multiplied
+  ///        with first
+  void update(const std::function<UpdateRule(const ParameterShape&)>& rule_of,
+              const Matrix* gradient_scale = nullptr);
+
+ private:
+  Parameters parameters_;
+  OptimizerKind kind_;
+  int steps_ = 0;
+  Matrix gradients_, states_;  // [1 x floats], [states x floats]
+};
+
+/// The scale that brings a gradient to a length of at most `longest`; all of it stays on the
+/// device, and the sum has a fixed order.
+class GradientLimit {
+ public:
+  explicit GradientLimit(const Parameters& parameters);
+  /// @param gradients [1 x floats]
+  void measure(const Matrix& gradients, float longest);
+  const Matrix& scale() const { return scale_; }  ///< [1 x 1]
+
+ private:
+  static constexpr std::size_t kParts = 64;
+  Parameters parameters_;
+  Matrix squares_, scale_;
+};
+
+/// average += share · (parameter − average): a moving average of what training passes through.
+/// Both of one shape. @throws ShapeError
+void average_update(Matrix& average, const Matrix& parameters, float share);
+
+}  // namespace mcdbn
