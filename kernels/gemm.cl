@@ -6,25 +6,14 @@
 // All matrices are row-major floats with leading dimensions lda, ldb, ldc (multiples of 16, padding
 // columns zero); *_offset is the first element used. With A_ROWS row r of A is row a_rows[r] +
 // a_shift of the frames, and may run on over several frames (history windows, eq 15).
-//   BIAS        0 none, 1 one row for all, 2 a row each            (eq 16, 17: dynamic biases)
-//   ACTIVATION  0 none, 1 sigmoid (eq 6, 7, 32, 33), 2 times y·(1 − y) of the matrix `factor`,
-//               3 positive part, 4 zero where `factor` is not positive, 5 sigmoid less one half,
-//               6 its gradient, `factor` after drop-out of which kept_share is kept
-//   SAMPLE      0 none, 1 Bernoulli, 2 Gaussian, 3 concrete (units.clh); written to `sample` as
-//               mean + temperature · (draw − mean)
+// f is the epilogue (epilogue.clh).
 // One work-item makes TILE_ROWS x VEC of C, its accumulators in registers.
 // global: (ceil(n / VEC), ceil(rows of C / TILE_ROWS))
 
-#include "units.clh"
+#include "epilogue.clh"
 
 #ifndef TILE_ROWS
 #define TILE_ROWS 10
-#endif
-#ifndef BIAS
-#define BIAS 0
-#endif
-#ifndef ACTIVATION
-#define ACTIVATION 0
 #endif
 #ifndef A_ROWS
 #define A_ROWS 0
@@ -73,27 +62,7 @@ kernel void gemm(global const float* a, int a_offset, int lda, global const int*
     floatN value = alpha * sum[r];
     const int c_at = c_offset + row * ldc + column;
     if (beta != 0.0f) value = fma((floatN)(beta), loadN(c_at, c), value);
-#if BIAS == 1
-    value += loadN(bias_offset + column, bias);
-#elif BIAS == 2
-    value += loadN(bias_offset + row * bias_ld + column, bias);
-#endif
-#if ACTIVATION == 1
-    value = sigmoidN(value);
-#elif ACTIVATION == 2
-    const floatN y = loadN(factor_offset + row * factor_ld + column, factor);
-    value *= y * (1.0f - y);
-#elif ACTIVATION == 3
-    value = relu(value);
-#elif ACTIVATION == 4
-    value = relu_gradient(value, loadN(factor_offset + row * factor_ld + column, factor));
-#elif ACTIVATION == 5
-    value = centered_sigmoid(value);
-#elif ACTIVATION == 6
-    value = centered_sigmoid_gradient(value, loadN(factor_offset + row * factor_ld + column, factor),
-                                      kept_share);
-#endif
-    value *= mask;
+    value = EPILOGUE_VALUE(value, row, column);
     storeN(value, c_at, c);
 #if SAMPLE
     if ((uint)row / 4 != group) {

@@ -1,16 +1,9 @@
 // Pointwise work on whole matrices, row-major, leading dimensions in floats, padding columns zero.
 // global: (ceil(columns / VEC), rows) unless a kernel says otherwise.
 
-#include "units.clh"
+#include "epilogue.clh"
 
-// What a product back end without epilogues (CLBlast) leaves to do; the meaning of BIAS, ACTIVATION
-// and SAMPLE is that of gemm.cl.
-#ifndef BIAS
-#define BIAS 0
-#endif
-#ifndef ACTIVATION
-#define ACTIVATION 0
-#endif
+// What a product back end without epilogues (CLBlast) leaves to do.
 kernel void epilogue(global float* c, int c_offset, int ldc, int n, global const float* bias,
                      int bias_offset, int bias_ld, global const float* factor, int factor_offset,
                      int factor_ld, global float* sample, int sample_offset, int sample_ld,
@@ -20,27 +13,7 @@ kernel void epilogue(global float* c, int c_offset, int ldc, int n, global const
   if (column >= n) return;
   const floatN mask = column_mask(column, n);
   floatN value = loadN(c_offset + row * ldc + column, c);
-#if BIAS == 1
-  value += loadN(bias_offset + column, bias);
-#elif BIAS == 2
-  value += loadN(bias_offset + row * bias_ld + column, bias);
-#endif
-#if ACTIVATION == 1
-  value = sigmoidN(value);
-#elif ACTIVATION == 2
-  const floatN y = loadN(factor_offset + row * factor_ld + column, factor);
-  value *= y * (1.0f - y);
-#elif ACTIVATION == 3
-  value = relu(value);
-#elif ACTIVATION == 4
-  value = relu_gradient(value, loadN(factor_offset + row * factor_ld + column, factor));
-#elif ACTIVATION == 5
-  value = centered_sigmoid(value);
-#elif ACTIVATION == 6
-  value = centered_sigmoid_gradient(value, loadN(factor_offset + row * factor_ld + column, factor),
-                                    kept_share);
-#endif
-  value *= mask;
+  value = EPILOGUE_VALUE(value, row, column);
   storeN(value, c_offset + row * ldc + column, c);
 #if SAMPLE
   uintN draws[DRAW_WORDS];

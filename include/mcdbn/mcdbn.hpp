@@ -12,6 +12,7 @@
 #include "mcdbn/device/device.hpp"
 #include "mcdbn/device/matrix.hpp"
 #include "mcdbn/device/opencl.hpp"
+#include "mcdbn/device/parameters.hpp"
 #include "mcdbn/device/tuning.hpp"
 #include "mcdbn/drawing/render.hpp"
 #include "mcdbn/evaluation/distribution_fit.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/missing_values.hpp"
+#include "base/random_streams.hpp"
 #include "comparison/clip_pairs.hpp"
 #include "device/gemm.hpp"
 #include "device/optimizer.hpp"
@@ -17,7 +18,7 @@ namespace mcdbn {
 namespace {
 
 enum RandomPhase : std::uint16_t { kShufflePhase, kWeightPhase, kDropoutPhase };
-constexpr std::uint16_t kStream = 0x4d4c;
+constexpr std::uint16_t kStream = random_streams::kPerceptron;
 
 /// The clip with its ends repeated, so that every frame is the middle of a window.
 MatrixF extended(const MatrixF& track) {

@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "base/missing_values.hpp"
+#include "base/random_streams.hpp"
 #include "corpus/people.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/features/standardizer.hpp"
 
 namespace mcdbn {
 namespace {
-
-constexpr std::uint16_t kStream = 192;  // of random numbers
 
 /// Fewer views of much data: it varies by itself, and all views are kept in memory.
 std::size_t views_that_fit(const std::vector<LoadedClip>& clips, const CorpusSettings& settings) {
@@ -32,7 +31,7 @@ TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Mod
   const std::size_t count = views_that_fit(clips, settings);
   TrainingSet views{modalities, {}, {}, {}, {}};
   PeopleCount people;
-  RandomKey key{seed, 0, kStream, 0};
+  RandomKey key{seed, 0, random_streams::kAugmentedViews, 0};
   for (const auto& [clip, raw] : clips) {
     const std::size_t person = people.number_of(raw.skeleton);
     for (std::size_t i = 0; i < count; ++i, ++key.step) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/random_streams.hpp"
 #include "base/setting_checks.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
@@ -34,8 +35,6 @@ std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair
   for (const Pair& pair : pairs) blocks.push_back(&(pair.*member));
   return blocks;
 }
-
-constexpr std::uint16_t kStream = 196;  // of random numbers
 
 /// Views as fine-tuning will see them, for the scaling: what hardly moves in the clips may move
 /// in their views (the left arm of somebody who waves with the right one, seen in a mirror), and
@@ -71,7 +70,7 @@ TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const Corpus
   std::vector<TrainingClip> recorded;
   std::vector<Motion> motions;
   std::vector<AugmentedView> views;
-  RandomKey key{seed, 0, kStream, 0};
+  RandomKey key{seed, 0, random_streams::kScalingViews, 0};
   for (const LoadedClip& loaded : clips) {
     for (Motion& motion : resampled_phases(loaded.motion, settings))
       motions.push_back(std::move(motion));

@@ -13,15 +13,14 @@ namespace {
 
 /// Accumulator rows of one work-item: enough to hide the fma latency, few enough for the registers.
 int tile_rows_for(const Device& device, std::size_t rows) {
-  const int largest = device.info().is_gpu ? 4 : 10;
-  return std::min<int>(largest, to_int(std::max<std::size_t>(rows, 1)));
+  return std::min<int>(device.tuning().product_rows, to_int(std::max<std::size_t>(rows, 1)));
 }
 
 /// One work-item a tile; on a CPU one a group, as a tile is work enough for a core.
 LaunchSize tiles_of(const Rows& c, int vec, int tile_rows) {
   LaunchSize size{{ceil_divide(c.columns, static_cast<std::size_t>(vec)),
                    ceil_divide(c.count, static_cast<std::size_t>(tile_rows))}};
-  if (!c.matrix->device().info().is_gpu) size.local = {1, 1};
+  if (c.matrix->device().tuning().group == 1) size.local = {1, 1};
   return size;
 }
 
@@ -48,15 +47,11 @@ void gemm_own(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& op
   Device& device = c.matrix->device();
   const int vec = vector_width(device);
   const int tile_rows = tile_rows_for(device, c.count);
-  const int bias_kind = !options.bias ? 0 : options.bias->rows() == 1 ? 1 : 2;
-  cl::Kernel& kernel =
-      device.programs().kernel("gemm.cl", "gemm",
-                               {{"VEC", vec},
-                                {"TILE_ROWS", tile_rows},
-                                {"A_ROWS", a.index ? 1 : 0},
-                                {"BIAS", bias_kind},
-                                {"ACTIVATION", static_cast<int>(options.activation)},
-                                {"SAMPLE", static_cast<int>(options.sampling)}});
+  Defines defines = epilogue_defines(options);
+  defines["VEC"] = vec;
+  defines["TILE_ROWS"] = tile_rows;
+  defines["A_ROWS"] = a.index ? 1 : 0;
+  cl::Kernel& kernel = device.programs().kernel("gemm.cl", "gemm", defines);
   // Arguments that this variant does not read still need a buffer: C's own.
   const Matrix& bias = options.bias ? *options.bias : *c.matrix;
   const Rows& factor = options.factor ? *options.factor : c;
@@ -65,10 +60,10 @@ void gemm_own(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& op
          a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first), a.shift,
          b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(), c.stride(),
          to_int(c.count), to_int(c.columns), to_int(b.count), options.alpha, options.beta,
-         bias.buffer(), bias_kind == 2 ? to_int(options.bias_first * bias.stride()) : 0,
-         to_int(bias.stride()), factor.matrix->buffer(), factor.offset(), factor.stride(),
-         sample.matrix->buffer(), sample.offset(), sample.stride(), options.temperature,
-         options.kept_share, random_argument(options.random));
+         bias.buffer(), to_int(options.bias_first * bias.stride()), to_int(bias.stride()),
+         factor.matrix->buffer(), factor.offset(), factor.stride(), sample.matrix->buffer(),
+         sample.offset(), sample.stride(), options.temperature, options.kept_share,
+         random_argument(options.random));
 }
 
 /// Row-major product by CLBlast, which reads no index: indexed rows are gathered first.
@@ -98,10 +93,6 @@ void gemm_clblast(const Rows& a, const Rows& b, const Rows& c, float alpha, floa
   device.count_launch();
 }
 
-/// Rows of A and B summed in one go on a CPU: their columns stay in its caches while the tiles of C
-/// read them again and again, which doubles the speed of sums over thousands of rows.
-constexpr std::size_t kSummedRows = 128;
-
 Rows rows_from(Rows rows, std::size_t first, std::size_t count) {
   rows.count = count;
   if (rows.index)
@@ -114,7 +105,7 @@ Rows rows_from(Rows rows, std::size_t first, std::size_t count) {
 void add_transposed_a(const Rows& a, const Rows& b, const Rows& c, float alpha, float beta) {
   Device& device = c.matrix->device();
   const int vec = vector_width(device);
-  const int tile_rows = device.info().is_gpu ? 4 : 16;  // divides the column padding: no row test
+  const int tile_rows = device.tuning().transposed_rows;
   cl::Kernel& kernel = device.programs().kernel(
       "gemm.cl", "gemm_transposed_a",
       {{"VEC", vec}, {"TILE_ROWS", tile_rows}, {"A_ROWS", a.index ? 1 : 0}});
@@ -131,7 +122,35 @@ bool goes_to_clblast(const Rows& c, std::size_t k, GemmBackend backend) {
   return from > 0 && static_cast<std::int64_t>(c.count * c.columns * k) >= from;
 }
 
+/// As epilogue.clh calls them.
+const char* name_of(Activation activation) {
+  switch (activation) {
+    case Activation::sigmoid:
+      return "sigmoid";
+    case Activation::sigmoid_gradient:
+      return "sigmoid_gradient";
+    case Activation::relu:
+      return "relu";
+    case Activation::relu_gradient:
+      return "relu_gradient";
+    case Activation::centered_sigmoid:
+      return "centered_sigmoid";
+    case Activation::centered_sigmoid_gradient:
+      return "centered_sigmoid_gradient";
+    default:
+      return "none";
+  }
+}
+
 }  // namespace
+
+Defines epilogue_defines(const GemmOptions& options) {
+  return {{"BIAS", !options.bias               ? "none"
+                   : options.bias->rows() == 1 ? "row"
+                                               : "matrix"},
+          {"ACTIVATION", name_of(options.activation)},
+          {"SAMPLE", static_cast<int>(options.sampling)}};
+}
 
 void gemm(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& options) {
   require_operands(a, b, c, options);
@@ -157,8 +176,8 @@ void gemm_transposed_a(const Rows& a, const Rows& b, const Rows& c, float alpha,
     gemm_clblast(a, b, c, alpha, beta, clblast::Transpose::kYes);
     return;
   }
-  const bool is_gpu = c.matrix->device().info().is_gpu;
-  const std::size_t piece = is_gpu ? b.count : kSummedRows;
+  const auto summed = static_cast<std::size_t>(c.matrix->device().tuning().summed_rows);
+  const std::size_t piece = summed > 0 ? summed : b.count;
   std::size_t first = 0;
   do {
     const std::size_t count = std::min(piece, b.count - first);

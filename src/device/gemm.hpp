@@ -1,5 +1,6 @@
 #pragma once
 
+#include "device/program.hpp"
 #include "mcdbn/base/random.hpp"
 #include "mcdbn/device/matrix.hpp"
 
@@ -36,6 +37,9 @@ struct GemmOptions {
   RandomKey random;
   GemmBackend backend = GemmBackend::tuned;
 };
+
+/// What epilogue.clh is built with: BIAS, ACTIVATION, SAMPLE.
+Defines epilogue_defines(const GemmOptions& options);
 
 /// C = f(alpha·A·B + beta·C + bias). Enqueues and returns.
 /// @param a [m x k], possibly indexed  @param b [k x n]  @param c [m x n], not indexed

@@ -10,7 +10,7 @@ namespace mcdbn {
 double measure_peak_gflops(Device& device) {
   constexpr int kChains = 16, kIterations = 20000, kRuns = 15;
   const int vec = vector_width(device);
-  const std::size_t group = device.info().is_gpu ? 64 : 1;
+  const std::size_t group = static_cast<std::size_t>(default_tuning(device.info()).group);
   const std::size_t items = device.info().compute_units * group * 16;
   cl::Kernel& kernel =
       device.programs().kernel("peak.cl", "fma_loop", {{"VEC", vec}, {"CHAINS", kChains}});

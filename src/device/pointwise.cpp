@@ -21,20 +21,15 @@ cl::Kernel& units_kernel(Device& device, const char* name, Defines defines = {})
 
 void apply_epilogue(const Rows& c, const GemmOptions& options) {
   Device& device = c.matrix->device();
-  const int bias_kind = !options.bias ? 0 : options.bias->rows() == 1 ? 1 : 2;
   const Matrix& bias = options.bias ? *options.bias : *c.matrix;
   const Rows& factor = options.factor ? *options.factor : c;
   const Rows& sample = options.sample ? *options.sample : c;
-  cl::Kernel& kernel = units_kernel(device, "epilogue",
-                                    {{"BIAS", bias_kind},
-                                     {"ACTIVATION", static_cast<int>(options.activation)},
-                                     {"SAMPLE", static_cast<int>(options.sampling)}});
+  cl::Kernel& kernel = units_kernel(device, "epilogue", epilogue_defines(options));
   launch(device, kernel, pointwise_size(c), c.matrix->buffer(), c.offset(), c.stride(),
-         to_int(c.columns), bias.buffer(),
-         bias_kind == 2 ? to_int(options.bias_first * bias.stride()) : 0, to_int(bias.stride()),
-         factor.matrix->buffer(), factor.offset(), factor.stride(), sample.matrix->buffer(),
-         sample.offset(), sample.stride(), options.temperature, options.kept_share,
-         random_argument(options.random));
+         to_int(c.columns), bias.buffer(), to_int(options.bias_first * bias.stride()),
+         to_int(bias.stride()), factor.matrix->buffer(), factor.offset(), factor.stride(),
+         sample.matrix->buffer(), sample.offset(), sample.stride(), options.temperature,
+         options.kept_share, random_argument(options.random));
 }
 
 void gather(const Rows& rows, const Rows& out) {

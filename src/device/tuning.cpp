@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kKind = "tuning";
 
 std::string key_of(const DeviceInfo& info) {
-  return "1|" + info.platform_name + '|' + info.name + '|' + info.driver_version + '|' +
+  return "2|" + info.platform_name + '|' + info.name + '|' + info.driver_version + '|' +
          std::to_string(info.compute_units);
 }
 
@@ -24,6 +24,8 @@ bool makes_sense(const Tuning& tuning) {
   return is_one_of(tuning.vector_width, {1, 4, 8, 16}) && tuning.largest_rows >= 1 &&
          tuning.largest_rows <= 32 && tuning.accumulators >= 1 && tuning.accumulators <= 64 &&
          tuning.group >= 1 && tuning.group <= 256 && is_one_of(tuning.update_rows, {4, 8, 16}) &&
+         tuning.product_rows >= 1 && tuning.product_rows <= 16 &&
+         is_one_of(tuning.transposed_rows, {4, 8, 16}) && tuning.summed_rows >= 0 &&
          tuning.clblast_from >= 0;
 }
 
@@ -32,7 +34,14 @@ bool makes_sense(const Tuning& tuning) {
 Tuning default_tuning(const DeviceInfo& info) {
   if (!info.is_gpu) return {};
   // Single lanes that coalesce, of which four keep enough work in flight.
-  return {.vector_width = 4, .largest_rows = 4, .accumulators = 4, .group = 64, .update_rows = 4};
+  return {.vector_width = 4,
+          .largest_rows = 4,
+          .accumulators = 4,
+          .group = 64,
+          .update_rows = 4,
+          .product_rows = 4,
+          .transposed_rows = 4,
+          .summed_rows = 0};
 }
 
 std::vector<Tuning> tuning_candidates(const DeviceInfo& info, const Tuning& from) {
@@ -69,6 +78,9 @@ std::optional<Tuning> load_tuning(const DeviceInfo& info) {
     tuning.accumulators = json.at("accumulators");
     tuning.group = json.at("group");
     tuning.update_rows = json.at("update_rows");
+    tuning.product_rows = json.at("product_rows");
+    tuning.transposed_rows = json.at("transposed_rows");
+    tuning.summed_rows = json.at("summed_rows");
     tuning.clblast_from = json.at("clblast_from");
     if (makes_sense(tuning)) return tuning;
   } catch (const nlohmann::json::exception&) {
@@ -79,9 +91,11 @@ std::optional<Tuning> load_tuning(const DeviceInfo& info) {
 
 void store_tuning(const DeviceInfo& info, const Tuning& tuning) {
   const nlohmann::json json = {
-      {"vector_width", tuning.vector_width}, {"largest_rows", tuning.largest_rows},
-      {"accumulators", tuning.accumulators}, {"group", tuning.group},
-      {"update_rows", tuning.update_rows},   {"clblast_from", tuning.clblast_from}};
+      {"vector_width", tuning.vector_width},       {"largest_rows", tuning.largest_rows},
+      {"accumulators", tuning.accumulators},       {"group", tuning.group},
+      {"update_rows", tuning.update_rows},         {"product_rows", tuning.product_rows},
+      {"transposed_rows", tuning.transposed_rows}, {"summed_rows", tuning.summed_rows},
+      {"clblast_from", tuning.clblast_from}};
   write_cache_entry(kKind, key_of(info), json.dump());
 }
 

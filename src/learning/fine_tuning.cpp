@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/random_streams.hpp"
 #include "device/pointwise.hpp"
 #include "learning/divergence_guard.hpp"
 #include "learning/squared_loss.hpp"
@@ -17,8 +18,6 @@
 
 namespace mcdbn {
 namespace {
-
-constexpr std::uint16_t kDropoutStream = 194;  // of random numbers
 
 constexpr const char* kStage = "fine-tuning";
 
@@ -104,7 +103,7 @@ class FineTuner {
     const Rows pose = Rows::indexed(poses_.values, index_, 0, windows_.rows());
     const Rows track = Rows::indexed(tracks_.values, index_, windows_.rows(), windows_.rows());
     const auto kept = static_cast<float>(1.0 - settings_.dropout);
-    const RandomKey key{seed_, static_cast<std::uint32_t>(step), kDropoutStream, 0};
+    const RandomKey key{seed_, static_cast<std::uint32_t>(step), random_streams::kDropout, 0};
     network_.clear_gradients();
     gather(pose, pose_target_);
     forward_.forward(track, kept, key);

@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "base/random_streams.hpp"
 #include "device/pointwise.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/divergence_guard.hpp"
@@ -16,9 +17,6 @@ namespace {
 
 /// Phases of a layer's random numbers that Gibbs steps do not use (those count from 0).
 enum RandomPhase : std::uint16_t { kShufflePhase = 0x7000, kWeightPhase = 0x7100 };
-
-/// The random streams of Algorithm 1's parts.
-enum RandomStream : std::uint16_t { kPoseStream = 0, kTrackStream = 64, kMrbmStream = 128 };
 
 RandomKey key_of(const LearningSettings& learning, std::uint16_t stream, std::uint32_t step,
                  std::uint16_t phase) {
@@ -195,7 +193,7 @@ MrbmParameters small_weights(const Sequences& track, const Sequences& pose,
                              const LearningSettings& learning) {
   MrbmParameters initial = MrbmParameters::random(
       track.values.columns(), pose.values.columns(), learning.mrbm_hidden,
-      learning.mrbm.initial_deviation, key_of(learning, kMrbmStream, 0, kWeightPhase));
+      learning.mrbm.initial_deviation, key_of(learning, random_streams::kMrbm, 0, kWeightPhase));
   // So that the mean field starts near the codes' own means rather than at one half.
   initial.a = {logit(mean_of(track)), logit(mean_of(pose))};
   return initial;
@@ -287,13 +285,13 @@ Mcdbn train_greedy(Device& device, const PairedClips& clips, const LearningSetti
       total += crbm_cost(shape, settings_for(shape, learning));
   OverallProgress progress(observer, total);
   TrainedCdbn pose = train_cdbn(device, clips.poses, learning, start ? &start->pose : nullptr,
-                                kPoseStream, "pose", progress);
+                                random_streams::kPoseLayers, "pose", progress);
   TrainedCdbn track = train_cdbn(device, clips.tracks, learning, start ? &start->track : nullptr,
-                                 kTrackStream, "track", progress);
+                                 random_streams::kTrackLayers, "track", progress);
   Mrbm mrbm =
       train_mrbm(device, track.code, pose.code,
                  start ? start->mrbm.to_host() : small_weights(track.code, pose.code, learning),
-                 learning, kMrbmStream, progress.stage(last_cost));
+                 learning, random_streams::kMrbm, progress.stage(last_cost));
   return {std::move(track.cdbn), std::move(pose.cdbn), std::move(mrbm), learning.look_ahead,
           learning.mrbm.mean_field_steps};
 }

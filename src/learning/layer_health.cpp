@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machines/crbm_on_host.hpp"
+
 namespace mcdbn {
 namespace {
 
 constexpr float kSaturated = 0.01F;
 constexpr int kMeanFieldSteps = 3;
-
-MatrixF sigmoid(const MatrixF& x) {
-  return (1.0F + (-x.array()).exp()).inverse().matrix();
-}
 
 void measure_hidden(const MatrixF& probabilities, LayerHealth& health) {
   if (probabilities.size() == 0) return;
@@ -38,18 +36,6 @@ MatrixF history_of(const std::vector<MatrixF>& frames, std::size_t order) {
   return history;
 }
 
-MatrixF hidden_of(const CrbmParameters& p, const MatrixF& visible, const MatrixF& history) {
-  MatrixF input = visible * p.W + history * p.B;
-  input.rowwise() += p.b.row(0);
-  return sigmoid(input);
-}
-
-MatrixF visible_of(const CrbmParameters& p, const MatrixF& hidden, const MatrixF& history) {
-  MatrixF mean = hidden * p.W.transpose() + history * p.A;
-  mean.rowwise() += p.a.row(0);
-  return p.shape.kind == VisibleKind::binary ? sigmoid(mean) : mean;
-}
-
 /// Goes on from the true history; frames [order, order + kFreeRunFrames) are its own.
 double free_run_error(const CrbmParameters& p, const std::vector<MatrixF>& windows) {
   const std::size_t order = p.shape.order;
@@ -62,7 +48,7 @@ double free_run_error(const CrbmParameters& p, const std::vector<MatrixF>& windo
     MatrixF visible =
         order > 0 ? frames.back() : MatrixF(MatrixF::Zero(truth.rows(), truth.cols()));
     for (int step = 0; step < kMeanFieldSteps; ++step)
-      visible = visible_of(p, hidden_of(p, visible, history), history);
+      visible = visible_on_host(p, hidden_on_host(p, visible, history), history);
     sum += (visible - truth).cast<double>().squaredNorm() / static_cast<double>(truth.size());
     frames.push_back(std::move(visible));
   }
@@ -96,7 +82,7 @@ LayerHealth crbm_health(const CrbmParameters& parameters, const std::vector<Matr
   const MatrixF now = frames.back();
   frames.pop_back();
   const MatrixF history = order > 0 ? history_of(frames, order) : MatrixF(now.rows(), 0);
-  measure_hidden(hidden_of(parameters, now, history), health);
+  measure_hidden(hidden_on_host(parameters, now, history), health);
   health.free_run_error = free_run_error(parameters, windows);
   return health;
 }
@@ -107,7 +93,7 @@ LayerHealth mrbm_health(const MrbmParameters& parameters, const MatrixF& track,
   health.weight_norm = std::hypot(parameters.W[0].norm(), parameters.W[1].norm());
   MatrixF input = track * parameters.W[0] + pose * parameters.W[1];
   input.rowwise() += parameters.b.row(0);
-  measure_hidden(sigmoid(input), health);
+  measure_hidden(sigmoid_on_host(input), health);
   return health;
 }
 

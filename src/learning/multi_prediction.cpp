@@ -6,6 +6,7 @@
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
 #include "learning/contrastive_divergence.hpp"
+#include "machines/mean_field.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -119,17 +120,12 @@ void MultiPrediction::back_propagate(Modality present, bool add, LossAccumulator
   const auto hidden_error = [&](std::size_t t) { return Rows(hidden_errors_, (t - 1) * n, n); };
 
   // Forward, eq 32 and 33; block 0 of the values is zero.
-  GemmOptions bias;
-  bias.bias = &mrbm_.b;
-  gemm(target_[p], mrbm_.W[p], drive_, bias);
+  GemmOptions probabilities;
+  probabilities.activation = Activation::sigmoid;
+  drive_of(mrbm_, p, target_[p], drive_);
   for (std::size_t t = 1; t <= steps_; ++t) {
-    GemmOptions up, down;
-    up.bias = &drive_;
-    up.activation = Activation::sigmoid;
-    gemm(value(t - 1), W, hidden(t), up);
-    down.bias = &mrbm_.a[q];
-    down.activation = Activation::sigmoid;
-    gemm(hidden(t), Wt, value(t), down);
+    shared_units(mrbm_, q, value(t - 1), drive_, probabilities, hidden(t));
+    absent_units(mrbm_, q, hidden(t), probabilities, value(t));
   }
   losses.add_cross_entropy(q, target_[q], value(steps_), 1.0F / static_cast<float>(n * W.rows()));
 

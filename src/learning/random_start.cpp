@@ -2,12 +2,13 @@
 
 #include <cmath>
 
+#include "base/random_streams.hpp"
 #include "learning/unrolled_network.hpp"
 
 namespace mcdbn {
 namespace {
 
-constexpr std::uint16_t kStream = 195;  // of random numbers
+constexpr std::uint16_t kStream = random_streams::kFirstWeights;
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 
 #include "device/gemm.hpp"
 #include "device/pointwise.hpp"
+#include "machines/mean_field.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -122,18 +123,14 @@ void UnrolledPass::up_pass() {
 void UnrolledPass::mean_field() {
   const Mrbm& mrbm = network_.mrbm();
   const std::size_t p = index_of(present_), q = index_of(other(present_));
-  GemmOptions bias;
-  bias.bias = &mrbm.b;
-  gemm(up_.back(), mrbm.W[p], drive_, bias);
+  GemmOptions centered;
+  centered.activation = Activation::centered_sigmoid;
+  drive_of(mrbm, p, up_.back(), drive_);
   ++drop_out_key_.phase;
   for (std::size_t t = 1; t <= steps_; ++t) {
-    GemmOptions up, down;
-    up.bias = &drive_;
-    up.activation = down.activation = Activation::centered_sigmoid;
-    gemm(value(t - 1), mrbm.W[q], hidden(t), up);
+    shared_units(mrbm, q, value(t - 1), drive_, centered, hidden(t));
     drop_out(hidden(t), windows_.frames);  // the same units in every step
-    down.bias = &mrbm.a[q];
-    gemm(hidden(t), mrbm.W_transposed[q], value(t), down);
+    absent_units(mrbm, q, hidden(t), centered, value(t));
   }
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/random_streams.hpp"
+
 namespace mcdbn {
 namespace {
 
@@ -39,7 +41,7 @@ WindowSampler::WindowSampler(const PairedClips& clips, const SequenceWindows& wi
 std::vector<std::int32_t> WindowSampler::rows(std::size_t step) const {
   std::vector<std::int32_t> rows(2 * windows_.rows());
   for (std::size_t i = 0; i < windows_.count; ++i) {
-    const RandomKey key{seed_, static_cast<std::uint32_t>(step), kStream, 0};
+    const RandomKey key{seed_, static_cast<std::uint32_t>(step), random_streams::kWindows, 0};
     const auto row = static_cast<std::uint32_t>(i);
     const Sequences::Clip& clip = draw_clip(random_uniform(key, row, 0));
     const auto judged = windows_.frames - windows_.lead;

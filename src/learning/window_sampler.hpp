@@ -24,8 +24,6 @@ class WindowSampler {
   std::vector<std::int32_t> rows(std::size_t step) const;
 
  private:
-  static constexpr std::uint16_t kStream = 193;  ///< of random numbers
-
   const Sequences::Clip& draw_clip(float uniform) const;
 
   SequenceWindows windows_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/random_streams.hpp"
 #include "device/gemm.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -91,7 +92,7 @@ void CdbnDecoder::sample_top_layer(std::size_t frame, const RegenerationOptions&
   const Rows below_sample(below_sample_), top_sample(top_sample_);
   top.dynamic_visible_bias(state, below_bias_);
   top.dynamic_hidden_bias(state, top_bias_);
-  RandomKey key{options.seed, static_cast<std::uint32_t>(frame), kStream, 0};
+  RandomKey key{options.seed, static_cast<std::uint32_t>(frame), random_streams::kDecoder, 0};
   GemmOptions down, up;
   down.bias = &below_bias_;
   down.activation = activation_of(top);

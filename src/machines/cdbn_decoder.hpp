@@ -25,8 +25,6 @@ class CdbnDecoder {
   const Matrix& visible() const { return states_.front(); }
 
  private:
-  static constexpr std::uint16_t kStream = 200;  ///< of random numbers
-
   Rows at(const Matrix& matrix, std::size_t frame) const {
     return Rows::strided(matrix, frame, sequences_, frames_);
   }

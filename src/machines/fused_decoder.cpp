@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/random_streams.hpp"
 #include "device/kernel_arguments.hpp"
 #include "machines/cdbn_decoder.hpp"
 
@@ -74,7 +75,8 @@ void CdbnDecoder::fused_samples(std::size_t first, std::size_t last,
     below_bias_ = Matrix(top.device(), rows, top.shape().visible);
     top_bias_ = Matrix(top.device(), rows, top.shape().hidden);
   }
-  const RandomKey key{options.seed, 0, kStream, 0};  // the kernel fills in the frame and the phase
+  const RandomKey key{options.seed, 0, random_streams::kDecoder,
+                      0};  // the kernel fills in the frame and the phase
   launch(top.device(), decoder_kernel(top, "decode_samples", tile), size_for(sequences_, tile),
          states_.back().buffer(), code_.buffer(), to_int(sequences_), to_int(frames_),
          to_int(first), to_int(last), top.W.buffer(), top.W_transposed.buffer(), top.A.buffer(),

@@ -8,6 +8,7 @@
 #include "device/gemm.hpp"
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
+#include "machines/mean_field.hpp"
 
 namespace mcdbn {
 namespace {
@@ -24,10 +25,8 @@ std::optional<RowTile> choose_tile(const Mrbm& mrbm, std::size_t rows) {
 }
 
 /// The epilogue of a pass: probabilities, and with a temperature their draws in their place.
-GemmOptions units_options(const Matrix& bias, const Rows& units, const MrbmChainOptions& options,
-                          std::size_t pass) {
+GemmOptions units_options(const Rows& units, const MrbmChainOptions& options, std::size_t pass) {
   GemmOptions epilogue;
-  epilogue.bias = &bias;
   epilogue.activation = Activation::sigmoid;
   if (options.temperature == 0.0F) return epilogue;
   epilogue.sampling = options.sampling;
@@ -103,27 +102,23 @@ void MrbmChain::fused(const Rows& present, const MrbmChainOptions& options, cons
 
 void MrbmChain::composed(const Rows& present, const MrbmChainOptions& options, const Rows& absent) {
   const Rows drive(drive_, 0, present.count), hidden(hidden_, 0, present.count);
-  GemmOptions bias;
-  bias.bias = &mrbm_.b;
-  gemm(present, mrbm_.W[present_], drive, bias);
+  drive_of(mrbm_, present_, present, drive);
   for (std::size_t step = 0; step < options.steps; ++step) {
-    const GemmOptions up = units_options(drive_, hidden, options, 2 * step);
+    const GemmOptions up = units_options(hidden, options, 2 * step);
     if (step > 0) {
-      gemm(absent, mrbm_.W[absent_], hidden, up);
+      shared_units(mrbm_, absent_, absent, drive_, up, hidden);
     } else if (options.doubled) {
-      gemm(present, mrbm_.W[present_], hidden, up);
+      shared_units(mrbm_, present_, present, drive_, up, hidden);
     } else {
-      GemmOptions drive_alone = up;
-      drive_alone.bias = nullptr;
       hidden_.copy_rows_from(drive_, 0, present.count, 0);
-      apply_epilogue(hidden, drive_alone);
+      apply_epilogue(hidden, up);
     }
-    GemmOptions down = units_options(mrbm_.a[absent_], absent, options, 2 * step + 1);
+    GemmOptions down = units_options(absent, options, 2 * step + 1);
     if (step + 1 == options.steps) {
       down.sampling = Sampling::none;
       down.sample = nullptr;
     }
-    gemm(hidden, mrbm_.W_transposed[absent_], absent, down);
+    absent_units(mrbm_, absent_, hidden, down, absent);
   }
 }
 

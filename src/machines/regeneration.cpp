@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/missing_values.hpp"
+#include "base/random_streams.hpp"
 #include "device/gemm.hpp"
 #include "machines/cdbn_decoder.hpp"
 #include "machines/mrbm_chain.hpp"
@@ -40,7 +41,6 @@ Matrix repeated(const Matrix& code, std::size_t sequences, std::size_t copies) {
 /// @param track_code sequences of one length  @return [sequences·samples·frames x dimension]
 Matrix infer_pose_code(const Mcdbn& network, const Sequences& track_code,
                        const RegenerationOptions& options) {
-  constexpr std::uint16_t kStream = 201;  // of random numbers; the decoder has 200
   const std::size_t tracks = track_code.clips.size();
   const std::size_t frames = track_code.values.rows() / tracks, first = track_code.valid_from,
                     end = frames - network.look_ahead;
@@ -69,7 +69,7 @@ Matrix infer_pose_code(const Mcdbn& network, const Sequences& track_code,
   MrbmChain inference(network.mrbm, Modality::track, rows);
   for (std::size_t frame = first; frame < end; ++frame) {
     const auto step = options.sampling.steady ? 0U : static_cast<std::uint32_t>(frame);
-    chain.random = {options.seed, step, kStream, 0};
+    chain.random = {options.seed, step, random_streams::kMrbmChain, 0};
     inference.run(Rows::indexed(track_code.values, index, 0, rows,
                                 static_cast<int>(frame + network.look_ahead)),
                   chain, Rows::strided(code, frame, rows, frames));

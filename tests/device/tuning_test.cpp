@@ -32,7 +32,7 @@ DeviceInfo some_device(std::string driver = {}) {
   return info;
 }
 
-const Tuning kTuned{8, 10, 12, 1, 8, 1000};
+const Tuning kTuned{8, 10, 12, 1, 8, 5, 8, 64, 1000};
 
 }  // namespace
 

@@ -18,6 +18,12 @@ struct Tuning {
   int accumulators = 24;  ///< vectors that a work-item of a fused chain sums up at once, at most
   int group = 1;          ///< work-items that share a block of rows
   int update_rows = 16;   ///< rows of a gradient's tile: 4, 8 or 16
+  int product_rows = 10;  ///< of a tile of A·B: enough to hide the fma latency, within registers
+  int transposed_rows = 16;  ///< of a tile of Aᵀ·B; divides the column padding, so no row test
+  /// Rows of A and B that Aᵀ·B sums in one go: their columns stay in a CPU's caches while the tiles
+  /// of C read them again and again, which doubles the speed of sums over thousands of rows. 0:
+  /// all.
+  int summed_rows = 128;
   /// Products of at least so many multiply-adds go to CLBlast; 0: none.
   std::int64_t clblast_from = 0;
   bool operator==(const Tuning&) const = default;

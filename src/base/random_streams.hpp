@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+
+namespace mcdbn {
+
+/// RandomKey::stream of everything that draws numbers from one seed: no two may share one, or they
+/// would draw the same.
+namespace random_streams {
+
+inline constexpr std::uint16_t kPoseLayers = 0;    ///< and one more for each further layer
+inline constexpr std::uint16_t kTrackLayers = 64;  ///< likewise
+inline constexpr std::uint16_t kMrbm = 128;
+inline constexpr std::uint16_t kAugmentedViews = 192;
+inline constexpr std::uint16_t kWindows = 193;  ///< which windows make a mini-batch
+inline constexpr std::uint16_t kDropout = 194;  ///< of fine-tuning
+inline constexpr std::uint16_t kFirstWeights = 195;
+inline constexpr std::uint16_t kScalingViews =
+    196;  ///< those that the features' scale is learnt from
+inline constexpr std::uint16_t kDecoder = 200;
+inline constexpr std::uint16_t kMrbmChain = 201;
+inline constexpr std::uint16_t kPerceptron = 0x4d4c;  ///< and the next for each layer's drop-out
+
+}  // namespace random_streams
+}  // namespace mcdbn
