@@ -97,7 +97,7 @@ UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t
       mean_field_steps_(mean_field_steps),
       parameters_(device, parameter_shapes(start)),
       optimizer_(parameters_, OptimizerKind::adam),
-      mrbm_(parameters_.part(kMrbmPrefix), centered(start.mrbm.to_host())),
+      mrbm_(parameters_.part(kMrbmPrefix)),
       mrbm_gradient_(parameters_.in(optimizer_.gradients()).part(kMrbmPrefix)),
       limit_(parameters_),
       averages_(Matrix::like(parameters_.all())),
@@ -109,6 +109,7 @@ UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t
       layers(modality).emplace_back(parameters_.part(prefix), gradients.part(prefix),
                                     centered(layer.to_host()));
     }
+  centered(start.mrbm.to_host()).write(mrbm_.parameters());
   averages_.copy_from(parameters_.all());
   refresh_copies();
 }

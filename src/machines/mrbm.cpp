@@ -15,15 +15,12 @@ std::size_t columns_of(const MatrixF& matrix) {
   return static_cast<std::size_t>(matrix.cols());
 }
 
-std::array<std::size_t, 2> visible_of(const MrbmParameters& start) {
-  return {columns_of(start.a[0]), columns_of(start.a[1])};
-}
-
-std::vector<ParameterShape> transposed_shapes(const std::array<std::size_t, 2>& visible,
-                                              std::size_t hidden) {
+std::vector<ParameterShape> transposed_shapes(const Parameters& parameters) {
   std::vector<ParameterShape> shapes;
-  for (std::size_t m = 0; m < visible.size(); ++m)
-    shapes.push_back({.name = kModalityNames[m], .rows = hidden, .columns = visible[m]});
+  for (const std::string name : kModalityNames) {
+    const ParameterShape& W = parameters.entry("W_" + name);
+    shapes.push_back({.name = name, .rows = W.columns, .columns = W.rows});
+  }
   return shapes;
 }
 
@@ -43,7 +40,23 @@ std::vector<std::int32_t> layout_of(const Parameters& parameters, const Paramete
   return layout;
 }
 
+Parameters uploaded(Device& device, const MrbmParameters& start) {
+  Parameters parameters(device,
+                        Mrbm::parameter_shapes({columns_of(start.a[0]), columns_of(start.a[1])},
+                                               columns_of(start.b)));
+  start.write(parameters);
+  return parameters;
+}
+
 }  // namespace
+
+void MrbmParameters::write(Parameters to) const {
+  for (std::size_t m = 0; m < 2; ++m) {
+    to.upload(std::string("W_") + kModalityNames[m], W[m]);
+    to.upload(std::string("a_") + kModalityNames[m], a[m]);
+  }
+  to.upload("b", b);
+}
 
 MrbmParameters MrbmParameters::random(std::size_t track, std::size_t pose, std::size_t hidden,
                                       double deviation, const RandomKey& key) {
@@ -83,23 +96,19 @@ std::vector<ParameterShape> Mrbm::parameter_shapes(const std::array<std::size_t,
   return shapes;
 }
 
-Mrbm::Mrbm(Device& device, const MrbmParameters& start)
-    : Mrbm(Parameters(device, parameter_shapes(visible_of(start), columns_of(start.b))), start) {}
+Mrbm::Mrbm(Device& device, const MrbmParameters& start) : Mrbm(uploaded(device, start)) {}
 
-Mrbm::Mrbm(const Parameters& place, const MrbmParameters& start)
-    : parameters_(place),
-      transposed_(place.device(), transposed_shapes(visible_of(start), columns_of(start.b))),
-      layout_(place.device(), layout_of(parameters_, transposed_)),
-      b(place.matrix("b")) {
+Mrbm::Mrbm(const Parameters& parameters)
+    : parameters_(parameters),
+      transposed_(parameters.device(), transposed_shapes(parameters)),
+      layout_(parameters.device(), layout_of(parameters_, transposed_)),
+      b(parameters.matrix("b")) {
   for (std::size_t m = 0; m < 2; ++m) {
     const std::string name = kModalityNames[m];
-    parameters_.upload("W_" + name, start.W[m]);
-    parameters_.upload("a_" + name, start.a[m]);
-    W[m] = place.matrix("W_" + name);
-    a[m] = place.matrix("a_" + name);
+    W[m] = parameters.matrix("W_" + name);
+    a[m] = parameters.matrix("a_" + name);
     W_transposed[m] = transposed_.matrix(name);
   }
-  parameters_.upload("b", start.b);
   refresh_transposed();
 }
 

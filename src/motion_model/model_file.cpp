@@ -25,18 +25,26 @@ CrbmShape shape_from(const json& entry) {
           entry.at("kind") == "gaussian" ? VisibleKind::gaussian : VisibleKind::binary};
 }
 
+void put(Safetensors& file, const std::string& prefix, const Parameters& parameters) {
+  for (const ParameterShape& shape : parameters.entries())
+    file.put(prefix + shape.name, parameters.to_host(shape.name));
+}
+
+void get(const Safetensors& file, const std::string& path, const std::string& prefix,
+         Parameters parameters) {
+  for (const ParameterShape& shape : parameters.entries())
+    parameters.upload(shape.name,
+                      file.get(prefix + shape.name, path, static_cast<Eigen::Index>(shape.rows),
+                               static_cast<Eigen::Index>(shape.columns)));
+}
+
 json put_cdbn(Safetensors& file, const std::string& name, const Cdbn& cdbn) {
   json shapes = json::array();
   for (std::size_t i = 0; i < cdbn.layers.size(); ++i) {
-    const CrbmParameters parameters = cdbn.layers[i].to_host();
     const std::string prefix = fmt::format("{}.{}.", name, i);
-    file.put(prefix + "W", parameters.W);
-    file.put(prefix + "A", parameters.A);
-    file.put(prefix + "B", parameters.B);
-    file.put(prefix + "a", parameters.a);
-    file.put(prefix + "b", parameters.b);
-    file.put(prefix + "visible_mean", parameters.visible_mean);
-    shapes.push_back(shape_json(parameters.shape));
+    put(file, prefix, cdbn.layers[i].parameters());
+    file.put(prefix + "visible_mean", cdbn.layers[i].visible_mean.to_host());
+    shapes.push_back(shape_json(cdbn.layers[i].shape()));
   }
   return shapes;
 }
@@ -45,46 +53,26 @@ Cdbn get_cdbn(Device& device, const Safetensors& file, const std::string& path,
               const std::string& name, const json& shapes) {
   Cdbn cdbn;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    CrbmParameters parameters = CrbmParameters::zeros(shape_from(shapes[i]));
     const std::string prefix = fmt::format("{}.{}.", name, i);
-    const auto fill = [&](const char* letter, MatrixF& matrix) {
-      matrix = file.get(prefix + letter, path, matrix.rows(), matrix.cols());
-    };
-    fill("W", parameters.W);
-    fill("A", parameters.A);
-    fill("B", parameters.B);
-    fill("a", parameters.a);
-    fill("b", parameters.b);
-    fill("visible_mean", parameters.visible_mean);
-    cdbn.layers.emplace_back(device, parameters);
+    CrbmParameters start = CrbmParameters::zeros(shape_from(shapes[i]));
+    start.visible_mean = file.get(prefix + "visible_mean", path, 1, start.visible_mean.cols());
+    Crbm& layer = cdbn.layers.emplace_back(device, start);
+    get(file, path, prefix, layer.parameters());
+    layer.refresh_transposed();
   }
   if (cdbn.layers.empty())
     throw InputError(path + ": a CDBN without layers; train the model again");
   return cdbn;
 }
 
-constexpr std::array<const char*, 2> kModalityNames{"track", "pose"};
-
-void put_mrbm(Safetensors& file, const Mrbm& mrbm) {
-  const MrbmParameters parameters = mrbm.to_host();
-  for (std::size_t m = 0; m < 2; ++m) {
-    file.put(fmt::format("mrbm.W_{}", kModalityNames[m]), parameters.W[m]);
-    file.put(fmt::format("mrbm.a_{}", kModalityNames[m]), parameters.a[m]);
-  }
-  file.put("mrbm.b", parameters.b);
-}
+constexpr const char* kMrbmPrefix = "mrbm.";
 
 Mrbm get_mrbm(Device& device, const Safetensors& file, const std::string& path,
               const std::array<std::size_t, 2>& visible, std::size_t hidden) {
-  const auto h = static_cast<Eigen::Index>(hidden);
-  MrbmParameters parameters;
-  for (std::size_t m = 0; m < 2; ++m) {
-    const auto v = static_cast<Eigen::Index>(visible[m]);
-    parameters.W[m] = file.get(fmt::format("mrbm.W_{}", kModalityNames[m]), path, v, h);
-    parameters.a[m] = file.get(fmt::format("mrbm.a_{}", kModalityNames[m]), path, 1, v);
-  }
-  parameters.b = file.get("mrbm.b", path, 1, h);
-  return {device, parameters};
+  Mrbm mrbm(Parameters(device, Mrbm::parameter_shapes(visible, hidden)));
+  get(file, path, kMrbmPrefix, mrbm.parameters());
+  mrbm.refresh_transposed();
+  return mrbm;
 }
 
 json sampling_json(const SamplingRule& rule) {
@@ -152,7 +140,7 @@ void save_model(const std::filesystem::path& path, const Model& model) {
   about["format_version"] = kFormatVersion;
   about["track"] = put_cdbn(file, "track", model.network.track);
   about["pose"] = put_cdbn(file, "pose", model.network.pose);
-  put_mrbm(file, model.network.mrbm);
+  put(file, kMrbmPrefix, model.network.mrbm.parameters());
   about["mrbm_hidden"] = model.network.mrbm.hidden();
   about["look_ahead"] = model.network.look_ahead;
   about["mean_field_steps"] = model.network.mean_field_steps;

@@ -27,6 +27,8 @@ struct MrbmParameters {
                                double deviation, const RandomKey& key);
   /// What stands in a machine's buffer (Mrbm::parameter_shapes), or in one of gradients.
   static MrbmParameters read(const Parameters& from);
+  /// @throws ShapeError
+  void write(Parameters to) const;
 };
 
 /// Two binary RBMs that share their hidden layer (eq 18 to 23).
@@ -37,8 +39,9 @@ class Mrbm {
                                                       std::size_t hidden);
 
   Mrbm(Device& device, const MrbmParameters& start);
-  /// In parameters that stand among those of a larger machine. @throws ShapeError
-  Mrbm(const Parameters& place, const MrbmParameters& start);
+  /// Of these parameters as they are, of parameter_shapes(); they may stand among those of a larger
+  /// machine. @throws ShapeError
+  explicit Mrbm(const Parameters& parameters);
   MrbmParameters to_host() const;
   std::size_t visible(Modality modality) const { return W[index_of(modality)].rows(); }
   std::size_t hidden() const { return b.columns(); }
