@@ -17,8 +17,14 @@ inline constexpr std::uint16_t kDropout = 194;  ///< of fine-tuning
 inline constexpr std::uint16_t kFirstWeights = 195;
 inline constexpr std::uint16_t kScalingViews =
     196;  ///< those that the features' scale is learnt from
+inline constexpr std::uint16_t kDrawnPairs = 197;  ///< of a report
 inline constexpr std::uint16_t kDecoder = 200;
 inline constexpr std::uint16_t kMrbmChain = 201;
+// Of tracks: augmented views' and evaluations'.
+inline constexpr std::uint16_t kPixelNoise = 202;
+inline constexpr std::uint16_t kMissingJoints = 203;
+inline constexpr std::uint16_t kHiddenArm = 204;
+inline constexpr std::uint16_t kHiddenLimbs = 205;
 inline constexpr std::uint16_t kPerceptron = 0x4d4c;  ///< and the next for each layer's drop-out
 
 }  // namespace random_streams

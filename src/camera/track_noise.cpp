@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
+#include "base/random_sequence.hpp"
+
+#include "base/random_streams.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -69,12 +71,9 @@ void add_pixel_noise(Track2d& track, double deviation_px, std::uint64_t seed) {
     throw ConfigError(fmt::format("pixel noise is {}; give 0 or more pixels", deviation_px));
   }
   if (deviation_px == 0) return;
-  std::mt19937_64 generator(seed);
-  std::normal_distribution<double> noise_px(0.0, deviation_px);
-  for (MatrixD* coordinate_px : {&track.x_px, &track.y_px}) {
-    *coordinate_px =
-        coordinate_px->unaryExpr([&](double value) { return value + noise_px(generator); });
-  }
+  RandomSequence random(seed, random_streams::kPixelNoise);
+  for (MatrixD* coordinate_px : {&track.x_px, &track.y_px})
+    for (double& value : coordinate_px->reshaped()) value += deviation_px * random.normal();
 }
 
 void drop_joints(Track2d& track, double share, std::uint64_t seed) {
@@ -82,11 +81,10 @@ void drop_joints(Track2d& track, double share, std::uint64_t seed) {
     throw ConfigError(fmt::format("the share of missing joints is {}; give 0 to 1", share));
   }
   if (share == 0) return;
-  std::mt19937_64 generator(seed);
-  std::bernoulli_distribution missing(share);
+  RandomSequence random(seed, random_streams::kMissingJoints);
   for (Eigen::Index frame = 0; frame < track.frames(); ++frame) {
     for (Eigen::Index joint = 0; joint < track.joint_count(); ++joint) {
-      if (missing(generator)) hide(track, frame, joint);
+      if (random.chance(share)) hide(track, frame, joint);
     }
   }
 }
@@ -102,7 +100,7 @@ std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, doub
   std::vector<int> limbs = branches.children[chest];
   std::stable_sort(limbs.begin(), limbs.end(),
                    [&](int a, int b) { return branches.reach[a] > branches.reach[b]; });
-  const int shoulder = limbs[std::mt19937_64(seed)() % 2];
+  const int shoulder = limbs[RandomSequence(seed, random_streams::kHiddenArm).below(2)];
   const auto frames = std::min<Eigen::Index>(track.frames(), std::lround(seconds * track.fps));
   const Eigen::Index first = (track.frames() - frames) / 2;
   std::vector<std::string> names;
@@ -124,32 +122,27 @@ void hide_limbs(Track2d& track, const Skeleton& skeleton, std::uint64_t seed) {
       limbs.push_back(std::move(columns));
   }
   if (limbs.empty()) return;
-  std::mt19937_64 generator(seed);
-  const auto uniform = [&](double from, double to) {
-    return std::uniform_real_distribution<double>(from, to)(generator);
-  };
+  RandomSequence random(seed, random_streams::kHiddenLimbs);
   const double duration_s = track.frames() / track.fps;
   const auto times = static_cast<int>(std::lround(std::max(1.0, duration_s / kEvery_s)));
   for (int i = 0; i < times; ++i) {
-    const auto limb = static_cast<std::size_t>(uniform(0.0, static_cast<double>(limbs.size())));
-    const double from_s = uniform(-kShortest_s, duration_s);
-    const double to_s = from_s + uniform(kShortest_s, kLongest_s);
+    const std::vector<int>& limb = limbs[random.below(limbs.size())];
+    const double from_s = random.uniform(-kShortest_s, duration_s);
+    const double to_s = from_s + random.uniform(kShortest_s, kLongest_s);
     const auto last = std::min<Eigen::Index>(track.frames(), std::lround(to_s * track.fps));
     for (auto frame = std::max<Eigen::Index>(0, std::lround(from_s * track.fps)); frame < last;
          ++frame)
-      for (const int column : limbs[std::min(limb, limbs.size() - 1)]) hide(track, frame, column);
+      for (const int column : limb) hide(track, frame, column);
   }
 }
 
 void damage_track(Track2d& track, const Skeleton& skeleton, const TrackDamage& damage,
                   std::uint64_t seed) {
-  // Seeds that nothing else uses: whoever sees the track must not draw the same numbers.
-  std::seed_seq sequence{seed & 0xffffffffU, seed >> 32U, std::uint64_t{0x74726163}};
-  std::uint32_t seeds[3];
-  sequence.generate(std::begin(seeds), std::end(seeds));
-  add_pixel_noise(track, damage.noise_px, seeds[0]);
-  drop_joints(track, damage.missing_share, seeds[1]);
-  hide_arm(track, skeleton, damage.hidden_s, seeds[2]);
+  // A seed that nothing else uses: whoever sees the track must not draw the same numbers.
+  const std::uint64_t own = mixed_seed({seed, 0x74726163});
+  add_pixel_noise(track, damage.noise_px, own);
+  drop_joints(track, damage.missing_share, own);
+  hide_arm(track, skeleton, damage.hidden_s, own);
 }
 
 }  // namespace mcdbn

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/random_sequence.hpp"
 #include "camera/track_noise.hpp"
 #include "motion/body_size.hpp"
 #include "motion/mirror.hpp"
@@ -97,9 +98,9 @@ AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacemen
   add_pixel_noise(
       view.track,
       2.0 * uniform(key, kNoise) * settings.noise_px * size_px(view.track) / kUsualSize_px,
-      key.seed + key.step);
+      mixed_seed({key.seed, key.step}));
   if (uniform(key, kMissing) < settings.missing)
-    hide_limbs(view.track, view.motion.skeleton, key.seed + key.step);
+    hide_limbs(view.track, view.motion.skeleton, mixed_seed({key.seed, key.step}));
   return view;
 }
 

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
+#include "base/random_sequence.hpp"
+#include "base/random_streams.hpp"
 #include "evaluation/pairwise.hpp"
 #include "evaluation/sample_spread.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -25,12 +26,13 @@ void check(const std::string& action, const Clips& clips) {
                                    clips[0]->joints, clips[0]->samples.size()));
 }
 
-/// `count` of the values, each at most once, in their order.
+/// `count` of the values, each at most once, in their order (Knuth's algorithm S).
 std::vector<double> drawn(const std::vector<double>& values, std::size_t count,
                           std::uint64_t seed) {
   std::vector<double> chosen;
-  std::mt19937_64 engine(seed);
-  std::sample(values.begin(), values.end(), std::back_inserter(chosen), count, engine);
+  RandomSequence random(seed, random_streams::kDrawnPairs);
+  for (std::size_t i = 0; i < values.size() && chosen.size() < count; ++i)
+    if (random.below(values.size() - i) < count - chosen.size()) chosen.push_back(values[i]);
   return chosen;
 }
 

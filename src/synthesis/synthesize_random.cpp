@@ -4,34 +4,10 @@
 #include <numbers>
 
 namespace mcdbn::synthesis {
-namespace {
-
-/// Steele, Lea and Flood's finaliser: neighbouring seeds give unrelated streams.
-std::uint64_t split_mix(std::uint64_t z) {
-  z += 0x9e3779b97f4a7c15ULL;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
-}
-
-}  // namespace
-
-Random::Random(std::initializer_list<std::uint64_t> keys) {
-  std::uint64_t state = 0;
-  for (const std::uint64_t key : keys) state = split_mix(state ^ key);
-  engine_.seed(state);
-}
-
-double Random::uniform(double low, double high) {
-  const double unit = static_cast<double>(engine_() >> 11) * 0x1p-53;
-  return low + (high - low) * unit;
-}
-
 double Random::normal(double mean, double deviation) {
   constexpr double kLimit = 2.0;
   while (true) {
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(0, 1)));
-    const double z = radius * std::cos(uniform(0, 2 * std::numbers::pi));
+    const double z = RandomSequence::normal();
     if (std::abs(z) <= kLimit) return mean + deviation * z;
   }
 }

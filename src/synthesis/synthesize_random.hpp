@@ -3,24 +3,19 @@
 #include <array>
 #include <cstdint>
 #include <initializer_list>
-#include <random>
+
+#include "base/random_sequence.hpp"
 
 namespace mcdbn::synthesis {
 
-/// std::mt19937_64 with transforms of our own: the standard's distributions differ between
-/// libraries, so the same seed would give other clips elsewhere.
-class Random {
+/// What synthesis draws from.
+class Random : public RandomSequence {
  public:
   /// Independent streams for different keys (seed, subject, clip, …).
-  explicit Random(std::initializer_list<std::uint64_t> keys);
+  explicit Random(std::initializer_list<std::uint64_t> keys) : RandomSequence(mixed_seed(keys)) {}
 
-  double uniform(double low, double high);
   /// Normal, redrawn beyond 2 deviations so that nobody walks on stilts.
   double normal(double mean, double deviation);
-  bool chance(double probability) { return uniform(0, 1) < probability; }
-
- private:
-  std::mt19937_64 engine_;
 };
 
 /// Smooth drift around 0: a sum of sinusoids of unrelated frequencies.

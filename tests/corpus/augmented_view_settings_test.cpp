@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/random_sequence.hpp"
 #include "camera/track_noise.hpp"
 #include "corpus/no_augmentation.hpp"
 #include "mcdbn/corpus/augmentation.hpp"
@@ -106,9 +107,9 @@ void check_camera_and_track(const AugmentedView& view, const AugmentationSetting
   CHECK(view.camera.fy_px == camera.fy_px);
   Track2d track = project_motion(view.motion, camera);
   add_pixel_noise(track, 2.0 * share(key, 4) * settings.noise_px * figure_px(track) / 200.0,
-                  key.seed + key.step);
+                  mixed_seed({key.seed, key.step}));
   if (share(key, 7) < settings.missing)
-    hide_limbs(track, view.motion.skeleton, key.seed + key.step);
+    hide_limbs(track, view.motion.skeleton, mixed_seed({key.seed, key.step}));
   REQUIRE(track.x_px.rows() == view.track.x_px.rows());
   const MatrixD x = view.track.x_px - track.x_px, y = view.track.y_px - track.y_px;
   CHECK(x.array().isNaN().cast<int>().sum() == track.x_px.array().isNaN().cast<int>().sum());
