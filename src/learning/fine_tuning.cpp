@@ -202,14 +202,14 @@ EpochReport report_of(std::size_t done, const FineTuningSettings& settings, doub
 
 }  // namespace
 
-FineTuned fine_tune(Device& device, const Mcdbn& start, const PairedClips& clips,
-                    const std::optional<PairedClips>& held_out, const LearningSettings& settings,
+FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& source,
+                    const SequenceSource* held_out, const LearningSettings& settings,
                     const SequenceLossMaker& make_loss, const EpochObserver& observer) {
   const std::size_t steps = settings.fine_tuning.steps;
   const SequenceWindows windows = sequence_windows(start, settings.fine_tuning);
   std::optional<HeldOutWindows> judged;
-  if (held_out) judged.emplace(device, *held_out, windows, settings, make_loss);
-  FineTuner tuner(device, start, clips, windows, settings, make_loss);
+  if (held_out) judged.emplace(device, held_out->sequences(), windows, settings, make_loss);
+  FineTuner tuner(device, start, source.sequences(), windows, settings, make_loss);
   HeldOutRecord record;
   DivergenceGuard guard(
       kStage, fmt::format("lower --fine-tuning-rate (now {:g})", settings.fine_tuning.rate));

@@ -275,9 +275,10 @@ Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
   return mrbm;
 }
 
-Mcdbn train_greedy(Device& device, const PairedClips& clips, const LearningSettings& learning,
+Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningSettings& learning,
                    const EpochObserver& observer, const Mcdbn* start) {
   learning.validate();
+  const PairedClips clips = source.sequences();
   const double last_cost = mrbm_cost(learning.hidden, learning.hidden, learning);
   double total = last_cost;
   for (const Eigen::Index dimension : {clips.poses.front().cols(), clips.tracks.front().cols()})

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "mcdbn/base/random.hpp"
-#include "mcdbn/learning/paired_clips.hpp"
 #include "mcdbn/learning/sequence_loss.hpp"
+#include "mcdbn/learning/sequence_source.hpp"
 #include "mcdbn/learning/settings.hpp"
 #include "mcdbn/machines/sequences.hpp"
 

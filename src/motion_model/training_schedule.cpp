@@ -36,20 +36,18 @@ TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Mod
   return make_augmented_views(clips, modalities, config, config.seed);
 }
 
-PairedClips paired_clips(const TrainingSet& set) {
-  return {set.tracks, set.poses, set.people};
-}
-
 TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& views,
                          const TrainingConfig& config, const EpochObserver& observer) {
   const SequenceLossMaker make_loss = pose_loss_maker(views.modalities, config.pose_loss);
   const auto person = person_to_hold_out(views, config.hold_out_among);
   if (!person)
-    return {fine_tune(device, start, paired_clips(views), {}, config, make_loss, observer).network,
-            {}};
+    return {
+        fine_tune(device, start, ClipSource(views), nullptr, config, make_loss, observer).network,
+        {}};
   const TrainingSet others = views_without(views, *person), stranger = views_of(views, *person);
-  FineTuned tuned = fine_tune(device, start, paired_clips(others), paired_clips(stranger), config,
-                              make_loss, observer);
+  const ClipSource judges(stranger);
+  FineTuned tuned =
+      fine_tune(device, start, ClipSource(others), &judges, config, make_loss, observer);
   return {std::move(tuned.network),
           EarlyStopping{clip_names(stranger), tuned.kept->steps, tuned.kept->loss}};
 }
@@ -57,18 +55,16 @@ TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& 
 TrainedNetwork train_network(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
                              const TrainingConfig& config, const EpochObserver& observer) {
   if (config.fine_tuning.steps == 0)
-    return {train_greedy(device, paired_clips(data), config, observer), {}};
-  const TrainingSet views = make_augmented_views(clips, data.modalities, config);
-  clips = {};
+    return {train_greedy(device, ClipSource(data), config, observer), {}};
+  const ViewSource views(std::move(clips), data.modalities, config);
   Mcdbn start = random_start(device, static_cast<std::size_t>(data.tracks.front().cols()),
                              static_cast<std::size_t>(data.poses.front().cols()), config);
   double greedy_share = 0.0;  // of the time, about
   if (config.fine_tuning.from_greedy) {
     greedy_share = 0.1;
-    start = train_greedy(device, paired_clips(views), config,
-                         part_of_run(observer, 0.0, greedy_share), &start);
+    start = train_greedy(device, views, config, part_of_run(observer, 0.0, greedy_share), &start);
   }
-  return fine_tune(device, start, views, config, part_of_run(observer, greedy_share, 1.0));
+  return fine_tune(device, start, views.views(), config, part_of_run(observer, greedy_share, 1.0));
 }
 
 }  // namespace mcdbn

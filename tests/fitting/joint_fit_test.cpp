@@ -10,8 +10,8 @@
 #include "fitting/frame_fit.hpp"
 #include "fitting/root_trajectory.hpp"
 #include "fitting/track_smoothing.hpp"
+#include "fitting/two_second_walk.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/foot_joints.hpp"
 
 using namespace mcdbn;
@@ -70,7 +70,7 @@ MatrixD disturbed(MatrixD features, const FramePrior& prior, unsigned seed) {
 /// @param seed 0: the answer is the truth
 Scene make_scene(unsigned seed = 1, int frames = 60, double scale = 1) {
   Scene scene;
-  scene.truth = synthesize({.seconds = 2});
+  scene.truth = test::two_second_walk();
   scene.truth.channels.conservativeResize(frames, Eigen::NoChange);
   scene.truth.channels.leftCols<3>() *= scale;
   for (Joint& joint : scene.truth.skeleton.joints) {
@@ -338,10 +338,16 @@ TEST_CASE("joint fit: a joint that the tracker swapped is let go of") {
   // The hand itself falls back on the answer; the others must not pay.
   CHECK(spoiled < error(scene, scene.features) / 2);
   CHECK(clean < spoiled);
-  // For single frames it does not even do that.
-  swapped = scene.track;
-  swapped.x_px(20, hand) += 300;
-  CHECK(error(scene, scene.fit(swapped)) < 1.1 * clean);
+  // For single frames it does not even do that; by how much differs from answer to answer.
+  double clean_sum = 0, swapped_sum = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const Scene other = make_scene(seed);
+    swapped = other.track;
+    swapped.x_px(20, hand) += 300;
+    clean_sum += error(other, other.fit());
+    swapped_sum += error(other, other.fit(swapped));
+  }
+  CHECK(swapped_sum < 1.1 * clean_sum);
 }
 
 TEST_CASE("joint fit: noise is smoothed away, not followed") {

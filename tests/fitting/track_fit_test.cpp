@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "features/clip_modalities.hpp"
+#include "fitting/two_second_walk.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/synthesis/synthesize.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -29,7 +29,7 @@ struct Scene {
   PosePrior prior = PosePrior::around(with_wrong_forearms());
 
   static Motion short_walk() {
-    Motion walk = synthesize({.seconds = 2});
+    Motion walk = test::two_second_walk();
     walk.channels.conservativeResize(kFrames, Eigen::NoChange);
     return walk;
   }

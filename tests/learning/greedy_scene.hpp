@@ -136,8 +136,8 @@ inline LearningSettings settings_of(const reference::GreedyPlan& plan) {
 
 inline Mcdbn train_on_device(Device& device, const GreedyScene& scene,
                              const EpochObserver& observer = {}, const Mcdbn* start = nullptr) {
-  return train_greedy(device, {scene.tracks, scene.poses, {}}, settings_of(scene.plan), observer,
-                      start);
+  return train_greedy(device, MatrixSource(scene.tracks, scene.poses), settings_of(scene.plan),
+                      observer, start);
 }
 
 inline std::vector<MatrixD> in_double(const std::vector<MatrixF>& clips) {

@@ -176,7 +176,7 @@ TEST_CASE("greedy stages before fine-tuning go on from its own starting weights"
       make_augmented_views(load_clips(run.files), run.data->modalities, run.config);
   on_every_device([&](Device& device) {
     const Mcdbn start = run.start(device);
-    const Mcdbn still = train_greedy(device, paired_clips(views), run.config, {}, &start);
+    const Mcdbn still = train_greedy(device, ClipSource(views), run.config, {}, &start);
     const auto difference = [](const Matrix& a, const Matrix& b) {
       return (a.to_host() - b.to_host()).cwiseAbs().maxCoeff();
     };
@@ -190,7 +190,7 @@ TEST_CASE("greedy stages before fine-tuning go on from its own starting weights"
     }
     CHECK(difference(start.mrbm.W[0], still.mrbm.W[0]) < 1e-5);
     CHECK(difference(start.mrbm.a[1], still.mrbm.a[1]) < 1e-5);
-    const Mcdbn alone = train_greedy(device, paired_clips(views), run.config);
+    const Mcdbn alone = train_greedy(device, ClipSource(views), run.config);
     CHECK(difference(start.pose.layers[0].W, alone.pose.layers[0].W) > 0.1);
   });
 }

@@ -94,7 +94,7 @@ TEST_CASE("without fine-tuning the greedy stages learn the clips as they are") {
     std::vector<EpochReport> reports;
     const TrainedNetwork trained =
         small.train(device, config, [&](const EpochReport& report) { reports.push_back(report); });
-    CHECK(same_network(trained.network, train_greedy(device, paired_clips(small.data), config)));
+    CHECK(same_network(trained.network, train_greedy(device, ClipSource(small.data), config)));
     CHECK(trained.network.fills_gaps);
     CHECK(trained.network.mean_field_steps == 4);
     CHECK_FALSE(trained.early_stopping);
@@ -111,7 +111,7 @@ TEST_CASE("fine-tuning goes on from what the greedy stages made of its start and
         device, small.config, [&](const EpochReport& report) { reports.push_back(report); });
     const TrainingSet views = small.views(small.config);
     const Mcdbn start = small.start(device, small.config);
-    const Mcdbn greedy = train_greedy(device, paired_clips(views), small.config, {}, &start);
+    const Mcdbn greedy = train_greedy(device, ClipSource(views), small.config, {}, &start);
     CHECK(same_network(trained.network, fine_tune(device, greedy, views, small.config).network));
     CHECK_FALSE(trained.network.fills_gaps);
     CHECK(trained.network.mean_field_steps == 2);
@@ -181,7 +181,7 @@ TEST_CASE("a run's seed reaches its views, its start, its greedy stages and its 
                           const TrainingConfig& greedy_config, const TrainingSet& tuned_views,
                           const TrainingConfig& tuned_config) {
       const Mcdbn greedy =
-          train_greedy(device, paired_clips(greedy_views), greedy_config, {}, &greedy_start);
+          train_greedy(device, ClipSource(greedy_views), greedy_config, {}, &greedy_start);
       return fine_tune(device, greedy, tuned_views, tuned_config).network;
     };
     CHECK(same_network(trained.network, from(views, start, other, views, other)));

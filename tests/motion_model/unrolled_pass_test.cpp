@@ -257,7 +257,7 @@ TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
   const Windows windows(figure.dimension());
   const reference::UnrolledModel model = small.in_double();
   // Weights that let every part of the loss matter about as much.
-  const PoseLossWeights weights{1.0, 0.02, 0.004, 0.004, kPlantedBelow_m_s};
+  const PoseLossWeights weights{1.0, 0.02, 0.004, 0.004};
   const MatrixD none = MatrixD::Zero(static_cast<Eigen::Index>(kWindows.frames),
                                      static_cast<Eigen::Index>(figure.dimension()));
   const auto planted =

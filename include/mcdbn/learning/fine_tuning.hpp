@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "mcdbn/learning/epoch_report.hpp"
-#include "mcdbn/learning/paired_clips.hpp"
 #include "mcdbn/learning/sequence_loss.hpp"
+#include "mcdbn/learning/sequence_source.hpp"
 #include "mcdbn/learning/settings.hpp"
 #include "mcdbn/machines/mcdbn.hpp"
 
@@ -28,11 +28,11 @@ struct FineTuned {
 /// 2D weighs most; the other direction stays trained. The result is the moving average of the
 /// parameters: the last one or, where clips are held out, the last one before those fared worse.
 /// The observer may throw to stop.
-/// @param held_out clips that are not learnt from and say when to stop
+/// @param held_out sequences that are not learnt from and say when to stop, or none
 /// @param make_loss of the 3D modality
 /// @throws DivergenceError saying what to lower
-FineTuned fine_tune(Device& device, const Mcdbn& start, const PairedClips& clips,
-                    const std::optional<PairedClips>& held_out, const LearningSettings& settings,
+FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& source,
+                    const SequenceSource* held_out, const LearningSettings& settings,
                     const SequenceLossMaker& make_loss, const EpochObserver& observer = {});
 
 }  // namespace mcdbn

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "mcdbn/learning/epoch_report.hpp"
-#include "mcdbn/learning/paired_clips.hpp"
+#include "mcdbn/learning/sequence_source.hpp"
 #include "mcdbn/learning/settings.hpp"
 #include "mcdbn/machines/mcdbn.hpp"
 
@@ -16,7 +16,7 @@ namespace mcdbn {
 /// The observer may throw to stop.
 /// @param start weights to start from; nothing: small random ones, as the settings' deviations say
 /// @throws DivergenceError saying what to lower
-Mcdbn train_greedy(Device& device, const PairedClips& clips, const LearningSettings& learning,
+Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningSettings& learning,
                    const EpochObserver& observer = {}, const Mcdbn* start = nullptr);
 
 /// One layer of Algorithm 1: CD-k on every window of `visible` for settings.epochs epochs.

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "mcdbn/learning/epoch_report.hpp"
-#include "mcdbn/learning/paired_clips.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
 #include "mcdbn/motion_model/training_config.hpp"
+#include "mcdbn/motion_model/training_sources.hpp"
 
 namespace mcdbn {
 
@@ -21,9 +21,6 @@ TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const Traini
 /// make_augmented_views likewise.
 TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Modalities& modalities,
                                  const TrainingConfig& config);
-
-/// A training set as `learning` takes it; `set` must live on.
-PairedClips paired_clips(const TrainingSet& set);
 
 /// Fine-tuning with the loss on poses (PoseLoss). Of at least config.hold_out_among people one is
 /// held out (person_to_hold_out) and says when to stop.
