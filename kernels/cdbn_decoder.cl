@@ -5,6 +5,11 @@
 // [V_LD wide] and `code` [H_LD wide]; work is done for frames first … last − 1, and the frames before
 // `first` are history. Compile-time: VISIBLE, HIDDEN, ORDER (at least 1), GAUSSIAN, ROWS, COLUMNS,
 // GROUP (tile.clh).
+//
+// Variants that `scripts/lint kernels` compiles:
+//   VEC=1,4,8,16 GAUSSIAN=0,1 GROUP=1,64 SAMPLE=
+//   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
+//   VISIBLE=1,97 HIDDEN=1,97 ORDER=1,5 GAUSSIAN=0,1
 
 #undef SAMPLE
 #define SAMPLE 1

@@ -12,6 +12,11 @@
 //   visible, hidden                    the same at the chain's end
 //   visible_change, hidden_change      data − end; dynamic biases while the chain runs
 //   loss[row]                          Σ (v data − v end)²
+//
+// Variants that `scripts/lint kernels` compiles:
+//   VEC=1,4,8,16 GAUSSIAN=0,1 GROUP=1,64 SAMPLE=
+//   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
+//   VISIBLE=1,97 HIDDEN=1,97 ORDER=0,1,5 GAUSSIAN=0,1
 
 #undef SAMPLE
 #define SAMPLE 1

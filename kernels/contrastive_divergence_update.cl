@@ -7,6 +7,10 @@
 // global: (tiles + 1). Compile-time: crbm_shape.clh, TILE_ROWS (divides 16), OPTIMIZER.
 // parameters_at: the first floats of W, A, B, a and b. The optimizer descends, so its gradient
 // is the chain's end less the data.
+//
+// Variants that `scripts/lint kernels` compiles:
+//   VEC=1,4,8,16 TILE_ROWS=4,8,16 GAUSSIAN= SAMPLE=
+//   VISIBLE=1,97 HIDDEN=1,97 ORDER=0,1,5 OPTIMIZER=none,momentum,adam
 
 #include "units.clh"
 #include "crbm_shape.clh"

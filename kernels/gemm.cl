@@ -9,6 +9,12 @@
 // f is the epilogue (epilogue.clh).
 // One work-item makes TILE_ROWS x VEC of C, its accumulators in registers.
 // global: (ceil(n / VEC), ceil(rows of C / TILE_ROWS))
+//
+// Variants that `scripts/lint kernels` compiles:
+//   VEC=1,4,8,16 TILE_ROWS=1,4,10,16 A_ROWS=0,1
+//   VEC=1,16 A_ROWS=1 ACTIVATION=none,sigmoid,relu,centered_sigmoid,sigmoid_gradient,relu_gradient,centered_sigmoid_gradient
+//   BIAS=none,row,matrix ACTIVATION=none,sigmoid,relu,centered_sigmoid,sigmoid_gradient,relu_gradient,centered_sigmoid_gradient SAMPLE=0,1,2,3
+//   VEC=1,4,8,16 SAMPLE=0,1,2,3
 
 #include "epilogue.clh"
 

@@ -14,6 +14,9 @@
 //   columns    int4 for each block pair: see column_of
 //   scale      float2 for each raw feature: mean, deviation
 // global: (rows, 1)
+//
+// Variants that `scripts/lint kernels` compiles:
+//   DIMENSION=1,97 LD=112 BONES=1,20 FEET=1,4 VELOCITY=0,85
 
 #ifndef DIMENSION
 #define DIMENSION 96

@@ -13,6 +13,11 @@
 // With a temperature other than 0 units are drawn as SAMPLE says, 1 or 3 (tile.clh), phase
 // 2 · step for the hidden ones and 2 · step + 1 for the absent ones; the last step's absent ones stay
 // probabilities.
+//
+// Variants that `scripts/lint kernels` compiles:
+//   VEC=1,4,8,16 SAMPLE=1,3 GROUP=1,64 STEPS=
+//   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
+//   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97
 
 #if SAMPLE != 3
 #undef SAMPLE

@@ -9,6 +9,11 @@
 // another; rows past `rows` have errors of zero. Of a modality: codes [1 block], the mini-batch; values
 // and value_errors [STEPS blocks]. Of direction d: hidden, hidden_errors [STEPS blocks at d · STEPS],
 // drive, drive_errors [1 block at d], loss[d · stride + row] = Σ cross-entropy of the row.
+//
+// Variants that `scripts/lint kernels` compiles:
+//   VEC=1,4,8,16 STEPS=1,10 GROUP=1,64 SAMPLE=
+//   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
+//   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97
 
 #include "tile.clh"
 #include "mrbm_shape.clh"

@@ -10,6 +10,11 @@
 //   after, and codesᵀ·drive_errors of each other direction. partial[piece][tile][TILE_ROWS][VEC].
 // multi_prediction_update: global (tiles + 1). loss_sums[m] is of the direction in which m is absent.
 // Compile-time: mrbm_shape.clh, TILE_ROWS (divides 16), PIECE_ROWS, OPTIMIZER.
+//
+// Variants that `scripts/lint kernels` compiles:
+//   VEC=1,4,8,16 TILE_ROWS=4,8,16 PIECE_ROWS=256 SAMPLE=
+//   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97 STEPS=1,10
+//   OPTIMIZER=none,momentum,adam
 
 #include "units.clh"
 #include "mrbm_shape.clh"

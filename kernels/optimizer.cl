@@ -1,6 +1,9 @@
 // What is done to the parameters of a machine in training, pointwise over floats of its buffers
 // (optimizer.clh); padding columns hold zeros and stay so, as their gradients are zero.
 // global: (floats / VEC)
+//
+// Variants that `scripts/lint kernels` compiles:
+//   VEC=1,4,8,16 SCALED=,1 OPTIMIZER=none,momentum,adam SAMPLE=
 
 #include "units.clh"
 #include "optimizer.clh"

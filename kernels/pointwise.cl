@@ -1,5 +1,10 @@
 // Pointwise work on whole matrices, row-major, leading dimensions in floats, padding columns zero.
 // global: (ceil(columns / VEC), rows) unless a kernel says otherwise.
+//
+// Variants that `scripts/lint kernels` compiles:
+//   BIAS=none,row,matrix ACTIVATION=none,sigmoid,relu,centered_sigmoid,sigmoid_gradient,relu_gradient,centered_sigmoid_gradient SAMPLE=0,1,2,3
+//   VEC=1,4,8,16 ACTIVATION=none,sigmoid,relu,centered_sigmoid,sigmoid_gradient,relu_gradient,centered_sigmoid_gradient
+//   VEC=1,4,8,16 SAMPLE=0,1,2,3
 
 #include "epilogue.clh"
 

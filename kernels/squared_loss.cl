@@ -4,6 +4,9 @@
 // A window is `frames` rows, of which those from `lead` on count; there are `count` windows. Rows of
 // `prediction`, `target` and `error` are LD wide. Compile-time: DIMENSION, LD (a row's length).
 // global: (rows)
+//
+// Variants that `scripts/lint kernels` compiles:
+//   DIMENSION=1,97 LD=112
 
 #ifndef DIMENSION
 #define DIMENSION 43
