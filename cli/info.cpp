@@ -11,7 +11,7 @@
 #include "commands.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/track.hpp"
-#include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
 
 namespace mcdbn::cli {
@@ -34,7 +34,7 @@ json describe_clip(const fs::path& path) {
 }
 
 json describe_track(const fs::path& path) {
-  const Track2d track = read_track_csv(path);
+  const Track2d track = read_track(path);
   return {{"kind", "2D track"},
           {"joints", track.joint_names},
           {"frames", track.frames()},
@@ -51,12 +51,12 @@ json describe(const fs::path& path) {
   std::ranges::transform(extension, extension.begin(),
                          [](unsigned char letter) { return std::tolower(letter); });
   if (extension == ".bvh") return describe_clip(path);
-  if (extension == ".csv") return describe_track(path);
   if (extension == ".safetensors") {
     json description = describe_model(path);
     description["kind"] = "trained model";
     return description;
   }
+  if (fs::is_regular_file(path) && track_format_of(path) != nullptr) return describe_track(path);
   throw InputError(fmt::format("{}: unknown kind of file; give a .bvh, a .csv or a .safetensors",
                                path.string()));
 }

@@ -9,7 +9,7 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
-#include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "sampling_options.hpp"
 
@@ -41,7 +41,7 @@ void run_regenerate(const CommandContext& context, const RegenerateOptions& opti
   const RegenerationOptions regeneration =
       options.sampling.regeneration(model.network, context.seed);
   TrackFeatures::FillCount filled;
-  const Track2d track = read_track_csv(options.input);
+  const Track2d track = read_track(options.input);
   const auto motions = regenerate_clip(model, track, placement, regeneration, &filled);
   if (filled.interpolated + filled.missing > 0)
     spdlog::info("{}: {} missing joints interpolated over short gaps, {} inferred from the others",

@@ -26,6 +26,7 @@
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/learning/epoch_report.hpp"
 #include "mcdbn/learning/fine_tuning.hpp"
 #include "mcdbn/learning/greedy_schedule.hpp"

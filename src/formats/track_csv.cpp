@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/text_file.hpp"
+#include "formats/track_formats.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -246,6 +247,19 @@ void write_track_csv(const std::filesystem::path& path, const Track2d& track) {
     text += '\n';
   }
   write_text_file(path, text);
+}
+
+TrackFormat track_csv_format() {
+  return {"csv", "columns joint_x_px, joint_y_px, joint_confidence and time_s",
+          [](std::string_view start) {
+            const std::string_view text =
+                start.starts_with("\xEF\xBB\xBF") ? start.substr(3) : start;
+            for (const std::string_view line : split(text, '\n'))
+              if (!line.empty() && line.front() != '#')
+                return line.find("_x_px") != std::string_view::npos;
+            return false;
+          },
+          read_track_csv, write_track_csv};
 }
 
 }  // namespace mcdbn

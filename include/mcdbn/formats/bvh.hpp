@@ -1,6 +1,7 @@
 // The room formats: files of motion, tracks and cameras.
 // It uses camera.
-// Add here: a format: a header here, a source file of its own (track_csv.cpp shows the pattern).
+// Add here: a format: a source file of its own (track_csv.cpp shows the pattern) and a line in
+// track_file.cpp.
 #pragma once
 
 #include <filesystem>
