@@ -106,7 +106,7 @@ MatrixF mean_of(const Sequences& sequences) {
 
 /// Work of a stage in multiply-adds, to show progress over all of them.
 double crbm_cost(const CrbmShape& shape, const CdSettings& settings) {
-  const double v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
+  const auto v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
   const double histories = 2.0 * static_cast<double>(shape.order) * v * (v + h);
   return static_cast<double>(settings.epochs) *
          (histories + (2.0 * static_cast<double>(settings.gibbs_steps) + 3.0) * v * h);
