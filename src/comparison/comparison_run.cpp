@@ -188,8 +188,8 @@ ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
   // The root's own columns are zero on both sides: they would flatter the flattened figure.
   const auto joints = real.cols() - 3;
   score.pcc_flat = pearson_flat(real.rightCols(joints), other.rightCols(joints));
-  // Along the camera's axes (DESIGN section 2): along the world's own a walk straight ahead has
-  // channels in which next to nothing moves.
+  // Along the camera's axes (docs/concepts.md, PCC): along the world's own a walk straight ahead
+  // has channels in which next to nothing moves.
   const Eigen::Matrix3d& axes = truth.camera.camera_from_world;
   score.pcc_channel = pearson_per_channel(turned(real.rightCols(joints), axes),
                                           turned(other.rightCols(joints), axes));

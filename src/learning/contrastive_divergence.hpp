@@ -22,8 +22,8 @@ CdRule cd_rule_for(const CdSettings& settings, std::size_t epoch);
 std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& shape,
                                          std::size_t batch);
 
-/// Contrastive divergence for one CRBM or RBM (Algorithm 2 with its errata: the data are clamped
-/// once, then k Gibbs steps, then one update; DESIGN section 2). Hidden units are sampled,
+/// Contrastive divergence for one CRBM or RBM (Algorithm 2 with its errata, docs/paper.md: the data
+/// are clamped once, then k Gibbs steps, then one update). Hidden units are sampled,
 /// reconstructions of the visible ones are means, the last hidden step keeps probabilities.
 ///
 /// A mini-batch is two launches (contrastive_divergence.cl, contrastive_divergence_update.cl) where

@@ -46,7 +46,7 @@ struct Call {
   }
 };
 
-/// The defaults are written out here once more, as the help and the README say them.
+/// The defaults are written out here once more, as the help says them.
 std::vector<std::string> by_library(const Call& call) {
   const mcdbn::Model model = load_model(usual_device(), call.model);
   mcdbn::ClipPlacement placement;

@@ -207,7 +207,7 @@ TEST_CASE("Weibull: 95 % confidence intervals hold the truth 95 times in 100") {
 }
 
 TEST_CASE("weibull_kl: the paper's Table 7 from its printed parameters, columns swapped") {
-  // The table's k is the scale and its l the shape; DESIGN section 2.
+  // The table's k is the scale and its l the shape (docs/paper.md, errata).
   CHECK(std::abs(weibull_kl({12.637, 0.9150}, {14.0953, 0.9456}) - 0.0843) < 5e-5);
   CHECK(std::abs(weibull_kl({10.8301, 0.8799}, {29.5768, 0.9760}) - 2.2619) < 5e-5);
   CHECK(std::abs(weibull_kl({4.6649, 0.7684}, {6.9702, 0.9073}) - 0.4576) < 5e-5);

@@ -10,7 +10,7 @@
 
 namespace mcdbn {
 
-/// How motion and 2D tracks become the network's standardized rows and back (DESIGN section 3).
+/// How motion and 2D tracks become the network's standardized rows and back (docs/concepts.md).
 struct Modalities {
   PoseFeatures pose_features;
   TrackFeatures track_features;

@@ -11,9 +11,9 @@ namespace mcdbn {
 
 /// The 3D modality: for every joint whose rotation varies over the training clips its orientation
 /// in the camera's frame, 6D (first two columns of camera_from_joint), then root height and root
-/// velocity in the camera's frame, in metres on a 1.7 m body (and per second). DESIGN section 3.
-/// The moving root always has its 6D block; joints that never turn against their parent carry no
-/// feature and are restored exactly.
+/// velocity in the camera's frame, in metres on a 1.7 m body (and per second). See
+/// docs/concepts.md. The moving root always has its 6D block; joints that never turn against their
+/// parent carry no feature and are restored exactly.
 class PoseFeatures {
  public:
   /// Learns which joints move, and the constant channels of all others, from training clips that

@@ -22,7 +22,7 @@ struct RegenerationOptions {
   double drawn_share() const { return temperature * sampling.scale; }
 };
 
-/// Algorithms 3 and 5 with their errata (DESIGN section 2): up-pass of the 2D CDBN, mean field (or
+/// Algorithms 3 and 5 with their errata (docs/paper.md): up-pass of the 2D CDBN, mean field (or
 /// a sampled chain) of the MRBM, down-pass of the 3D CDBN with the code clamped, each frame's
 /// history being what was regenerated before. All tracks and samples run as one batch, without a
 /// host round trip a frame.
