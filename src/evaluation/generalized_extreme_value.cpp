@@ -20,25 +20,27 @@ GeneralizedExtremeValue from_search(const Eigen::Vector3d& at) {
   return {at(0), std::exp(at(1)), at(2)};
 }
 
-/// What the search makes smallest: −log likelihood, +infinity where the distribution is not
-/// allowed.
+/// What the search makes smallest: −log likelihood, and where the distribution is not allowed a
+/// number above all others, as OpenCV takes no infinity.
 class Cost : public cv::MinProblemSolver::Function {
  public:
   explicit Cost(const Eigen::VectorXd& samples) : samples_(samples) {}
 
   int getDims() const override { return 3; }
   double calc(const double* at) const override {
-    return at[0] < -1
-               ? kInfinity
-               : -from_search(Eigen::Map<const Eigen::Vector3d>(at)).log_likelihood(samples_);
+    constexpr double kNotAllowed = 1e300;
+    if (at[0] < -1) return kNotAllowed;
+    const double cost =
+        -from_search(Eigen::Map<const Eigen::Vector3d>(at)).log_likelihood(samples_);
+    return cost < kNotAllowed ? cost : kNotAllowed;
   }
 
  private:
   const Eigen::VectorXd& samples_;
 };
 
-/// By the simplex method of Nelder and Mead, which needs no derivatives and takes +infinity. It may
-/// stop on a slope, so it starts over from where it stopped until that gains nothing.
+/// By the simplex method of Nelder and Mead, which needs no derivatives. It may stop on a slope, so
+/// it starts over from where it stopped until that gains nothing.
 Eigen::Vector3d smallest(const cv::Ptr<Cost>& cost, Eigen::Vector3d at) {
   constexpr int kStarts = 10, kEvaluations = 4000;
   constexpr double kStep = 0.1, kSmallestGain = 1e-9;
