@@ -93,7 +93,7 @@ Panel::Panel(std::vector<const Figure*> figures, std::string label, const Render
   }
 }
 
-/// Every point of every frame, [1 x 3·points]; about the root's place where the camera follows it.
+/// Every point of every frame, [1 x 3·points]; about the root where the camera follows it.
 MatrixD Panel::framed_points() const {
   std::vector<double> all;
   for (const Figure* figure : figures_) {
@@ -208,7 +208,7 @@ double duration_s(const std::vector<Figure>& figures) {
   return longest;
 }
 
-/// A file that is written beside its final place; removed again unless it was put there.
+/// A file that is written beside its final path; removed again unless it was put there.
 class PartialFile {
  public:
   explicit PartialFile(const fs::path& path)

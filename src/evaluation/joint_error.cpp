@@ -45,7 +45,7 @@ MatrixD procrustes_residual(const Eigen::Ref<const RowVectorD>& truth,
   const Points source(regenerated.data(), 3, regenerated.size() / 3);
   const Eigen::Vector3d centre = source.rowwise().mean();
   const bool one_point = (source.colwise() - centre).squaredNorm() == 0;
-  // A body that is a single point has no orientation and no size: only its place can be fitted.
+  // A body that is a single point has no orientation and no size: only its position can be fitted.
   const Eigen::Matrix4d fit =
       one_point ? Eigen::Affine3d(Eigen::Translation3d(target.rowwise().mean() - centre)).matrix()
                 : Eigen::Matrix4d(Eigen::umeyama(source, target, true));

@@ -6,9 +6,9 @@
 
 namespace mcdbn {
 
-/// A joint's place as the 6D features say it: that of the joint it hangs on plus a lever that turns
-/// with one block. As the blocks are orientations in the camera's frame and not those against the
-/// parent, places are sums of turned levers.
+/// A joint's position as the 6D features say it: that of the joint it hangs on plus a lever that
+/// turns with one block. As the blocks are orientations in the camera's frame and not those against
+/// the parent, positions are sums of turned levers.
 struct PoseBone {
   int parent = -1;  ///< index of the bone that it starts from, -1: the root
   int block = 0;    ///< which 6D block turns it

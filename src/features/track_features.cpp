@@ -14,7 +14,7 @@ namespace mcdbn {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr int kPlaceFeatures = 3;  ///< x and y of the root, log size
+constexpr int kRootFeatures = 3;  ///< x and y of the root, log size
 
 /// Pixels of the joints in use, the root last; NaN where missing. Each [frames x joints + 1].
 struct Pixels {
@@ -170,7 +170,7 @@ TrackFeatures TrackFeatures::for_skeleton(const Skeleton& skeleton, int root) {
 }
 
 int TrackFeatures::dimension() const {
-  return 2 * static_cast<int>(joint_names_.size()) + kPlaceFeatures;
+  return 2 * static_cast<int>(joint_names_.size()) + kRootFeatures;
 }
 
 std::vector<std::string> TrackFeatures::feature_names() const {

@@ -47,8 +47,8 @@ Cursor::Cursor(std::string_view text, std::string name, std::vector<std::string>
 }
 
 void Cursor::skip_space(bool across_lines) {
-  for (; place_ < text_.size(); ++place_) {
-    const char c = text_[place_];
+  for (; position_ < text_.size(); ++position_) {
+    const char c = text_[position_];
     if (c == '\n') {
       if (!across_lines) return;
       ++line_;
@@ -60,31 +60,32 @@ void Cursor::skip_space(bool across_lines) {
 
 bool Cursor::at_end() {
   skip_space(true);
-  return place_ == text_.size();
+  return position_ == text_.size();
 }
 
 bool Cursor::at_line_end() {
   skip_space(false);
-  return place_ == text_.size() || text_[place_] == '\n';
+  return position_ == text_.size() || text_[position_] == '\n';
 }
 
 std::string_view Cursor::next() {
   if (at_end()) return {};
-  const std::size_t begin = place_;
-  if (is_brace(text_[begin])) return text_.substr(place_++, 1);
-  while (place_ < text_.size()) {
-    const char c = text_[place_];
+  const std::size_t begin = position_;
+  if (is_brace(text_[begin])) return text_.substr(position_++, 1);
+  while (position_ < text_.size()) {
+    const char c = text_[position_];
     if (is_space(c) || c == '\n' || is_brace(c)) break;
-    ++place_;
+    ++position_;
   }
-  return text_.substr(begin, place_ - begin);
+  return text_.substr(begin, position_ - begin);
 }
 
 std::string_view Cursor::rest_of_line() {
   skip_space(false);
-  const std::size_t begin = place_;
-  while (place_ < text_.size() && text_[place_] != '\n' && !is_brace(text_[place_])) ++place_;
-  std::string_view rest = text_.substr(begin, place_ - begin);
+  const std::size_t begin = position_;
+  while (position_ < text_.size() && text_[position_] != '\n' && !is_brace(text_[position_]))
+    ++position_;
+  std::string_view rest = text_.substr(begin, position_ - begin);
   while (!rest.empty() && is_space(rest.back())) rest.remove_suffix(1);
   return rest;
 }

@@ -25,7 +25,7 @@ class Cursor {
   /// Consumes the next word as a finite number. @param what for the message
   double number(std::string_view what);
 
-  std::size_t bytes_left() const { return text_.size() - place_; }
+  std::size_t bytes_left() const { return text_.size() - position_; }
   int line() const { return line_; }
   [[noreturn]] void fail(std::string_view what) const { fail_at(line_, what); }
   [[noreturn]] void fail_at(int line, std::string_view what) const;
@@ -37,7 +37,7 @@ class Cursor {
   std::string_view text_;
   std::string name_;
   std::vector<std::string>* warnings_;
-  std::size_t place_ = 0;
+  std::size_t position_ = 0;
   int line_ = 1;
 };
 

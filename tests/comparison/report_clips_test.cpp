@@ -135,15 +135,15 @@ TEST_CASE("what a report is told of a clip") {
     std::vector<std::string> points = names;
     points.emplace_back("Neck end");
     CHECK(clip.point_names == points);
-    const auto place = [&](const std::string& name) {
+    const auto index_of = [&](const std::string& name) {
       return static_cast<int>(std::find(points.begin(), points.end(), name) - points.begin());
     };
     REQUIRE(clip.parents.size() == points.size());
     CHECK(clip.parents[0] == -1);
-    CHECK(clip.parents[static_cast<std::size_t>(place("LLeg"))] == 0);  // past LHip
-    CHECK(clip.parents[static_cast<std::size_t>(place("LShin"))] == place("LLeg"));
-    CHECK(clip.parents[static_cast<std::size_t>(place("LHand"))] == place("LArm"));
-    CHECK(clip.parents[static_cast<std::size_t>(place("Neck end"))] == place("Neck"));
+    CHECK(clip.parents[static_cast<std::size_t>(index_of("LLeg"))] == 0);  // past LHip
+    CHECK(clip.parents[static_cast<std::size_t>(index_of("LShin"))] == index_of("LLeg"));
+    CHECK(clip.parents[static_cast<std::size_t>(index_of("LHand"))] == index_of("LArm"));
+    CHECK(clip.parents[static_cast<std::size_t>(index_of("Neck end"))] == index_of("Neck"));
     // In the world, in mm on a 1.7 m body.
     const double mm = 1000.0 / file_units_per_metre(motion.skeleton);
     const auto check_points = [&](const MatrixD& got, const Motion& of) {
@@ -153,7 +153,7 @@ TEST_CASE("what a report is told of a clip") {
                       mm * path_of(of, names[i])) < 1e-6);
       // 20 units from the neck, as the end site has it.
       const MatrixD end =
-          got.rightCols(3) - got.middleCols(3 * static_cast<Eigen::Index>(place("Neck")), 3);
+          got.rightCols(3) - got.middleCols(3 * static_cast<Eigen::Index>(index_of("Neck")), 3);
       CHECK(largest(end.rowwise().norm().array() - 20 * mm) < 1e-6);
     };
     check_points(clip.truth_mm, motion);

@@ -58,7 +58,7 @@ void lengthen_bones(Motion& motion, double deviation, const RandomKey& key) {
     motion.skeleton.joints[static_cast<std::size_t>(j)].offset *=
         std::exp(deviation * random_normal(key, 5, static_cast<std::uint32_t>(alike)));
   }
-  // The root of these clips is joint 0, whose first three channels are its place.
+  // The root of these clips is joint 0, whose first three channels are its position.
   motion.channels.leftCols(3) *= body_height(motion.skeleton) / before;
 }
 

@@ -47,7 +47,7 @@ TEST_CASE(
   CHECK(want.rightCols<3>().cwiseAbs().maxCoeff() > 0.1);
 }
 
-TEST_CASE("pose features: decoded clips have the rate, the body and the root's places given") {
+TEST_CASE("pose features: decoded clips have the rate, the body and the root's path given") {
   const Motion motion = swinging(small_body(), 25, 50);
   const PoseFeatures features = PoseFeatures::fit({&motion});
   MatrixD root(25, 3);

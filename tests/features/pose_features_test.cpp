@@ -70,7 +70,7 @@ Skeleton reordered(const Skeleton& skeleton) {
 
 }  // namespace
 
-TEST_CASE("pose features: encode, then decode, gives every joint's place back") {
+TEST_CASE("pose features: encode, then decode, gives every joint's position back") {
   for (const Skeleton& skeleton : {small_body(), small_body_below_still_root()}) {
     const Motion motion = swinging(skeleton, 90);
     const PoseFeatures features = PoseFeatures::fit({&motion});
@@ -154,10 +154,11 @@ TEST_CASE("pose features: root height is along the world's up, velocity sums up 
   const double units = file_units_per_metre(motion.skeleton);
   CHECK(largest_difference(root.col(0) * units, path.col(1)) < 1e-9);
   CHECK(root.row(0).tail<3>() == root.row(1).tail<3>());
-  Eigen::RowVector3d place = path.row(0);
+  Eigen::RowVector3d position = path.row(0);
   for (int frame = 1; frame < 50; ++frame) {
-    place += (kCamera.transpose() * root.row(frame).tail<3>().transpose()).transpose() * units / 30;
-    CHECK((place - path.row(frame)).norm() < 1e-9);
+    position +=
+        (kCamera.transpose() * root.row(frame).tail<3>().transpose()).transpose() * units / 30;
+    CHECK((position - path.row(frame)).norm() < 1e-9);
   }
   Motion single = motion;
   single.channels.conservativeResize(1, Eigen::NoChange);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// A root at the image's centre with joints at fixed places around it, for 90 frames.
+/// A root at the image's centre with joints at fixed positions around it, for 90 frames.
 Track2d still_track() {
   Track2d track;
   track.joint_names = {"Extra", "Hand", "Hips", "Foot"};
@@ -43,7 +43,8 @@ bool all_nan(const MatrixD& values) {
 
 }  // namespace
 
-TEST_CASE("track features: joints about the root over the body's size, then its place and size") {
+TEST_CASE(
+    "track features: joints about the root over the body's size, then its position and size") {
   const MatrixD features = kFeatures.encode(still_track());
   REQUIRE(features.rows() == 90);
   REQUIRE(features.cols() == kFeatures.dimension());
@@ -60,7 +61,7 @@ TEST_CASE("track features: joints about the root over the body's size, then its 
   }
 }
 
-TEST_CASE("track features: neither image size nor the place in it changes the pose") {
+TEST_CASE("track features: neither image size nor the position in it changes the pose") {
   Track2d track = still_track();
   const MatrixD before = kFeatures.encode(track);
   track.x_px = (track.x_px * 0.5).array() + 100;
@@ -150,7 +151,7 @@ TEST_CASE("track features: which joints of a skeleton are worth tracking") {
   };
   CHECK(features.root_name() == "Hips");
   CHECK(features.joint_names().size() == 12);
-  CHECK_FALSE(has(features, "LHip"));  // at its parent's place
+  CHECK_FALSE(has(features, "LHip"));  // at its parent's position
   CHECK_FALSE(has(features, "Hips"));  // the root itself
   CHECK(has(features, "Chest"));
   const TrackFeatures inner = TrackFeatures::for_skeleton(below, 1);

@@ -24,9 +24,9 @@ const std::string kRows = "1 2 3 4 5 6 7\n-1 -2e0 -.3 4. 5 6 7.5\n";
 const std::string kSmall = kHierarchy + "MOTION\nFrames: 2\nFrame Time: 0.04\n" + kRows;
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto place = text.find(from);
-  REQUIRE(place != std::string::npos);
-  return text.replace(place, from.size(), to);
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
 }
 
 /// The message with which the text is refused.
@@ -247,19 +247,19 @@ TEST_CASE("randomly damaged files are read or refused, nothing else") {
   for (int trial = 0; trial < 5000; ++trial) {
     std::string text = kSmall;
     for (std::size_t change = 0; change <= below(4); ++change) {
-      const std::size_t place = below(text.size());
+      const std::size_t at = below(text.size());
       switch (below(4)) {
         case 0:
-          text[place] = static_cast<char>(below(256));
+          text[at] = static_cast<char>(below(256));
           break;
         case 1:
-          text.erase(place, 1 + below(8));
+          text.erase(at, 1 + below(8));
           break;
         case 2:
-          text.insert(place, text.substr(below(text.size()), 1 + below(20)));
+          text.insert(at, text.substr(below(text.size()), 1 + below(20)));
           break;
         default:
-          text.insert(place, 1, "{}\n -+.e9\"\t"[below(11)]);
+          text.insert(at, 1, "{}\n -+.e9\"\t"[below(11)]);
       }
       if (text.empty()) text.push_back(' ');
     }

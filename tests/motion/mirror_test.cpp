@@ -12,7 +12,7 @@ using namespace mcdbn;
 namespace {
 
 /// Two arms on a spine. `straight`: the arms rest to both sides; else every bone rests along +x, as
-/// Bandai's do, and only the sides' places at the shoulders differ.
+/// Bandai's do, and only the sides' positions at the shoulders differ.
 Motion two_armed(bool straight) {
   const auto joint = [](const char* name, int parent, Eigen::Vector3d offset, bool root = false) {
     Joint result;

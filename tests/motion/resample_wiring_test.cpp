@@ -10,8 +10,8 @@ using namespace mcdbn::test;
 
 namespace {
 
-/// Channels in an order in which a place stands between two angles, a joint that only shifts, and a
-/// hinge whose angle begins past a whole turn.
+/// Channels in an order in which a position stands between two angles, a joint that only shifts,
+/// and a hinge whose angle begins past a whole turn.
 Motion clip(double fps, int frames) {
   Motion motion;
   motion.skeleton.joints = {

@@ -227,11 +227,11 @@ TEST_CASE("forward kinematics equals another program's on walk01") {
       if (end_site) name.resize(name.size() - 4);
       const int joint = motion.skeleton.find(name);
       REQUIRE(joint >= 0);
-      Eigen::Vector3d place = pose.position[joint];
+      Eigen::Vector3d point = pose.position[joint];
       if (end_site) {
-        place += pose.world_from_joint[joint] * motion.skeleton.joints[joint].end_sites.at(0);
+        point += pose.world_from_joint[joint] * motion.skeleton.joints[joint].end_sites.at(0);
       }
-      CHECK(std::abs(place[axis] - std::stod(cell)) < 1.5e-5);  // five decimals are printed
+      CHECK(std::abs(point[axis] - std::stod(cell)) < 1.5e-5);  // five decimals are printed
       ++compared;
     }
   }

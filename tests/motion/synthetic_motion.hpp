@@ -21,7 +21,7 @@ inline Joint make_joint(std::string name, int parent, Eigen::Vector3d offset,
 }
 
 /// A body of about 170 units with three rotation orders, a joint without channels (Chest) and one
-/// at its parent's place (LHip).
+/// at its parent's position (LHip).
 inline Skeleton small_body() {
   const std::vector<Channel> zxy{z_rotation, x_rotation, y_rotation};
   const std::vector<Channel> xyz{x_rotation, y_rotation, z_rotation};

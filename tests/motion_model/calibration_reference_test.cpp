@@ -32,7 +32,7 @@ struct Setting {
 };
 
 /// Joints about the root, which stands still. @return [frames x 3·joints]
-MatrixD places(const Modalities& modalities, const MatrixF& pose) {
+MatrixD positions(const Modalities& modalities, const MatrixF& pose) {
   const PoseFeatures& features = modalities.pose_features;
   return joint_positions(features.decode(modalities.pose_scale.invert(pose),
                                          Eigen::Matrix3d::Identity(), features.skeleton(), 30.0,
@@ -52,8 +52,8 @@ double scale_by_halving(const Mcdbn& network, const Setting& setting) {
   const auto answers = regenerate(network, setting.tracks);
   double wanted = 0;
   for (std::size_t i = 0; i < answers.size(); ++i)
-    wanted += 0.5 * distance(places(setting.modalities, answers[i]),
-                             places(setting.modalities, setting.poses[i]));
+    wanted += 0.5 * distance(positions(setting.modalities, answers[i]),
+                             positions(setting.modalities, setting.poses[i]));
   RegenerationOptions options;
   options.samples = 4;
   options.temperature = 1.0;
@@ -65,8 +65,8 @@ double scale_by_halving(const Mcdbn& network, const Setting& setting) {
     const auto samples = regenerate(network, setting.tracks, options);
     double strayed = 0;
     for (std::size_t i = 0; i < samples.size(); ++i)
-      strayed += 0.25 * distance(places(setting.modalities, samples[i]),
-                                 places(setting.modalities, answers[i / 4]));
+      strayed += 0.25 * distance(positions(setting.modalities, samples[i]),
+                                 positions(setting.modalities, answers[i / 4]));
     scale += strayed > wanted ? -step : step;
   }
   return scale;

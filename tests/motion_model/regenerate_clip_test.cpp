@@ -130,12 +130,12 @@ TEST_CASE("regenerate_clip: every option comes to its use") {
       CAPTURE(i);
       CHECK(largest(first(others[i], scene.placement()) - usual) > 1e-4);
     }
-    std::vector<ClipPlacement> places(3, scene.placement());
-    places[0].camera.reset();
-    places[1].fit = TrackFitSettings{};
-    places[2].skeleton->joints[2].offset *= 1.2;
-    for (const ClipPlacement& place : places)
-      CHECK((first(options, place) - usual).cwiseAbs().maxCoeff() > 1e-4);
+    std::vector<ClipPlacement> placements(3, scene.placement());
+    placements[0].camera.reset();
+    placements[1].fit = TrackFitSettings{};
+    placements[2].skeleton->joints[2].offset *= 1.2;
+    for (const ClipPlacement& placement : placements)
+      CHECK((first(options, placement) - usual).cwiseAbs().maxCoeff() > 1e-4);
   });
 }
 

@@ -11,8 +11,8 @@
 namespace mcdbn {
 
 /// The 2D modality: joint pixels relative to the root joint divided by the body's size in the
-/// image, then the root's place in the image (as fractions of its height, from its centre) and the
-/// logarithm of that size over the image's height. See docs/concepts.md.
+/// image, then the root's position in the image (as fractions of its height, from its centre) and
+/// the logarithm of that size over the image's height. DESIGN section 3.
 ///
 /// The size of a frame is the RMS distance of its joints from the root; where joints are missing,
 /// the others stand in by their usual share of it. Its logarithm is smoothed over `kSizeWindow_s`
@@ -24,7 +24,7 @@ class TrackFeatures {
   /// root joint is always used, whether listed or not. @throws InputError if a name comes twice
   explicit TrackFeatures(std::vector<std::string> joint_names, std::string root_name);
   /// The joints of a skeleton that are worth tracking: every joint at or below `root` that is not
-  /// at its parent's place.
+  /// at its parent's position.
   static TrackFeatures for_skeleton(const Skeleton& skeleton, int root);
 
   int dimension() const;

@@ -160,8 +160,8 @@ class Viewer {
         if (i < panels) this.scene.ground(panel, target, this.clip.ground);
         this.scene.figure(panel, target, this.clip, figure.points, this.clip.ground, figure.colour,
                           this.overlaid && i === 0 ? .75 : 1);
-        const place = this.overlaid ? {...panel, y: 20 * i} : panel;
-        this.scene.label(place, figure.label, this.scene.colour(figure.name));
+        const at = this.overlaid ? {...panel, y: 20 * i} : panel;
+        this.scene.label(at, figure.label, this.scene.colour(figure.name));
       });
     });
     this.part("legend").hidden = !byError;
@@ -187,9 +187,9 @@ class Viewer {
     const all = Array.from({length: joints}, (_, joint) => at(joint)), seen = all.filter(p => Number.isFinite(p.x + p.y));
     if (seen.length === 0) return;
     const box = boundsOf(seen), scale = .85 * Math.min(width * 1.6, height) / this.largestInput();
-    const place = p => ({x: width / 2 + (p.x - box.x) * scale, y: height / 2 + (p.y - box.y) * scale});
+    const onPanel = p => ({x: width / 2 + (p.x - box.x) * scale, y: height / 2 + (p.y - box.y) * scale});
     c.lineCap = "round";
-    all.map(place).forEach((to, joint, placed) => {
+    all.map(onPanel).forEach((to, joint, placed) => {
       const from = placed[parents[joint]];
       c.strokeStyle = c.fillStyle = this.sideColour("quiet", this.clip.sides[joint]);
       if (from && Number.isFinite(to.x + from.x)) this.input.segment(from, to, 2.5);
