@@ -11,6 +11,7 @@
 namespace mcdbn {
 namespace {
 
+/// At most; kSmallStep ends them before.
 constexpr int kRounds = 10, kHalvings = 5;
 /// A step of this share of the prior's deviations, RMS, is not worth another round.
 constexpr double kSmallStep = 0.02;
