@@ -12,7 +12,7 @@ namespace mcdbn {
 
 /// The 2D modality: joint pixels relative to the root joint divided by the body's size in the
 /// image, then the root's position in the image (as fractions of its height, from its centre) and
-/// the logarithm of that size over the image's height. DESIGN section 3.
+/// the logarithm of that size over the image's height. See docs/concepts.md.
 ///
 /// The size of a frame is the RMS distance of its joints from the root; where joints are missing,
 /// the others stand in by their usual share of it. Its logarithm is smoothed over `kSizeWindow_s`
