@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "base/text_file.hpp"
 #include "library_calls.hpp"
 #include "mcdbn/device/device.hpp"
 #include "option_table.hpp"
@@ -95,6 +96,20 @@ void check_bench_lines(const std::string& text) {
                        "\\d+\\.\\d us +\\d+ launches +\\d+\\.\\d\\d us a frame\n$")));
 }
 
+/// What it prints until the shortest epoch is measured; the longest takes minutes.
+std::string bench_of_first_epoch() {
+  const ScratchFolder folder;
+  const std::string output = (folder / "output").string();
+  const fs::path script = folder.write(
+      "first_epoch.sh", fmt::format("'{}' bench --only epoch --seconds 0 >'{}' & program=$!\n"
+                                    "while kill -0 $program 2>/dev/null && [ ! -s '{}' ]; do\n"
+                                    "  sleep 0.05\ndone\n"
+                                    "kill -KILL $program 2>/dev/null\nwait $program\n",
+                                    MCDBN_CLI, output, output));
+  run_program("/bin/sh", fmt::format("'{}'", script.string()));
+  return mcdbn::read_text_file(output);
+}
+
 }  // namespace
 
 TEST_CASE("info: every option changes what its help says") {
@@ -177,6 +192,8 @@ TEST_CASE("bench: every option changes what its help says") {
       {"--only",
        [] {
          check_bench_lines(run_cli("bench --seconds 0 --only gemm regeneration").standard_output);
+         CHECK(bench_of_first_epoch().find("\nepoch  frames 1000  batch 100  ") !=
+               std::string::npos);
          CHECK(run_cli("bench --only other").exit_code == 2);
        }},
       {"--seconds", [] { CHECK(run_cli("bench --seconds -1").exit_code == 2); }},

@@ -151,6 +151,8 @@ fine-tuning.from-greedy = false
             self.assertEqual(settings["fine-tuning"]["from-greedy"],
                              changes.get("fine-tuning.from-greedy", True))
             figures.add(record["mpjpe_mm"])
+            self.assertAlmostEqual(record["inference_ms_per_frame"],
+                                   1000 * record["inference_s"] / record["frames"])
             # The table on stdout has the same figures.
             row = next(line for line in result.stdout.splitlines() if line.startswith(name + " "))
             self.assertEqual(row.split()[-2:], [f"{record['pcc_channel']:.3f}",
