@@ -60,11 +60,12 @@ SummaryStatistics summarize(const std::vector<double>& values, int bins) {
   summary.mean = x.mean();
   summary.standard_deviation =
       summary.count > 1 ? std::sqrt((x - summary.mean).square().sum() / (summary.count - 1)) : kNaN;
-  summary.median = boost::math::statistics::median(sorted.begin(), sorted.end());
   summary.minimum = sorted.front();
   summary.maximum = sorted.back();
   summary.histogram = histogram_of(sorted, summary.minimum, summary.maximum, bins);
   summary.mode = mode_of(summary.histogram);
+  // Last: it reorders the values.
+  summary.median = boost::math::statistics::median(sorted.begin(), sorted.end());
   return summary;
 }
 
