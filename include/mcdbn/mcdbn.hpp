@@ -40,6 +40,7 @@
 #include "mcdbn/machines/mrbm.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 #include "mcdbn/machines/sequences.hpp"
+#include "mcdbn/motion/planted_foot.hpp"
 #include "mcdbn/motion/skeleton.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "mcdbn/motion_model/model_file.hpp"

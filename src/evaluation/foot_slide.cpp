@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "mcdbn/base/errors.hpp"
-#include "motion/planted_foot.hpp"
+#include "mcdbn/motion/planted_foot.hpp"
 
 namespace mcdbn {
 namespace {

@@ -16,9 +16,9 @@
 #include "fitting/track_smoothing.hpp"
 #include "fitting/turned_bones.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion/planted_foot.hpp"
 #include "motion/body_size.hpp"
 #include "motion/foot_joints.hpp"
-#include "motion/planted_foot.hpp"
 
 namespace mcdbn {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion/planted_foot.hpp"
 #include "motion/body_size.hpp"
-#include "motion/planted_foot.hpp"
 
 namespace mcdbn {
 namespace {

@@ -7,7 +7,6 @@
 #include "features/pose_bones.hpp"
 #include "learning/squared_loss.hpp"
 #include "motion/foot_joints.hpp"
-#include "motion/planted_foot.hpp"
 
 namespace mcdbn {
 namespace {
@@ -79,7 +78,7 @@ void PoseLoss::differentiate(const Matrix& prediction, const Matrix& target, Mat
   launch(device, device.programs().kernel("kinematic_loss.cl", "pose_errors", defines), size,
          prediction.buffer(), target.buffer(), differences_.buffer(), to_int(differences_.stride()),
          to_int(windows_.count), frames, lead, weights, static_cast<float>(frame_s_),
-         static_cast<float>(frame_s_ * kPlantedInCapture.below_m_s), bone_table_, levers_, columns_,
+         static_cast<float>(frame_s_ * weights_.planted_below_m_s), bone_table_, levers_, columns_,
          scale_, error.buffer(), losses_.buffer(), to_int(losses_.stride()));
   column_sum(losses_, 1.0F, 1.0F, sums_);
   ++steps_;

@@ -1,4 +1,4 @@
-#include "motion/planted_foot.hpp"
+#include "mcdbn/motion/planted_foot.hpp"
 
 #include <doctest/doctest.h>
 

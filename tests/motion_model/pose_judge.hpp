@@ -56,7 +56,7 @@ class PoseJudge {
   }
 
   bool is_planted(const Seen& truth, Eigen::Index t) const {
-    return foot_step_m(truth, t).norm() * figure_.modalities().fps <= 0.4;
+    return foot_step_m(truth, t).norm() * figure_.modalities().fps <= weights_.planted_below_m_s;
   }
 
   /// What each judged frame adds to the loss.

@@ -113,7 +113,7 @@ double loss_in_double(const SmallFigure& figure, const PoseLossWeights& weights,
   const MatrixD steps = positions.bottomRows(judged - 1) - positions.topRows(judged - 1);
   loss += weights.positions * positions.array().square().mean() /
           (PoseLoss::kPosition_m * PoseLoss::kPosition_m);
-  const MatrixD planted = planted_steps(figure, 0.4, prediction, target);
+  const MatrixD planted = planted_steps(figure, weights.planted_below_m_s, prediction, target);
   return loss + (weights.velocities * steps.array().square().mean() +
                  weights.contacts * planted.array().square().mean()) /
                     (PoseLoss::kStep_m * PoseLoss::kStep_m);

@@ -5,6 +5,7 @@
 
 #include "mcdbn/corpus/training_set.hpp"
 #include "mcdbn/learning/settings.hpp"
+#include "mcdbn/motion/planted_foot.hpp"
 
 namespace mcdbn {
 
@@ -14,8 +15,9 @@ struct PoseLossWeights {
   double positions = 0.0;   ///< of squared distances of joints from the truth, in units of 5 cm
   double velocities = 0.0;  ///< of squared differences of steps from frame to frame, units of 1 cm
   /// The same through the world, the root's travel included, of feet that are planted in truth,
-  /// told by their speed alone (kPlantedInCapture).
+  /// told by their speed alone.
   double contacts = 0.0;
+  double planted_below_m_s = kPlantedInCapture.below_m_s;  ///< on a 1.7 m body; see PlantedFoot
 };
 
 /// Everything that shapes a training run on clips: how they become sequences, and how those are
