@@ -30,8 +30,14 @@ struct Call {
   mcdbn::TrackDamage damage = {};
 };
 
-/// The summary without what baselines say: those take longer than all the rest.
-json by_library(const Call& call) {
+/// Views of the training clips, for the MLP among the baselines to learn from.
+struct Views {
+  std::vector<mcdbn::MatrixF> tracks = {}, poses = {};
+};
+
+/// The summary; without what baselines say, which take longer than all the rest, unless there are
+/// views for them.
+json by_library(const Call& call, const std::optional<Views>& views = {}) {
   const mcdbn::Model model = load_model(usual_device(), call.model);
   mcdbn::TestRunOptions options;
   options.camera = model.modalities.camera;
@@ -45,7 +51,11 @@ json by_library(const Call& call) {
   options.damage = call.damage;
   options.keep_first_frame = call.keep_first_frame;
   options.include_training = call.include_training;
-  options.baselines = false;
+  options.baselines = views.has_value();
+  if (views) {
+    options.view_tracks = views->tracks;
+    options.view_poses = views->poses;
+  }
   mcdbn::EvaluationReport report;
   report.clips = report_clips(model, run_test(model, call.test, options), call.by_folder);
   report.actions = analyse_actions(report.clips, call.seed);
@@ -53,6 +63,17 @@ json by_library(const Call& call) {
   report.fit = call.fit ? "track" : "none";
   report.damage = call.damage;
   return json(summary_json(report));
+}
+
+/// The views that the tiny model's fine-tuning learnt from.
+Views views_of_training(const fs::path& model) {
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  mcdbn::TrainingConfig config;
+  config.augment.views = 1;  // as kTiny says
+  mcdbn::TrainingSet views = make_augmented_views(
+      {pipeline.motion() / "walk_s01_01.bvh", pipeline.motion() / "walk_s01_02.bvh"},
+      load_model(usual_device(), model).modalities, config);
+  return {std::move(views.tracks), std::move(views.poses)};
 }
 
 /// What both know.
@@ -183,14 +204,18 @@ TEST_CASE("evaluate: what holds where an option is not said, and the text for pe
                                              call.model.string(), call.test[0].string(), platform));
   REQUIRE(text.exit_code == 0);
   CHECK(text.standard_error.find("%  reading clips") != std::string::npos);
-  const json wanted = by_library(call);
   CHECK(text.standard_output.starts_with("1 clips, 36 frames\n"));
-  const json& model = wanted.at("model");
-  CHECK(text.standard_output.find(
-            fmt::format("\nmodel               {:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n",
-                        model.at("pcc_flat").get<double>(), model.at("pcc_channel").get<double>(),
-                        model.at("mpjpe_mm").get<double>(), model.at("pa_mpjpe_mm").get<double>(),
-                        model.at("root_mm").get<double>())) != std::string::npos);
+  const json wanted = by_library(call, views_of_training(call.model));
+  const auto check_row = [&](const std::string& name, const json& scores) {
+    const auto figure = [&](const char* of) { return scores.at(of).get<double>(); };
+    const std::string row = fmt::format(
+        "\n{:<20}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n", name, figure("pcc_flat"),
+        figure("pcc_channel"), figure("mpjpe_mm"), figure("pa_mpjpe_mm"), figure("root_mm"));
+    CAPTURE(row);
+    CHECK(text.standard_output.find(row) != std::string::npos);
+  };
+  check_row("model", wanted.at("model"));
+  for (const auto& [name, scores] : wanted.at("baselines").items()) check_row(name, scores);
 }
 
 TEST_CASE("evaluate --protocol paper: ten samples by the network alone, by folder") {
@@ -206,4 +231,18 @@ TEST_CASE("evaluate --protocol paper: ten samples by the network alone, by folde
   call.fit = false;
   call.by_folder = call.include_training = true;
   CHECK(without_baselines(summary) == without_baselines(by_library(call)));
+}
+
+TEST_CASE("evaluate: without fine-tuning there were no views, and the MLP learns from none") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  Call call;
+  call.model = pipeline.folder("greedy") / "model.safetensors";
+  call.test = {pipeline.motion() / "walk_s02_01.bvh"};
+  call.fit = false;
+  REQUIRE(train(pipeline.training_clips(), call.model.parent_path(),
+                kTinyGreedy + " --stages greedy --layers 1 --quiet")
+              .exit_code == 0);
+  CHECK(by_program(call, "--fit none").at("baselines") ==
+        by_library(call, Views{}).at("baselines"));
 }
