@@ -37,13 +37,11 @@ reference::Crbm expected_layer(const LearningSettings& config, std::size_t visib
                history = 1.0 / std::sqrt(static_cast<double>(config.order) * width),
                hidden = static_cast<double>(config.hidden);
   reference::Crbm layer;
-  const double up = !lowest ? 1.0 / std::sqrt(width)
-                    : pose  ? 1.5 / std::sqrt(hidden)
-                            : 0.8 / std::sqrt(width);
+  const double up = lowest && pose ? 1.5 / std::sqrt(hidden) : 0.8 / std::sqrt(width);
   layer.weights = up * drawn.W.cast<double>();
   if (!lowest) layer.weights.diagonal().array() += 4.0;
-  layer.hidden_history = (lowest ? 0.6 : 0.7) * history * drawn.B.cast<double>();
-  layer.visible_history = (lowest ? 0.09 : 0.9) * history * drawn.A.cast<double>();
+  layer.hidden_history = 0.6 * history * drawn.B.cast<double>();
+  layer.visible_history = 0.09 * history * drawn.A.cast<double>();
   return layer;
 }
 
@@ -85,7 +83,7 @@ TEST_CASE("the start of fine-tuning: every matrix drawn on its own, at the size 
         config.hidden, config.hidden, config.mrbm_hidden, 1.0, {config.seed, 0, 195, 0});
     const double shared = 1.0 / std::sqrt(static_cast<double>(config.hidden));
     for (const std::size_t m : {0, 1}) {
-      MatrixD want = (m == 0 ? 1.0 : 2.0 / 3.0) * shared * drawn.W[m].cast<double>();
+      MatrixD want = shared * drawn.W[m].cast<double>();
       want.diagonal().array() += m == 0 ? 4.0 : 2.0;
       want.rowwise() -= RowVectorD(want.colwise().mean());
       CHECK(largest(middle.mrbm.weights[m] - want) < 1e-6);
