@@ -1,7 +1,9 @@
 #include "camera_options.hpp"
-#include "mcdbn/formats/camera_file.hpp"
 
 #include <utility>
+
+#include "mcdbn/formats/camera_file.hpp"
+#include "setting_flags.hpp"
 
 namespace mcdbn::cli {
 
@@ -19,22 +21,13 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
                    ->type_name("FILE")
                    ->group(kGroup);
   const auto placed = [&](CLI::Option* option) { option->group(kGroup)->excludes(file); };
-  placed(command
-             .add_option("--camera-azimuth", placement.azimuth_deg,
-                         "Degrees to the figure's left (+x) of a camera that faces it (+z)")
-             ->capture_default_str());
-  placed(command.add_option("--camera-elevation", placement.elevation_deg, "Degrees upwards")
-             ->check(CLI::Range(-89.0, 89.0))
-             ->capture_default_str());
+  visit_group("camera", placement, [&](const Setting& setting, double& value) {
+    placed(add_setting_flag(command, flag_of(setting.name), setting, value));
+  });
   placed(command
              .add_option("--camera-distance", placement.distance,
                          "In the file's units (default: the whole clip just fits in view)")
              ->check(CLI::PositiveNumber));
-  placed(command
-             .add_option("--camera-fov", placement.field_of_view_deg,
-                         "Vertical field of view in degrees")
-             ->check(CLI::Range(1.0, 170.0))
-             ->capture_default_str());
   placed(command
              .add_option_function<std::pair<int, int>>(
                  "--image-size",
@@ -44,6 +37,17 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
                  "Width and height in pixels (default: 1920 1080)")
              ->check(CLI::PositiveNumber)
              ->type_name("WIDTH HEIGHT"));
+}
+
+void add_view_flags(CLI::App& command, std::optional<double>& azimuth_deg,
+                    std::optional<double>& elevation_deg) {
+  const CameraPlacement usual;
+  visit_group("camera", usual, [&](Setting setting, const double& value) {
+    setting.help += "; default: as trained";
+    const std::string flag = flag_of(setting.name);
+    if (&value == &usual.azimuth_deg) add_setting_flag(command, flag, setting, azimuth_deg);
+    if (&value == &usual.elevation_deg) add_setting_flag(command, flag, setting, elevation_deg);
+  });
 }
 
 }  // namespace mcdbn::cli

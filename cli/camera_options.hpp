@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 
 #include "mcdbn/camera/camera.hpp"
 
@@ -19,5 +20,9 @@ struct CameraOptions {
 /// --camera FILE, or --camera-azimuth, --camera-elevation, --camera-distance, --camera-fov,
 /// --image-size.
 void add_camera_options(CLI::App& command, CameraOptions& options);
+
+/// --camera-azimuth and --camera-elevation, which are as the model was trained if nobody says them.
+void add_view_flags(CLI::App& command, std::optional<double>& azimuth_deg,
+                    std::optional<double>& elevation_deg);
 
 }  // namespace mcdbn::cli

@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "setting_flags.hpp"
+
 namespace mcdbn::cli {
 
 void add_clip_options(CLI::App& command, ClipOptions& options) {
@@ -15,7 +17,7 @@ void add_clip_options(CLI::App& command, ClipOptions& options) {
 Motion load_clip_with_notices(const std::filesystem::path& path, const ClipOptions& options) {
   std::vector<std::string> notices;
   Motion motion = load_clip(path, options, &notices);
-  for (const std::string& notice : notices) spdlog::info("{}", notice);
+  for (const std::string& notice : notices) spdlog::info("{}", with_flags(notice));
   return motion;
 }
 

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
-#include <stdexcept>
 #include <string>
 
 namespace mcdbn::cli {
@@ -24,12 +23,6 @@ void add_device_options(CLI::App& command, CommandContext& context);  ///< --pla
 void add_seed_option(CLI::App& command, CommandContext& context);     ///< --seed
 void add_quiet_option(CLI::App& command, CommandContext& context);    ///< --quiet
 void add_json_option(CLI::App& command, CommandContext& context);     ///< --json
-
-/// Thrown by a command that stopped, cleanly, on SIGINT: exit code 130.
-class Interrupted : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Writes one JSON object and a newline to stdout.
 void print_json(const nlohmann::json& value);

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "setting_flags.hpp"
 
 namespace mcdbn::cli {
 
@@ -19,7 +20,8 @@ void add_device_options(CLI::App& command, CommandContext& context) {
 }
 
 void add_seed_option(CLI::App& command, CommandContext& context) {
-  command.add_option("--seed", context.seed, "Seed of everything random")->capture_default_str();
+  add_setting_flag(command, "--seed", {"seed", at_least(0), "", "Seed of everything random"},
+                   context.seed);
 }
 
 void add_quiet_option(CLI::App& command, CommandContext& context) {

@@ -5,21 +5,22 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "camera_options.hpp"
 #include "commands.hpp"
-#include "comparison/comparison_run.hpp"
+#include "comparison/training_views.hpp"
 #include "evaluation/report_page.hpp"
 #include "fit_option.hpp"
 #include "interrupt.hpp"
 #include "mcdbn/corpus/clip.hpp"
-#include "mcdbn/motion_model/training_schedule.hpp"
 #include "progress.hpp"
 #include "sampling_options.hpp"
-#include "training_options.hpp"
+#include "setting_flags.hpp"
 
 namespace mcdbn::cli {
 namespace {
 
-constexpr std::size_t kPaperSamples = 10;
+constexpr std::size_t kPaperSamples = 10;  // regenerations of each clip, section V
+constexpr double kTestShare = 0.9;  // of the time, about; the rest goes to the distributions' fits
 
 struct EvaluateOptions {
   std::filesystem::path model, report;
@@ -59,21 +60,6 @@ void print_table(const EvaluationReport& report) {
                verdict.text);
 }
 
-/// The views that the model's fine-tuning learnt from, made again, for the MLP to learn from too.
-void add_views(const Model& model, TestRunOptions& run) {
-  const TrainingConfig config = settings_from_json(model.config);
-  if (config.fine_tuning.steps == 0) return;
-  std::vector<std::filesystem::path> files;
-  for (const TrainingClip& clip : model.training_clips) {
-    if (!std::filesystem::exists(clip.path)) return;  // run_test says so
-    if (files.empty() || files.back() != clip.path) files.emplace_back(clip.path);
-  }
-  TrainingSet views =
-      make_augmented_views(load_clips(files, config.keep_first_frame), model.modalities, config);
-  run.view_tracks = std::move(views.tracks);
-  run.view_poses = std::move(views.poses);
-}
-
 void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   apply_protocol(options);
   Device device = Device::open({context.platform, context.device});
@@ -95,11 +81,11 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
     run.regeneration = options.sampling.regeneration(
         model.network, context.seed, options.protocol == "paper" ? kPaperSamples : 1);
     report.temperature = run.regeneration.temperature;
-    add_views(model, run);
-    run.progress = show(0.0, 0.9);
+    add_training_views(model, run);
+    run.progress = show(0.0, kTestShare);
     report.clips = report_clips(model, run_test(model, find_clips(options.test), run),
                                 options.actions == "by-folder");
-    report.actions = analyse_actions(report.clips, context.seed, show(0.9, 1.0));
+    report.actions = analyse_actions(report.clips, context.seed, show(kTestShare, 1.0));
   }
   report.model = options.model.filename().string();
   report.protocol = options.protocol;
@@ -143,30 +129,15 @@ void add_test_options(CLI::App& command, EvaluateOptions& options) {
 void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
   add_sampling_options(command, options.sampling, "Regenerations of each clip (default: 1)");
   add_fit_option(command, options.fit, "default: track, none in the paper's protocol; all methods");
-  command.add_option("--camera-azimuth", options.azimuth_deg, "Degrees (default: as trained)");
-  command.add_option("--camera-elevation", options.elevation_deg, "Degrees (default: as trained)")
-      ->check(CLI::Range(-89.0, 89.0));
+  add_view_flags(command, options.azimuth_deg, options.elevation_deg);
 }
 
 /// What trackers do to a track, done to the test clips' before any method sees them.
 void add_damage_options(CLI::App& command, TrackDamage& damage) {
-  constexpr const char* kGroup = "Damage to the 2D tracks, by --seed";
-  command
-      .add_option("--track-noise-px", damage.noise_px, "Gaussian noise on x and y, deviation in px")
-      ->check(CLI::NonNegativeNumber)
-      ->group(kGroup);
-  command
-      .add_option("--track-missing", damage.missing_share,
-                  "Share of the joints of each frame that go missing, each on its own")
-      ->check(CLI::Range(0.0, 1.0))
-      ->type_name("SHARE")
-      ->group(kGroup);
-  command
-      .add_option("--track-hide", damage.hidden_s,
-                  "Hide an arm for so long in the middle of each clip")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("SECONDS")
-      ->group(kGroup);
+  visit_group("track", damage, [&](const Setting& setting, double& value) {
+    add_setting_flag(command, flag_of(setting.name), setting, value)
+        ->group("Damage to the 2D tracks, by --seed");
+  });
 }
 
 }  // namespace

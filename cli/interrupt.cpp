@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-#include "commands.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn::cli {
 namespace {

@@ -1,3 +1,4 @@
+#include <fmt/ranges.h>
 #include <spdlog/cfg/env.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -11,6 +12,7 @@
 
 #include "commands.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "setting_flags.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -48,25 +50,39 @@ void set_up_messages() {
 }
 
 int report(const std::exception& error, ExitCode code) {
-  spdlog::error("{}", error.what());
+  spdlog::error("{}", with_flags(error.what()));
   return code;
+}
+
+/// The word that stands where a command should; empty if there is none or a command was given.
+std::string unknown_command(const CLI::App& app) {
+  const std::vector<std::string> unknown = app.remaining();
+  return app.get_subcommands().empty() && !unknown.empty() ? unknown.front() : "";
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
 }
 
 /// What was wrong with the command line, and where its help is.
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
+  if (const std::string unknown = unknown_command(app); !unknown.empty())
+    return fmt::format("unknown command {}; there are {} (see mcdbn-cl --help)", unknown,
+                       fmt::join(command_names(app), ", "));
   const auto chosen = app.get_subcommands();
-  const std::vector<std::string> unknown = app.remaining();
-  const std::string what =
-      chosen.empty() && !unknown.empty() ? "unknown command " + unknown.front() : error.what();
-  return what + " (see mcdbn-cl " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
-         "--help)";
+  return fmt::format("{} (see mcdbn-cl {}--help)", error.what(),
+                     chosen.empty() ? "" : chosen.front()->get_name() + " ");
 }
 
 int parse_and_run(CLI::App& app, CommandContext& context, int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == kOk) return app.exit(error);  // --help and --version
+    // --help and --version, but not of what does not exist.
+    if (error.get_exit_code() == kOk && unknown_command(app).empty()) return app.exit(error);
     spdlog::error("{}", usage_message(app, error));
     return kUsage;
   }

@@ -10,6 +10,7 @@
 #include "mcdbn/camera/track.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
+#include "setting_flags.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -46,11 +47,10 @@ void add_project_command(CLI::App& app, CommandContext& context) {
       ->add_option("--write-camera", options->camera_output,
                    "Also write the camera that was used, as OpenCV YAML")
       ->type_name("FILE");
-  command
-      ->add_option("--noise-px", options->noise_px,
-                   "Standard deviation of Gaussian noise on every joint, in pixels")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  add_setting_flag(*command, "--noise-px",
+                   {"noise-px", TrackDamage::kNoise_px, "px",
+                    "Standard deviation of Gaussian noise on every joint's x and y"},
+                   options->noise_px);
   add_clip_options(*command, options->preparation);
   add_camera_options(*command, options->camera);
   add_seed_option(*command, context);

@@ -1,6 +1,14 @@
 #include "sampling_options.hpp"
 
 namespace mcdbn::cli {
+namespace {
+
+/// Samples run as one batch and each step of a chain is a launch: more is a slip of the finger.
+constexpr int kMost = 1000;
+/// Draws ten times as far from their mean as the model draws them say nothing of it any more.
+constexpr double kHottest = 10.0;
+
+}  // namespace
 
 RegenerationOptions SamplingOptions::regeneration(const Mcdbn& network, std::uint64_t seed,
                                                   std::size_t usual_samples) const {
@@ -19,24 +27,24 @@ RegenerationOptions SamplingOptions::regeneration(const Mcdbn& network, std::uin
 }
 
 void add_sampling_options(CLI::App& command, SamplingOptions& options, const char* samples_help) {
-  command.add_option("--samples", options.samples, samples_help)->check(CLI::Range(1, 1000));
+  command.add_option("--samples", options.samples, samples_help)->check(CLI::Range(1, kMost));
   command
       .add_option(
           "--temperature", options.temperature,
           "0: the mean-field answer; towards 1: sampled variations (default: 1 with several "
           "samples, else 0)")
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(CLI::Range(0.0, kHottest));
   command
       .add_option(
           "--gibbs-steps", options.gibbs_steps,
           "Draw every frame anew, with k steps in the decoder (Algorithm 5; default: as the "
           "model was trained for)")
-      ->check(CLI::Range(0, 1000));
+      ->check(CLI::Range(0, kMost));
   command
       .add_option("--mrbm-gibbs-steps", options.mrbm_gibbs_steps,
                   "Draw every frame anew, with k steps of the chain that infers each sample's 3D "
                   "code")
-      ->check(CLI::Range(0, 1000));
+      ->check(CLI::Range(0, kMost));
 }
 
 }  // namespace mcdbn::cli

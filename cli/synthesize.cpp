@@ -6,11 +6,10 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
+#include "base/text_file.hpp"
 #include "commands.hpp"
-#include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
 
 namespace mcdbn::cli {
@@ -27,15 +26,6 @@ struct SynthesizeOptions {
   fs::path output;
 };
 
-void create_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw InputError(fmt::format("{}: the folder cannot be created ({}); choose another",
-                                 folder.string(), error.message()));
-  }
-}
-
 /// Clips go round the subjects, so that each subject has about as many.
 void run_synthesize(const CommandContext& context, const SynthesizeOptions& options) {
   SynthesisOptions clip{.action = parse_synthesis_action(options.action)};
@@ -46,7 +36,7 @@ void run_synthesize(const CommandContext& context, const SynthesizeOptions& opti
     clip.subject = 1 + i % options.subjects;
     clip.clip = 1 + i / options.subjects;
     const Motion motion = synthesize(clip);
-    if (i == 0) create_folder(options.output);
+    if (i == 0) make_folder(options.output);
     write_bvh(options.output / synthesis_file_name(clip), motion);
   }
   spdlog::info("{}: {} clips of {} by {} subjects, {:.4g} s each at {:.4g} fps",

@@ -49,4 +49,12 @@ void write_text_file(const fs::path& path, std::string_view text) {
   }
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw InputError(
+        fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
+}
+
 }  // namespace mcdbn

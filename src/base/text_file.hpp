@@ -13,4 +13,7 @@ std::string read_text_file(const std::filesystem::path& path);
 /// new one, and no partial file is left behind. @throws InputError if it cannot be written
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
+/// The folder, and those that it lies in, unless they exist. @throws InputError
+void make_folder(const std::filesystem::path& folder);
+
 }  // namespace mcdbn

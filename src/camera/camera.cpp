@@ -22,10 +22,8 @@ constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr double kFill = 0.92;
 
 void check(const CameraPlacement& placement) {
-  if (!(placement.field_of_view_deg > 0 && placement.field_of_view_deg < 180)) {
-    throw ConfigError(fmt::format("camera field of view {} degrees; give one between 0 and 180",
-                                  placement.field_of_view_deg));
-  }
+  check_range("a camera's field of view in degrees", CameraPlacement::kFieldOfView_deg,
+              placement.field_of_view_deg);
   if (placement.width_px <= 0 || placement.height_px <= 0) {
     throw ConfigError(fmt::format("image size {}x{}; give pixels above 0", placement.width_px,
                                   placement.height_px));

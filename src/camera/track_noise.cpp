@@ -1,15 +1,11 @@
 #include "camera/track_noise.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/random_sequence.hpp"
-
 #include "base/random_streams.hpp"
-#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -67,9 +63,7 @@ std::vector<int> columns_from(const Track2d& track, const Skeleton& skeleton,
 }  // namespace
 
 void add_pixel_noise(Track2d& track, double deviation_px, std::uint64_t seed) {
-  if (!std::isfinite(deviation_px) || deviation_px < 0) {
-    throw ConfigError(fmt::format("pixel noise is {}; give 0 or more pixels", deviation_px));
-  }
+  check_range("the pixel noise's deviation", TrackDamage::kNoise_px, deviation_px);
   if (deviation_px == 0) return;
   RandomSequence random(seed, random_streams::kPixelNoise);
   for (MatrixD* coordinate_px : {&track.x_px, &track.y_px})
@@ -77,9 +71,7 @@ void add_pixel_noise(Track2d& track, double deviation_px, std::uint64_t seed) {
 }
 
 void drop_joints(Track2d& track, double share, std::uint64_t seed) {
-  if (!(share >= 0 && share <= 1)) {
-    throw ConfigError(fmt::format("the share of missing joints is {}; give 0 to 1", share));
-  }
+  check_range("the share of missing joints", TrackDamage::kMissingShare, share);
   if (share == 0) return;
   RandomSequence random(seed, random_streams::kMissingJoints);
   for (Eigen::Index frame = 0; frame < track.frames(); ++frame) {
@@ -91,9 +83,7 @@ void drop_joints(Track2d& track, double share, std::uint64_t seed) {
 
 std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, double seconds,
                                   std::uint64_t seed) {
-  if (!std::isfinite(seconds) || seconds < 0) {
-    throw ConfigError(fmt::format("an arm is to be hidden for {} s; give 0 or more", seconds));
-  }
+  check_range("the seconds that an arm is hidden", TrackDamage::kHidden_s, seconds);
   const Branches branches(skeleton);
   const int chest = chest_of(branches);
   if (seconds == 0 || chest < 0) return {};

@@ -215,7 +215,7 @@ std::vector<ClipResult> run_test(const Model& model,
     if (trained_on && !options.include_training)
       throw InputError(
           fmt::format("{}: the model was trained on this clip; test on others, or say "
-                      "--include-training",
+                      "`include-training`",
                       file.string()));
     ClipResult result;
     result.truth = encode_clip(file, model.modalities, options.camera, options.keep_first_frame);

@@ -1,4 +1,4 @@
-// The room comparison: baselines, and the run that scores the model beside them.
+// The room comparison: baselines, the run that scores the model beside them, and sweeps.
 // It uses motion_model, evaluation.
 // Add here: a baseline: a class behind Baseline and a line in baseline.cpp.
 #pragma once

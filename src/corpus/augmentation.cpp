@@ -67,7 +67,8 @@ void change_carriage(Motion& motion, double deviation_deg, const RandomKey& key)
 Motion other_timing(const Motion& raw, double fps, double speed, const RandomKey& key) {
   Motion faster = raw;
   faster.frame_time_s /= 1.0 + within(key, kSpeed, 0, speed);
-  return resample(faster, fps, 0.999 * uniform(key, kPhase));
+  constexpr double kBelowOne = 0.999;  // a phase of 1 would be the next frame
+  return resample(faster, fps, kBelowOne * uniform(key, kPhase));
 }
 
 /// RMS distance of the joints from their centre, over all frames that show any.

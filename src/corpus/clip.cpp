@@ -48,7 +48,7 @@ Motion prepared(Motion motion, const fs::path& path, const ClipOptions& options,
     motion = without_first_frame(motion);
     if (notices) {
       notices->push_back(fmt::format(
-          "{}: dropped the calibration pose of the first frame (--keep-first-frame keeps it)",
+          "{}: dropped the calibration pose of the first frame (`keep-first-frame` keeps it)",
           path.string()));
     }
   }

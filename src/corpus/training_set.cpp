@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/random_streams.hpp"
-#include "base/setting_checks.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "motion/resample.hpp"
@@ -49,13 +48,6 @@ void add_views(const Motion& raw, const CorpusSettings& settings, RandomKey& key
 }
 
 }  // namespace
-
-void CorpusSettings::validate() const {
-  require_positive("fps", fps);
-  require_positive("phases", phases);
-  require_positive("augment.views", augment.views);
-  require_positive("camera.fov", camera.field_of_view_deg);
-}
 
 std::size_t TrainingSet::frames() const {
   std::size_t sum = 0;

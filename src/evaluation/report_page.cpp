@@ -99,10 +99,7 @@ std::string report_page(const EvaluationReport& report) {
 }
 
 void write_report(const std::filesystem::path& folder, const EvaluationReport& report) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw InputError(fmt::format("{}: cannot be made ({})", folder.string(), error.message()));
+  make_folder(folder);
   write_text_file(folder / "summary.json", text_of(summary_json(report), 2) + "\n");
   for (const ReportTable& table : report_tables(report))
     write_text_file(folder / table.file, csv_text(table));

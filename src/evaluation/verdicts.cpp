@@ -197,7 +197,7 @@ void add_treatment(std::vector<Verdict>& list, const EvaluationReport& report) {
     list.push_back(
         {Kind::note,
          fmt::format("Every method's answer, the simpler ones' too, was fitted to the 2D "
-                     "track: --fit none shows what each says by itself.")});
+                     "track: a report without the fit shows what each says by itself.")});
 }
 
 }  // namespace

@@ -191,6 +191,7 @@ PosePrior PosePrior::around(MatrixF mean) {
 FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, const Track2d& track,
                         const KnownOfClip& known, const std::optional<TrackFitSettings>& settings) {
   check(prior, features, track);
+  if (settings) check_settings(*settings);
   ClipFit clip(prior, features, track, known);
   clip.place_root();
   if (settings) {

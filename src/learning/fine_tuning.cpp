@@ -212,7 +212,7 @@ FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& so
   FineTuner tuner(device, start, source.sequences(), windows, settings, make_loss);
   HeldOutRecord record;
   DivergenceGuard guard(
-      kStage, fmt::format("lower --fine-tuning-rate (now {:g})", settings.fine_tuning.rate));
+      kStage, fmt::format("lower `fine-tuning.rate` (now {:g})", settings.fine_tuning.rate));
   auto last = std::chrono::steady_clock::now();
   for (std::size_t done = 1; done <= steps; ++done) {
     tuner.step(done - 1);

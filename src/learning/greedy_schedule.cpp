@@ -241,8 +241,8 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
   const std::string kind = shape.kind == VisibleKind::gaussian ? "gaussian" : "binary";
   DivergenceGuard guard(
       stage,
-      fmt::format("lower --{0}-rate (now {1:g}), --{0}-rate-A ({2:g}), --{0}-rate-B ({3:g}) or "
-                  "--{0}-initial-deviation ({4:g})",
+      fmt::format("lower `{0}.rate` (now {1:g}), `{0}.rate-A` ({2:g}), `{0}.rate-B` ({3:g}) or "
+                  "`{0}.initial-deviation` ({4:g})",
                   kind, settings.rate, settings.rate_A, settings.rate_B,
                   settings.initial_deviation));
   run_epochs({stage,
@@ -263,7 +263,7 @@ Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
                              learning.least_batches);
   MultiPrediction multi_prediction(mrbm, schedule.batch(), settings);
   DivergenceGuard guard(
-      "mrbm", fmt::format("lower --mrbm-rate (now {:g}) or --mrbm-initial-deviation (now {:g})",
+      "mrbm", fmt::format("lower `mrbm.rate` (now {:g}) or `mrbm.initial-deviation` (now {:g})",
                           settings.rate, settings.initial_deviation));
   const std::pair<MatrixF, MatrixF> pairs = some_pairs(track, pose, learning.look_ahead);
   run_epochs({"mrbm",

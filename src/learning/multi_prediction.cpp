@@ -46,7 +46,7 @@ MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch,
       hidden_(mrbm.device(), steps_ * drive_.rows(), mrbm.hidden()),
       hidden_errors_(Matrix::like(hidden_)),
       row_losses_(mrbm.device(), 1, 2 * block_) {
-  if (steps_ == 0) throw ConfigError("mrbm.mean-field-steps must be at least 1");
+  if (steps_ == 0) throw ConfigError("`mrbm.mean-field-steps` must be at least 1");
   if (tile_)
     make_stacks();
   else

@@ -1,20 +1,6 @@
 #include "mcdbn/learning/settings.hpp"
 
-#include <string>
-
-#include "base/setting_checks.hpp"
-
 namespace mcdbn {
-namespace {
-
-void validate_layer(const std::string& kind, const CdSettings& settings) {
-  require_positive(kind + ".gibbs-steps", settings.gibbs_steps);
-  require_positive(kind + ".rate", settings.rate);
-  require_positive(kind + ".epochs", settings.epochs);
-  require_share(kind + ".momentum", settings.momentum);
-}
-
-}  // namespace
 
 LearningSettings LearningSettings::greedy() {
   LearningSettings settings;
@@ -48,27 +34,6 @@ LearningSettings LearningSettings::paper() {
   settings.look_ahead = 0;
   settings.least_batches = 1;
   return settings;
-}
-
-void LearningSettings::validate() const {
-  // Counts that nothing works without; histories (order, look-ahead) may be 0.
-  require_positive("hidden", hidden);
-  require_positive("layers", layers);
-  require_positive("mrbm-hidden", mrbm_hidden);
-  require_positive("batch", batch);
-  require_positive("least-batches", least_batches);
-  validate_layer("gaussian", gaussian);
-  validate_layer("binary", binary);
-  require_positive("mrbm.rate", mrbm.rate);
-  require_positive("mrbm.mean-field-steps", mrbm.mean_field_steps);
-  require_positive("mrbm.epochs", mrbm.epochs);
-  require_positive("fine-tuning.windows", fine_tuning.windows);
-  require_positive("fine-tuning.rate", fine_tuning.rate);
-  require_positive("fine-tuning.mean-field-steps", fine_tuning.mean_field_steps);
-  if (fine_tuning.window_frames < 2)
-    throw ConfigError("fine-tuning.window-frames must be at least 2");
-  require_share("fine-tuning.dropout", fine_tuning.dropout);
-  require_share("fine-tuning.average", fine_tuning.average);
 }
 
 }  // namespace mcdbn

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/safetensors.hpp"
+#include "base/setting_values.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion_model/modalities_json.hpp"
 
@@ -176,8 +177,9 @@ nlohmann::json describe_model(const std::filesystem::path& path) {
           std::filesystem::path(clip.at("path").get<std::string>()).filename().string());
     json description = {{"training_clips", clips}, {"parameters", numbers}};
     for (const char* name : {"fps", "order", "layers", "hidden", "mrbm-hidden", "camera.azimuth",
-                             "camera.elevation", "seed"})
-      if (config.contains(name)) description[name] = config.at(name);
+                             "camera.elevation", "camera.fov", "seed"})
+      if (const json::json_pointer place = record_pointer(name); config.contains(place))
+        description[name] = config.at(place);
     for (const char* name : {"look_ahead", "mean_field_steps", "early_stopping"})
       if (about.contains(name)) description[name] = about.at(name);
     return description;

@@ -58,6 +58,8 @@ SamplingRule calibrated_sampling(const Mcdbn& network, const Modalities& modalit
     throw ShapeError("calibration: as many tracks as poses are wanted");
   const std::vector<MatrixF> tracks = ten_minutes(all_tracks, modalities.fps),
                              poses = ten_minutes(all_poses, modalities.fps);
+  // The distance is a mean over ten minutes' frames already; and a thirtieth of the scale is less
+  // than samples differ by.
   constexpr std::size_t kSamples = 4, kHalvings = 6;
   RegenerationOptions options;
   const std::vector<MatrixD> answers =

@@ -21,9 +21,4 @@ std::string former_name(const std::string& setting) {
   return "joint." + (part == "positions" ? "places" : part);
 }
 
-void TrainingConfig::validate() const {
-  CorpusSettings::validate();
-  LearningSettings::validate();
-}
-
 }  // namespace mcdbn

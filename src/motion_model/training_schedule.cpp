@@ -10,6 +10,10 @@
 namespace mcdbn {
 namespace {
 
+/// Of the time that a default run takes, about, the greedy stages' part, where fine-tuning follows:
+/// what progress shows.
+constexpr double kGreedyShare = 0.1;
+
 /// An observer of one stage that shows it as the part `from` … `to` of the run.
 EpochObserver part_of_run(const EpochObserver& observer, double from, double to) {
   if (!observer) return {};
@@ -59,12 +63,12 @@ TrainedNetwork train_network(Device& device, const TrainingSet& data, std::vecto
   const ViewSource views(std::move(clips), data.modalities, config);
   Mcdbn start = random_start(device, static_cast<std::size_t>(data.tracks.front().cols()),
                              static_cast<std::size_t>(data.poses.front().cols()), config);
-  double greedy_share = 0.0;  // of the time, about
+  double done = 0.0;
   if (config.fine_tuning.from_greedy) {
-    greedy_share = 0.1;
-    start = train_greedy(device, views, config, part_of_run(observer, 0.0, greedy_share), &start);
+    done = kGreedyShare;
+    start = train_greedy(device, views, config, part_of_run(observer, 0.0, done), &start);
   }
-  return fine_tune(device, start, views.views(), config, part_of_run(observer, greedy_share, 1.0));
+  return fine_tune(device, start, views.views(), config, part_of_run(observer, done, 1.0));
 }
 
 }  // namespace mcdbn

@@ -17,7 +17,7 @@ install(FILES ${CMAKE_BINARY_DIR}/generated/mcdbn-config.cmake
         DESTINATION ${MCDBN_PACKAGE_DIR})
 
 # A static library leaves its own dependencies to whoever links it.
-set(dependencies "opencv4 clblast fmt spdlog")
+set(dependencies "opencv4 clblast fmt spdlog tomlplusplus")
 if(BUILD_SHARED_LIBS)
   set(MCDBN_PC_REQUIRES "eigen3 nlohmann_json OpenCL")
   set(MCDBN_PC_REQUIRES_PRIVATE "${dependencies}")

@@ -143,6 +143,11 @@ TEST_CASE("info says of a model what it was trained with") {
   CHECK(about.at("fps") == 30);
   CHECK(about.at("look_ahead") == 5);
   CHECK(about.at("mean_field_steps") == 2);  // fine-tuning's
+  CHECK(about.at("camera.azimuth") == 30);
+  CHECK(about.at("camera.elevation") == 10);
+  CHECK(about.at("camera.fov") == 45);
+  const std::string text = run_cli("info " + model.string()).standard_output;
+  CHECK(text.starts_with("camera.azimuth        30\n"));
 }
 
 TEST_CASE("devices: every option changes what its help says") {

@@ -70,9 +70,10 @@ Views views_of_training(const fs::path& model) {
   const TinyPipeline& pipeline = TinyPipeline::instance();
   mcdbn::TrainingConfig config;
   config.augment.views = 1;  // as kTiny says
-  mcdbn::TrainingSet views = make_augmented_views(
-      {pipeline.motion() / "walk_s01_01.bvh", pipeline.motion() / "walk_s01_02.bvh"},
-      load_model(usual_device(), model).modalities, config);
+  mcdbn::TrainingSet views =
+      make_augmented_views(mcdbn::load_clips({pipeline.motion() / "walk_s01_01.bvh",
+                                              pipeline.motion() / "walk_s01_02.bvh"}),
+                           load_model(usual_device(), model).modalities, config);
   return {std::move(views.tracks), std::move(views.poses)};
 }
 

@@ -75,9 +75,10 @@ TEST_CASE("every setting's name stands for the member that the table says") {
   for (const SettingRow& row : setting_rows()) unknown.insert(row.name);
   const TrainingConfig defaults;
   TrainingConfig config;
-  mcdbn::visit_settings(config, [&](const std::string& name, auto& member, const char* help) {
+  mcdbn::visit_settings(config, [&](const mcdbn::Setting& setting, auto& member) {
+    const std::string& name = setting.name;
     CAPTURE(name);
-    CHECK(std::string(help).size() > 3);
+    CHECK(setting.help.size() > 3);
     CHECK(unknown.erase(name) == 1);
     const SettingRow& row = setting_row(name);
     CHECK(row.read(defaults) != row.value);
@@ -90,6 +91,21 @@ TEST_CASE("every setting's name stands for the member that the table says") {
   });
   for (const std::string& name : unknown) FAIL_CHECK(name << " is no setting");
   for (const SettingRow& row : setting_rows()) CHECK(row.read(config) == row.value);
+}
+
+TEST_CASE("the help says each setting's unit, default, reason and range, by groups") {
+  const std::string help = run_cli("train --help").standard_output;
+  const auto said = [&](const std::string& words) { return help.find(words) != std::string::npos; };
+  CHECK(said("\n  --hidden UNITS=768 "));
+  CHECK(said("hidden units of every CRBM (at least 1)"));
+  CHECK(said("\n  --gaussian-rate NUMBER=0.001"));
+  CHECK(said("\n  --camera-fov DEGREES=45.0"));
+  CHECK(said("vertical field of view (above 0 and below"));
+  CHECK(said("where the skeleton has sides (on unless told otherwise)"));
+  CHECK(said("keep a leading calibration pose (off unless told otherwise)"));
+  for (const char* group : {"Settings:", "Settings of gaussian:", "Settings of fine-tuning:",
+                            "Settings of augment:", "Settings of camera:"})
+    CHECK(said(std::string("\n") + group + "\n"));
 }
 
 TEST_CASE("flags of every setting arrive in config.toml and in the model's record") {
@@ -185,6 +201,33 @@ TEST_CASE("--preset and --stages say which stages there are and whose defaults h
                  TrainingConfig{}, {{"fine-tuning.steps", steps}, {"fine-tuning.from-greedy", 0}});
   check_settings(settings_of_options("--stages greedy --fine-tuning-steps 5 --layers 3"),
                  TrainingConfig::greedy(), Wanted{{"layers", 3}});
+}
+
+TEST_CASE("an older model's settings are read as they are, out of today's ranges too") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  mcdbn::Safetensors file = mcdbn::read_safetensors(pipeline.model());
+  json about = json::parse(file.metadata.at("mcdbn"));
+  json& config = about.at("config");
+  config["joint"] = config.at("fine-tuning");
+  config.erase("fine-tuning");
+  for (auto& [name, value] : config["joint"].items())
+    if (name == "people-power") value = 2.0;
+  config["joint"]["places"] = config["joint"].at("positions");
+  config["joint"].erase("positions");
+  file.metadata["mcdbn"] = about.dump();
+  const fs::path older = pipeline.folder("older.safetensors");
+  write_safetensors(older, file);
+  const auto evaluated = [&](const fs::path& model) {
+    const CliResult result = run_cli(fmt::format("evaluate --model '{}' --test {} --json --quiet",
+                                                 model.string(), pipeline.test_clips()));
+    CAPTURE(result.standard_error);
+    REQUIRE(result.exit_code == 0);
+    json summary = json::parse(result.standard_output);
+    summary.erase("model_file");
+    return summary;
+  };
+  CHECK(evaluated(older) == evaluated(pipeline.model()));
 }
 
 TEST_CASE("fine-tuning's settings are known by their former names too") {

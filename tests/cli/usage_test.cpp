@@ -64,6 +64,20 @@ TEST_CASE("wrong usage is exit code 2") {
   CHECK(run_cli("frobnicate").standard_error.find("frobnicate") != std::string::npos);
 }
 
+TEST_CASE("a command that does not exist is exit code 2 with those that do, asked for help too") {
+  for (const char* call : {"generate", "generate --help", "--help generate", "generate -h",
+                           "generate --version", "generate --json"}) {
+    CAPTURE(call);
+    const CliResult result = run_cli(call);
+    check_one_line_error(result, 2);
+    CHECK(result.standard_error.find("unknown command generate; there are devices, synthesize") !=
+          std::string::npos);
+    for (const char* command : {"project", "render", "train", "regenerate", "evaluate", "info"})
+      CHECK(result.standard_error.find(std::string(", ") + command) != std::string::npos);
+  }
+  CHECK(run_cli("train --help").exit_code == 0);
+}
+
 TEST_CASE("devices lists what there is") {
   if (!have_device()) return;
   const CliResult text = run_cli("devices");

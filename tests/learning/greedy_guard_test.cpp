@@ -96,8 +96,8 @@ TEST_CASE("a loss that grows while it is finite stops the greedy training at tha
     CHECK(divergence.losses.size() == stop);
     CHECK(contains(divergence.message, "in stage pose.0 at epoch " + std::to_string(stop + 1)));
     CHECK(contains(divergence.message,
-                   "; lower --gaussian-rate (now 0.07), --gaussian-rate-A (0.7), "
-                   "--gaussian-rate-B (0.021) or --gaussian-initial-deviation (0.31)"));
+                   "; lower `gaussian.rate` (now 0.07), `gaussian.rate-A` (0.7), "
+                   "`gaussian.rate-B` (0.021) or `gaussian.initial-deviation` (0.31)"));
   });
 }
 
@@ -115,11 +115,11 @@ TEST_CASE("the paper's own rates and weights make the loss grow, which stops the
     });
     check_growth(divergence);
     CHECK(contains(divergence.message, "in stage crbm at epoch "));
-    CHECK(contains(divergence.message, "lower --gaussian-rate (now 0.1)"));
+    CHECK(contains(divergence.message, "lower `gaussian.rate` (now 0.1)"));
   });
 }
 
-TEST_CASE("the greedy training names the modality, the kind of layer and the flags to lower") {
+TEST_CASE("the greedy training names the modality, the kind of layer and the settings to lower") {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   GreedyScene scene = scene_of_different_sizes();
   scene.tracks.back()(5, 1) = kNan;
@@ -128,7 +128,7 @@ TEST_CASE("the greedy training names the modality, the kind of layer and the fla
         [&](const EpochObserver& observer) { train_on_device(device, scene, observer); });
     INFO(track.message);
     CHECK(contains(track.message, "in stage track.0 at epoch 1: the loss is "));
-    CHECK(contains(track.message, "nan; lower --gaussian-rate (now 0.03)"));
+    CHECK(contains(track.message, "nan; lower `gaussian.rate` (now 0.03)"));
 
     const LearningSettings settings = settings_of(scene.plan);
     MatrixF codes = waves(20, 4).cwiseAbs() / 2;
@@ -142,8 +142,8 @@ TEST_CASE("the greedy training names the modality, the kind of layer and the fla
     INFO(binary.message);
     CHECK(contains(binary.message, "in stage upper at epoch 1: the loss is "));
     CHECK(contains(binary.message,
-                   "; lower --binary-rate (now 0.2), --binary-rate-A (0.07), --binary-rate-B (0.1) "
-                   "or --binary-initial-deviation (0.7)"));
+                   "; lower `binary.rate` (now 0.2), `binary.rate-A` (0.07), `binary.rate-B` (0.1) "
+                   "or `binary.initial-deviation` (0.7)"));
   });
 }
 
@@ -163,6 +163,6 @@ TEST_CASE("an MRBM whose loss grows is stopped and says what to lower") {
     check_growth(divergence);
     CHECK(contains(divergence.message, "in stage mrbm at epoch 2: the loss is "));
     CHECK(contains(divergence.message,
-                   "; lower --mrbm-rate (now 40) or --mrbm-initial-deviation (now 0.4)"));
+                   "; lower `mrbm.rate` (now 40) or `mrbm.initial-deviation` (now 0.4)"));
   });
 }

@@ -13,11 +13,11 @@ using namespace mcdbn::test;
 
 namespace {
 
-struct Setting {
+struct CalibrationScene {
   Modalities modalities = SmallFigure().modalities();
   std::vector<MatrixF> tracks, poses;
 
-  Setting() {
+  CalibrationScene() {
     const std::array<std::size_t, 3> frames{17, 8, 11};
     for (std::size_t i = 0; i < 3; ++i) {
       const auto seed = static_cast<unsigned>(i);
@@ -48,12 +48,12 @@ double distance(const MatrixD& x, const MatrixD& y) {
 }
 
 /// At temperature 1 samples stray from the single answer half as far as that is off.
-double scale_by_halving(const Mcdbn& network, const Setting& setting) {
-  const auto answers = regenerate(network, setting.tracks);
+double scale_by_halving(const Mcdbn& network, const CalibrationScene& scene) {
+  const auto answers = regenerate(network, scene.tracks);
   double wanted = 0;
   for (std::size_t i = 0; i < answers.size(); ++i)
-    wanted += 0.5 * distance(positions(setting.modalities, answers[i]),
-                             positions(setting.modalities, setting.poses[i]));
+    wanted += 0.5 * distance(positions(scene.modalities, answers[i]),
+                             positions(scene.modalities, scene.poses[i]));
   RegenerationOptions options;
   options.samples = 4;
   options.temperature = 1.0;
@@ -62,11 +62,11 @@ double scale_by_halving(const Mcdbn& network, const Setting& setting) {
   double scale = 1.0;
   for (double step = 0.5; step > 0.01; step /= 2) {
     options.sampling.scale = scale;
-    const auto samples = regenerate(network, setting.tracks, options);
+    const auto samples = regenerate(network, scene.tracks, options);
     double strayed = 0;
     for (std::size_t i = 0; i < samples.size(); ++i)
-      strayed += 0.25 * distance(positions(setting.modalities, samples[i]),
-                                 positions(setting.modalities, answers[i / 4]));
+      strayed += 0.25 * distance(positions(scene.modalities, samples[i]),
+                                 positions(scene.modalities, answers[i / 4]));
     scale += strayed > wanted ? -step : step;
   }
   return scale;
@@ -76,22 +76,22 @@ double scale_by_halving(const Mcdbn& network, const Setting& setting) {
 
 TEST_CASE("the scale of samples is where they stray half as far as the answers are off") {
   on_every_device([](Device& device) {
-    Setting setting;
-    Mcdbn network = random_network(device, setting.modalities);
+    CalibrationScene scene;
+    Mcdbn network = random_network(device, scene.modalities);
     std::vector<double> scales;
-    const auto usual = regenerate(network, setting.tracks);
+    const auto usual = regenerate(network, scene.tracks);
     for (const float error : {0.06F, 0.12F}) {
       // Poses near the answers and further from them.
-      const auto noise = setting.poses;
-      for (std::size_t i = 0; i < noise.size(); ++i) setting.poses[i] = usual[i] + error * noise[i];
+      const auto noise = scene.poses;
+      for (std::size_t i = 0; i < noise.size(); ++i) scene.poses[i] = usual[i] + error * noise[i];
       const SamplingRule rule =
-          calibrated_sampling(network, setting.modalities, setting.tracks, setting.poses);
-      CHECK(rule.scale == scale_by_halving(network, setting));
+          calibrated_sampling(network, scene.modalities, scene.tracks, scene.poses);
+      CHECK(rule.scale == scale_by_halving(network, scene));
       CHECK(rule.gibbs_steps == 0);
       CHECK(rule.mrbm_gibbs_steps == 4);
       CHECK(rule.steady);
       scales.push_back(rule.scale);
-      setting.poses = noise;
+      scene.poses = noise;
     }
     CHECK(scales[0] != scales[1]);
     for (const double scale : scales) {
@@ -99,25 +99,25 @@ TEST_CASE("the scale of samples is where they stray half as far as the answers a
       CHECK(scale < 1.95);
     }
     network.mean_field_steps = 0;
-    CHECK(calibrated_sampling(network, setting.modalities, setting.tracks, setting.poses)
+    CHECK(calibrated_sampling(network, scene.modalities, scene.tracks, scene.poses)
               .mrbm_gibbs_steps == 1);
   });
 }
 
 TEST_CASE("calibration looks at every so many clips once they are longer than ten minutes") {
   on_every_device([](Device& device) {
-    Setting setting;
-    const Mcdbn network = random_network(device, setting.modalities);
-    const auto answers = regenerate(network, setting.tracks);
+    CalibrationScene scene;
+    const Mcdbn network = random_network(device, scene.modalities);
+    const auto answers = regenerate(network, scene.tracks);
     for (std::size_t i = 0; i < 3; ++i)
-      setting.poses[i] = answers[i] + 0.04F * static_cast<float>(i + 1) * setting.poses[i];
+      scene.poses[i] = answers[i] + 0.04F * static_cast<float>(i + 1) * scene.poses[i];
     const auto scale_of = [&](double fps, const std::vector<std::size_t>& clips) {
-      Modalities modalities = setting.modalities;
+      Modalities modalities = scene.modalities;
       modalities.fps = fps;
       std::vector<MatrixF> tracks, poses;
       for (const std::size_t i : clips) {
-        tracks.push_back(setting.tracks[i]);
-        poses.push_back(setting.poses[i]);
+        tracks.push_back(scene.tracks[i]);
+        poses.push_back(scene.poses[i]);
       }
       return calibrated_sampling(network, modalities, tracks, poses).scale;
     };

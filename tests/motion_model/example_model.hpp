@@ -44,8 +44,7 @@ struct ExampleModel {
              {"layers", 2},
              {"hidden", 31},
              {"mrbm-hidden", 17},
-             {"camera.azimuth", {20, -40}},
-             {"camera.elevation", 7.5},
+             {"camera", {{"azimuth", -40.0}, {"elevation", 7.5}, {"fov", 61.0}}},
              {"rate", 1e-3},
              {"name", "walk"}},
             EarlyStopping{{"c.bvh", "d.bvh"}, 75, 1.0 / 3.0}};

@@ -141,6 +141,6 @@ TEST_CASE("fine-tuning that blows up is stopped and says what to lower") {
   small.config.fine_tuning.rate = 2.0;
   on_every_device([&](Device& device) {
     CHECK_THROWS_AS(small.train(device), DivergenceError);
-    CHECK_THROWS_WITH(small.train(device), doctest::Contains("--fine-tuning-rate (now 2)"));
+    CHECK_THROWS_WITH(small.train(device), doctest::Contains("`fine-tuning.rate` (now 2)"));
   });
 }

@@ -15,8 +15,8 @@ using namespace mcdbn::test;
 namespace {
 
 /// A small network with random weights, and smooth tracks for it.
-struct Setting {
-  Setting() {
+struct CalibrationScene {
+  CalibrationScene() {
     config.order = 2;
     config.layers = 2;
     config.hidden = config.mrbm_hidden = 24;
@@ -63,15 +63,15 @@ double tremor(const MatrixF& x) {
 }  // namespace
 
 TEST_CASE("samples stray further where the network's answers are further from the clips") {
-  const Setting setting;
+  const CalibrationScene scene;
   on_every_device([&](Device& device) {
-    const Mcdbn network = setting.network(device);
-    const auto answers = regenerate(network, setting.tracks);
+    const Mcdbn network = scene.network(device);
+    const auto answers = regenerate(network, scene.tracks);
     const auto scale_for = [&](float error) {
       std::vector<MatrixF> poses = answers;
       for (MatrixF& pose : poses) pose += error * MatrixF::Random(pose.rows(), pose.cols());
       const SamplingRule rule =
-          calibrated_sampling(network, setting.figure.modalities(), setting.tracks, poses);
+          calibrated_sampling(network, scene.figure.modalities(), scene.tracks, poses);
       CHECK(rule.steady);
       CHECK(rule.gibbs_steps == 0);
       CHECK(rule.mrbm_gibbs_steps == network.mean_field_steps);
@@ -87,26 +87,26 @@ TEST_CASE("samples stray further where the network's answers are further from th
 }
 
 TEST_CASE("steady samples differ from each other and do not tremble, drawn anew they do") {
-  const Setting setting;
+  const CalibrationScene scene;
   on_every_device([&](Device& device) {
-    const Mcdbn network = setting.network(device);
+    const Mcdbn network = scene.network(device);
     SamplingRule rule{.gibbs_steps = 0, .mrbm_gibbs_steps = 2, .steady = true};
-    const MatrixF answer = regenerate(network, setting.tracks)[0];
-    const auto steady = regenerate(network, setting.tracks, sampled(rule, 3));
+    const MatrixF answer = regenerate(network, scene.tracks)[0];
+    const auto steady = regenerate(network, scene.tracks, sampled(rule, 3));
     REQUIRE(steady.size() == 6);
     CHECK(mean_distance(steady[0], steady[1]) > 0.1 * answer.norm() / std::sqrt(answer.rows()));
     for (std::size_t i = 0; i < 3; ++i) CHECK(tremor(steady[i]) < 3.0 * tremor(answer));
     rule.steady = false;
-    for (const MatrixF& sample : regenerate(network, {setting.tracks[0]}, sampled(rule, 3)))
+    for (const MatrixF& sample : regenerate(network, {scene.tracks[0]}, sampled(rule, 3)))
       CHECK(tremor(sample) > 10.0 * tremor(answer));
   });
 }
 
 TEST_CASE("calibration wants a pose for each track") {
-  const Setting setting;
+  const CalibrationScene scene;
   on_every_device([&](Device& device) {
-    CHECK_THROWS_AS(calibrated_sampling(setting.network(device), setting.figure.modalities(),
-                                        setting.tracks, {}),
-                    ShapeError);
+    CHECK_THROWS_AS(
+        calibrated_sampling(scene.network(device), scene.figure.modalities(), scene.tracks, {}),
+        ShapeError);
   });
 }

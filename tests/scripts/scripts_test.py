@@ -80,7 +80,7 @@ class Scripts(unittest.TestCase):
             "hidden=8,order=2": "ok", "hidden=8,order=3": "ok", "hidden=0,order=2": "failed",
             "hidden=0,order=3": "failed", "gaussian.rate=50.0": "failed",
             "fine-tuning.steps=0": "ok"})
-        self.assertIn("lower --gaussian-rate", records["gaussian.rate=50.0"]["error"])
+        self.assertIn("lower `gaussian.rate`", records["gaussian.rate=50.0"]["error"])
         layers = {name: record["settings"].get("layers") for name, record in records.items()}
         self.assertEqual(layers["fine-tuning.steps=0"], 2, "the architecture of --stages greedy")
         self.assertEqual(layers["hidden=8,order=2"], 1)

@@ -1,5 +1,5 @@
-// The room base: errors, matrices, random numbers, text and files: what every other room needs.
-// It uses no other room.
+// The room base: errors, settings, matrices, random numbers, text and files: what every other room
+// needs. It uses no other room.
 // Add here: a helper that knows neither devices nor motion: a pair of files in src/base, its header
 // public only if another public header needs it.
 #pragma once
@@ -9,7 +9,8 @@
 
 namespace mcdbn {
 
-/// Base of everything the library throws on purpose; cli/ maps each kind to an exit code.
+/// Base of everything the library throws on purpose; cli/ maps each kind to an exit code. Texts
+/// name settings in backquotes, `gaussian.rate`, which cli/ turns into flags.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -41,6 +42,12 @@ class ConfigError : public Error {
 
 /// Training stopped by the divergence guard; the text says what to lower.
 class DivergenceError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Stopped by whoever watched the work, by throwing this.
+class Interrupted : public Error {
  public:
   using Error::Error;
 };

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "mcdbn/base/settings.hpp"
 #include "mcdbn/camera/track.hpp"
 #include "mcdbn/motion/skeleton.hpp"
 
@@ -25,12 +26,28 @@ struct Camera {
 /// Where to put a camera that looks at a clip. Azimuth 0 looks along the clip's −z axis
 /// (at a figure that faces +z), positive azimuth moves the camera to the figure's left (+x).
 struct CameraPlacement {
+  /// A pinhole sees less than a half space.
+  static constexpr Range kFieldOfView_deg = between(0, 180);
+
   double azimuth_deg = 30.0;
   double elevation_deg = 10.0;
   std::optional<double> distance;   ///< file units; unset: the whole clip's body just fits in view
   double field_of_view_deg = 45.0;  ///< vertical
   int width_px = 1920, height_px = 1080;
   bool operator==(const CameraPlacement&) const = default;
+
+  /// The view; how far away the camera stands and its image are for place_camera alone.
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"azimuth", any_number(), "degrees",
+                  "around the figure, to its left (+x); 0 is in front of one that faces +z"},
+          self.azimuth_deg);
+    // From right above a figure nothing says which way it faces.
+    visit(Setting{"elevation", within(-89, 89), "degrees", "above the horizon"},
+          self.elevation_deg);
+    visit(Setting{"fov", kFieldOfView_deg, "degrees", "vertical field of view"},
+          self.field_of_view_deg);
+  }
 };
 
 /// camera_from_world of that azimuth and elevation, with the world's +y up.

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "mcdbn/base/random.hpp"
+#include "mcdbn/base/settings.hpp"
 #include "mcdbn/camera/camera.hpp"
 #include "mcdbn/camera/track.hpp"
 
@@ -11,15 +12,47 @@ namespace mcdbn {
 /// How far a view of a clip may be from the clip as it was captured: other people, other cameras,
 /// other ways to hold oneself. Deviations are of normal draws, one a view unless it says otherwise.
 struct AugmentationSettings {
-  std::size_t views = 20;  ///< of each clip
-  bool mirror = true;      ///< every other view, where the skeleton has sides
-  double azimuth_deg = 0.0, elevation_deg = 0.0;  ///< the camera turns by up to so much
-  double distance = 0.0;                          ///< relative deviation of the camera's distance
-  double bone = 0.05;     ///< relative deviation of each bone's length, both sides alike
-  double turn_deg = 2.0;  ///< each joint is held otherwise, throughout the clip
-  double speed = 0.05;    ///< up to so much faster or slower
-  double noise_px = 0.5;  ///< mean deviation of the 2D joints, up to twice as much in a view
-  double missing = 0.3;   ///< share of the views in which limbs go out of sight (hide_limbs)
+  std::size_t views = 20;
+  bool mirror = true;
+  double azimuth_deg = 0.0, elevation_deg = 0.0;
+  double distance = 0.0;
+  double bone = 0.05;
+  double turn_deg = 2.0;
+  double speed = 0.05;
+  double noise_px = 0.5;
+  double missing = 0.3;
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"views", at_least(1), "views", "of each clip; fewer of more than some two hours"},
+          self.views);
+    visit(Setting{"mirror", on_or_off(), "",
+                  "exchange left and right in every other view, where the skeleton has sides"},
+          self.mirror);
+    visit(Setting{"azimuth", within(0, 180), "degrees",
+                  "the camera goes round by up to so much: for tracks of unknown cameras"},
+          self.azimuth_deg);
+    visit(Setting{"elevation", within(0, 90), "degrees", "the camera rises or sinks likewise"},
+          self.elevation_deg);
+    visit(Setting{"distance", at_least(0), "",
+                  "relative deviation of the camera's distance: for other perspectives"},
+          self.distance);
+    visit(Setting{"bone", at_least(0), "",
+                  "relative deviation of each bone's length, both sides alike: for other people"},
+          self.bone);
+    visit(Setting{"turn", at_least(0), "degrees",
+                  "deviation of how each joint is held throughout a clip: for other postures"},
+          self.turn_deg);
+    // The clip takes 1 / (1 ± speed) of its time.
+    visit(Setting{"speed", share_below_one(), "", "up to so much faster or slower"}, self.speed);
+    visit(Setting{"noise", at_least(0), "px",
+                  "mean deviation of the 2D joints of a 200 px figure, up to twice it in a view: "
+                  "trackers are no better"},
+          self.noise_px);
+    visit(Setting{"missing", within(0, 1), "",
+                  "share of the views in which limbs go out of sight for a while"},
+          self.missing);
+  }
 };
 
 /// A view of a clip before scaling.

@@ -16,13 +16,27 @@ namespace mcdbn {
 /// How clips become training sequences.
 struct CorpusSettings {
   double fps = 30.0;
-  std::size_t phases = 1;  ///< sampling grids taken from each clip where its own rate allows
+  std::size_t phases = 1;
   bool keep_first_frame = false;
-  CameraPlacement camera;
   AugmentationSettings augment;
+  CameraPlacement camera;
 
   /// @throws ConfigError naming the setting that is out of range
-  void validate() const;
+  void validate() const { check_settings(*this); }
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"fps", above(0), "Hz", "rate that clips are resampled to, the model's own"},
+          self.fps);
+    visit(Setting{"phases", at_least(1), "grids",
+                  "times that each clip is sampled, shifted, where its own rate allows: a fast "
+                  "clip's other frames say something, too"},
+          self.phases);
+    visit(Setting{"keep-first-frame", on_or_off(), "", "keep a leading calibration pose"},
+          self.keep_first_frame);
+    visit_group("augment", self.augment, visit);
+    visit_group("camera", self.camera, visit);
+  }
 };
 
 /// Synchronized clips of both modalities, standardized: [frames x dimension] each.

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "mcdbn/base/settings.hpp"
 #include "mcdbn/camera/camera.hpp"
 #include "mcdbn/camera/track.hpp"
 #include "mcdbn/features/modalities.hpp"
@@ -38,22 +39,52 @@ struct KnownOfClip {
 /// 35 and 39, held out of training, over clean, noisy and incomplete tracks together; footing_m
 /// also on Bandai's walks.
 struct TrackFitSettings {
-  /// Standard deviation of an orientation about each axis where PosePrior::deviation is 1.
   double turn_deg = 25;
-  double change = 0.4;      ///< of a turn from those of the frames around it, as a share of it
-  double likeness = 0.5;    ///< correlation of a joint's turn with its parent's
-  double position_m = 0.1;  ///< standard deviation of the root's position, on a 1.7 m body
-  /// How far a foot that stands still on the image strays from the depth that it has in the frames
-  /// around, on a 1.7 m body.
+  double change = 0.4;
+  double likeness = 0.5;
+  double position_m = 0.1;
   double footing_m = 0.0125;
-  double caution = 2;  ///< how many times the track's noise it is taken to be off by
-  /// How far, at least, joints are from where a body of the skeleton's proportions has them, on a
-  /// 1.7 m body: for a skeleton that is not the person's own.
+  double caution = 2;
   double proportions_m = 0;
-  /// How fast the answer's error changes (RMS of its acceleration, on a 1.7 m body): with the
-  /// track's noise it says over how many frames to smooth.
   double bend_m_s2 = 0.7;
-  double fade_s = 0.1;  ///< how long a joint's correction outlives the joint's last observation
+  double fade_s = 0.1;
+
+  /// Metres are those of a 1.7 m body.
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(
+        Setting{
+            "turn", above(0), "degrees",
+            "standard deviation of an orientation about each axis where PosePrior::deviation is 1"},
+        self.turn_deg);
+    visit(Setting{"change", above(0), "",
+                  "deviation of a turn from those of the frames around it, as a share of its own"},
+          self.change);
+    // At 1 a joint would turn with its parent and no other way.
+    visit(Setting{"likeness", share_below_one(), "",
+                  "correlation of a joint's turn with its parent's"},
+          self.likeness);
+    visit(Setting{"position", above(0), "m", "standard deviation of the root's position"},
+          self.position_m);
+    visit(Setting{"footing", above(0), "m",
+                  "how far a foot that stands still on the image strays from the depth that it has "
+                  "in the frames around"},
+          self.footing_m);
+    visit(Setting{"caution", above(0), "",
+                  "how many times the track's noise it is taken to be off by"},
+          self.caution);
+    visit(Setting{"proportions", at_least(0), "m",
+                  "how far, at least, joints are from where a body of the skeleton's proportions "
+                  "has them: for a skeleton that is not the person's own"},
+          self.proportions_m);
+    visit(Setting{"bend", above(0), "m/s2",
+                  "how fast the answer's error changes (RMS of its acceleration): with the track's "
+                  "noise it says over how many frames to smooth"},
+          self.bend_m_s2);
+    visit(Setting{"fade", above(0), "seconds",
+                  "how long a joint's correction outlives the joint's last observation"},
+          self.fade_s);
+  }
 };
 
 /// A motion that meets its track.

@@ -3,48 +3,133 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "mcdbn/base/settings.hpp"
+
 namespace mcdbn {
 
 /// How one kind of CRBM layer is trained (Algorithm 2, eq 36 to 41).
 struct CdSettings {
-  std::size_t gibbs_steps = 5;  ///< k of CD-k
-  double rate = 1e-3;           ///< of W, a and b
-  double rate_A = 1e-5;         ///< much smaller, or A explains everything by itself
-  double rate_B = 1e-3;
+  std::size_t gibbs_steps = 5;
+  double rate = 1e-3, rate_A = 1e-5, rate_B = 1e-3;
   double momentum = 0.9;
-  std::size_t momentum_from_epoch = 5;  ///< 0 before
-  double weight_decay = 2e-4;           ///< of W, A and B
-  double initial_deviation = 0.01;      ///< of the first weights, where no fine-tuning follows
+  std::size_t momentum_from_epoch = 5;
+  double weight_decay = 2e-4;
+  double initial_deviation = 0.01;
   std::size_t epochs = 3;
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    // So many steps, and some more, have random numbers of their own (greedy_schedule.cpp).
+    visit(Setting{"gibbs-steps", within(1, 1000), "steps",
+                  "k of CD-k: more follow the likelihood's gradient closer and take longer"},
+          self.gibbs_steps);
+    visit(Setting{"rate", above(0), "", "learning rate of W and the biases"}, self.rate);
+    visit(Setting{"rate-A", at_least(0), "",
+                  "learning rate of A (history to visible); small, or A explains all by itself"},
+          self.rate_A);
+    visit(Setting{"rate-B", at_least(0), "", "learning rate of B (history to hidden)"},
+          self.rate_B);
+    visit(Setting{"momentum", share_below_one(), "",
+                  "share of a step that goes on in the next: evens out what draws do to it"},
+          self.momentum);
+    visit(Setting{"momentum-from-epoch", at_least(0), "epochs",
+                  "no momentum in so many first epochs, whose gradients still turn"},
+          self.momentum_from_epoch);
+    visit(Setting{"weight-decay", at_least(0), "",
+                  "decay of W, A and B, times the rate: keeps weights that say little small"},
+          self.weight_decay);
+    visit(Setting{"initial-deviation", at_least(0), "",
+                  "spread of the first weights where no fine-tuning follows, which has its own"},
+          self.initial_deviation);
+    visit(Setting{"epochs", at_least(1), "epochs",
+                  "rounds over the data; without fine-tuning 100, binary 50"},
+          self.epochs);
+  }
 };
 
 /// Multi-prediction training of the MRBM (eq 42).
 struct MultiPredictionSettings {
-  double rate = 3e-4;  ///< Adam's, for the first half; then it falls in a line to a fiftieth
+  double rate = 3e-4;
   double weight_decay = 0.0;
-  double initial_deviation = 0.01;  ///< of the first weights, where no fine-tuning follows
+  double initial_deviation = 0.01;
   std::size_t mean_field_steps = 5;
   std::size_t epochs = 1;
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"rate", above(0), "",
+                  "Adam's rate; falls in a line to a fiftieth over the second half"},
+          self.rate);
+    visit(
+        Setting{
+            "weight-decay", at_least(0), "",
+            "decoupled decay of the weights, times the rate: keeps those small that say little"},
+        self.weight_decay);
+    visit(Setting{"initial-deviation", at_least(0), "",
+                  "spread of the first weights where no fine-tuning follows, which has its own"},
+          self.initial_deviation);
+    visit(Setting{"mean-field-steps", at_least(1), "steps",
+                  "unrolled steps of eq 32 and 33: more come nearer to their fixed point"},
+          self.mean_field_steps);
+    visit(Setting{"epochs", at_least(1), "epochs", "rounds over the codes; without fine-tuning 30"},
+          self.epochs);
+  }
 };
 
 /// Fine-tuning: MinVI through the whole stack (fine_tuning.hpp).
 struct FineTuningSettings {
-  std::size_t steps = 3000;  ///< mini-batches; 0 leaves the stage out
-  /// The greedy stages come first, on the same views and from weights of the size that fine-tuning
-  /// wants.
+  std::size_t steps = 3000;
   bool from_greedy = true;
-  std::size_t windows = 48;  ///< in a mini-batch
-  /// Windows are drawn from people as their frames to this power: 1 draws every frame alike, 0
-  /// every person, however many clips there are of them.
+  std::size_t windows = 48;
   double people_power = 0.5;
-  std::size_t window_frames = 20;  ///< judged frames of a window
-  std::size_t settle_frames = 4;   ///< frames before them that run freely too
-  double rate = 2e-3;              ///< Adam's; falls along a cosine to a fiftieth
-  double weight_decay = 1.0;       ///< decoupled, times the rate
-  double dropout = 0.0;            ///< of hidden units, the same throughout a window
-  double average = 0.995;  ///< kept of the moving average of parameters, which is the result
-  double reverse = 0.1;    ///< weight of the other direction, 2D from 3D
+  std::size_t window_frames = 20, settle_frames = 4;
+  double rate = 2e-3;
+  double weight_decay = 1.0;
+  double dropout = 0.0;
+  double average = 0.995;
+  double reverse = 0.1;
   std::size_t mean_field_steps = 2;
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(
+        Setting{"steps", at_least(0), "mini-batches", "how long the stage lasts; 0 leaves it out"},
+        self.steps);
+    visit(Setting{"from-greedy", on_or_off(), "",
+                  "the greedy stages come first, on the same views and from weights of the size "
+                  "that fine-tuning wants; else they are left out"},
+          self.from_greedy);
+    visit(Setting{"windows", at_least(1), "windows", "of a mini-batch"}, self.windows);
+    visit(Setting{"people-power", within(0, 1), "",
+                  "windows are drawn from people as their frames to this power: 1: every frame "
+                  "counts alike; 0: every person, told by their bones"},
+          self.people_power);
+    // The loss judges steps from frame to frame, too.
+    visit(Setting{"window-frames", at_least(2), "frames", "judged frames of a window"},
+          self.window_frames);
+    visit(Setting{"settle-frames", at_least(0), "frames",
+                  "free-running frames before the judged ones, whose own errors they inherit"},
+          self.settle_frames);
+    visit(Setting{"rate", above(0), "", "Adam's rate; falls along a cosine to a fiftieth"},
+          self.rate);
+    visit(
+        Setting{
+            "weight-decay", at_least(0), "",
+            "decoupled decay of the weights, times the rate: keeps those small that say little"},
+        self.weight_decay);
+    visit(Setting{"dropout", share_below_one(), "",
+                  "share of hidden units that are left out, the same throughout a window"},
+          self.dropout);
+    visit(Setting{"average", share_below_one(), "",
+                  "what a step keeps of the parameters' moving average, which is the result"},
+          self.average);
+    visit(Setting{"reverse", at_least(0), "",
+                  "weight of the other direction, 2D from 3D, which stays trained by it"},
+          self.reverse);
+    visit(Setting{"mean-field-steps", at_least(1), "steps",
+                  "unrolled steps of eq 32 and 33, in training and in the model"},
+          self.mean_field_steps);
+  }
 };
 
 /// The network's size and how it is learnt, whatever the data are: the paper's Table 2 and section
@@ -57,10 +142,9 @@ struct LearningSettings {
   std::size_t hidden = 768;
   std::size_t layers = 1;
   std::size_t mrbm_hidden = 512;
-  std::size_t look_ahead = 5;  ///< the MRBM pairs the 2D code of frame t + look_ahead with 3D of t
+  std::size_t look_ahead = 5;
   std::size_t batch = 100;
-  /// An epoch has at least so many mini-batches: few clips are gone over several times in it, or
-  /// the rates and epochs that suit an hour of motion would stop long before a minute's was learnt.
+  /// The rates and epochs that suit an hour of motion would stop long before a minute's was learnt.
   std::size_t least_batches = 40;
 
   CdSettings gaussian;
@@ -75,7 +159,31 @@ struct LearningSettings {
   /// MRBM of 150, no look-ahead. Diverges: the guard says so.
   static LearningSettings paper();
   /// @throws ConfigError naming the setting that is out of range
-  void validate() const;
+  void validate() const { check_settings(*this); }
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"seed", at_least(0), "", "of every random number"}, self.seed);
+    visit(Setting{"order", at_least(0), "frames", "history that every CRBM sees (N)"}, self.order);
+    visit(Setting{"hidden", at_least(1), "units", "hidden units of every CRBM"}, self.hidden);
+    // As many layers have random numbers of their own (greedy_schedule.cpp).
+    visit(Setting{"layers", within(1, 64), "CRBMs", "in each CDBN, each on the code of the last"},
+          self.layers);
+    visit(Setting{"mrbm-hidden", at_least(1), "units", "hidden units of the MRBM"},
+          self.mrbm_hidden);
+    visit(Setting{"look-ahead", at_least(0), "frames",
+                  "how much later the 2D is that 3D is inferred from; 0 is causal, the paper's"},
+          self.look_ahead);
+    visit(Setting{"batch", at_least(1), "windows", "of a mini-batch of the greedy stages"},
+          self.batch);
+    visit(Setting{"least-batches", at_least(1), "mini-batches",
+                  "of an epoch, at least: few clips are gone over several times in it"},
+          self.least_batches);
+    visit_group("gaussian", self.gaussian, visit);
+    visit_group("binary", self.binary, visit);
+    visit_group("mrbm", self.mrbm, visit);
+    visit_group("fine-tuning", self.fine_tuning, visit);
+  }
 };
 
 }  // namespace mcdbn

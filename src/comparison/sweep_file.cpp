@@ -1,16 +1,16 @@
 #include <fmt/format.h>
 
+#include "comparison/sweep.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "settings_file.hpp"
-#include "sweep.hpp"
+#include "motion_model/settings_file.hpp"
 
-namespace mcdbn::cli {
+namespace mcdbn {
 namespace {
 
 namespace fs = std::filesystem;
 
 [[noreturn]] void reject(const fs::path& file, const toml::node& node, const std::string& what) {
-  throw ConfigError(fmt::format("{}: {}", location_of(file, node.source()), what));
+  throw ConfigError(fmt::format("{}: {}", location_of(file, node), what));
 }
 
 nlohmann::json setting_of(const fs::path& file, const toml::node& node) {
@@ -21,36 +21,34 @@ nlohmann::json setting_of(const fs::path& file, const toml::node& node) {
 
 /// The choices for each setting of a table, `a.b` for nested ones; one choice where there is no
 /// list.
-std::vector<std::vector<SweepSetting>> choices_of(const fs::path& file, const toml::table& table,
-                                                  const std::string& prefix = "") {
-  std::vector<std::vector<SweepSetting>> all;
+std::vector<std::vector<SaidSetting>> choices_of(const fs::path& file, const toml::table& table,
+                                                 const std::string& prefix = "") {
+  std::vector<std::vector<SaidSetting>> all;
   for (const auto& [key, node] : table) {
     const std::string name = prefix + std::string(key.str());
     if (const toml::table* inner = node.as_table()) {
       for (auto& choices : choices_of(file, *inner, name + ".")) all.push_back(std::move(choices));
       continue;
     }
-    const std::string where = location_of(file, node.source());
-    std::vector<SweepSetting> choices;
+    const std::string who = fmt::format("{}: {}", location_of(file, node), name);
+    std::vector<SaidSetting> choices;
     if (const toml::array* list = node.as_array()) {
-      for (const toml::node& value : *list)
-        choices.push_back({name, setting_of(file, value), where});
+      for (const toml::node& value : *list) choices.push_back({name, setting_of(file, value), who});
       if (choices.empty()) reject(file, node, fmt::format("'{}' has no value to try", name));
     } else {
-      choices.push_back({name, setting_of(file, node), where});
+      choices.push_back({name, setting_of(file, node), who});
     }
     all.push_back(std::move(choices));
   }
   return all;
 }
 
-std::vector<SweepConfiguration> combinations(
-    const std::vector<std::vector<SweepSetting>>& choices) {
+std::vector<SweepConfiguration> combinations(const std::vector<std::vector<SaidSetting>>& choices) {
   std::vector<SweepConfiguration> all = {{}};
   for (const auto& values : choices) {
     std::vector<SweepConfiguration> longer;
     for (const SweepConfiguration& start : all)
-      for (const SweepSetting& value : values) {
+      for (const SaidSetting& value : values) {
         longer.push_back(start);
         longer.back().push_back(value);
       }
@@ -101,7 +99,7 @@ SweepFile sweep_of(const fs::path& file, const toml::table& table) {
 }  // namespace
 
 SweepFile read_sweep_file(const fs::path& path) {
-  return sweep_of(path, read_settings_file(path, "--sweep"));
+  return sweep_of(path, read_toml_file(path));
 }
 
-}  // namespace mcdbn::cli
+}  // namespace mcdbn

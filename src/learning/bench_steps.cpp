@@ -1,7 +1,6 @@
-#include "bench_steps.hpp"
+#include "learning/bench_steps.hpp"
 
-#include <algorithm>
-#include <chrono>
+#include <array>
 #include <memory>
 #include <numeric>
 
@@ -12,7 +11,7 @@
 #include "machines/mrbm_chain.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 
-namespace mcdbn::cli {
+namespace mcdbn {
 namespace {
 
 constexpr std::size_t kFrames = 4096;
@@ -226,39 +225,19 @@ BenchStep regeneration_step(Device& device, double temperature) {
 
 }  // namespace
 
-double median_time_s(Device& device, const BenchStep& step, double seconds) {
-  using Clock = std::chrono::steady_clock;
-  const auto since_s = [](Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  };
-  const auto time_s = [&](std::size_t runs) {
-    device.finish();
-    const auto start = Clock::now();
-    for (std::size_t i = 0; i < runs; ++i) step.run();
-    device.finish();
-    return since_s(start) / static_cast<double>(runs);
-  };
-  constexpr double kSampleS = 0.01;  // long enough that the clock and the queue's end do not count
-  constexpr std::size_t kFewestSamples = 5;
-  const auto runs = static_cast<std::size_t>(std::clamp(kSampleS / time_s(1), 1.0, 1000.0));
-  std::vector<double> samples_s;
-  const auto start = Clock::now();
-  while (samples_s.size() < kFewestSamples || since_s(start) < seconds)
-    samples_s.push_back(time_s(runs));
-  const auto middle = samples_s.begin() + static_cast<std::ptrdiff_t>(samples_s.size() / 2);
-  std::nth_element(samples_s.begin(), middle, samples_s.end());
-  return *middle;
+std::vector<BenchStepMaker> crbm_minibatch_steps(std::size_t batch) {
+  return {[=](Device& device) {
+            return crbm_step(device, {96, 300, 5, VisibleKind::gaussian}, batch, 5);
+          },
+          [=](Device& device) {
+            return crbm_step(device, {300, 300, 5, VisibleKind::binary}, batch, 1);
+          }};
 }
 
 std::vector<BenchStepMaker> bench_steps() {
   std::vector<BenchStepMaker> makers;
   for (const std::size_t batch : {100U, 1024U}) {
-    makers.emplace_back([=](Device& device) {
-      return crbm_step(device, {96, 300, 5, VisibleKind::gaussian}, batch, 5);
-    });
-    makers.emplace_back([=](Device& device) {
-      return crbm_step(device, {300, 300, 5, VisibleKind::binary}, batch, 1);
-    });
+    for (BenchStepMaker& make : crbm_minibatch_steps(batch)) makers.push_back(std::move(make));
     makers.emplace_back([=](Device& device) { return mrbm_step(device, 300, 150, batch, 10); });
     for (const double temperature : {0.0, 1.0})
       makers.emplace_back([=](Device& device) {
@@ -284,4 +263,4 @@ std::vector<BenchStepMaker> epoch_steps() {
   return makers;
 }
 
-}  // namespace mcdbn::cli
+}  // namespace mcdbn

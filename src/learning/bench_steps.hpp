@@ -6,7 +6,7 @@
 
 #include "mcdbn/device/device.hpp"
 
-namespace mcdbn::cli {
+namespace mcdbn {
 
 /// One thing to measure. `run` enqueues it once; it owns the matrices that it works on.
 struct BenchStep {
@@ -15,12 +15,11 @@ struct BenchStep {
   std::function<void()> run;
 };
 
-/// Median seconds of a run, measured for about `seconds`; runs are enqueued one after another, as
-/// an epoch does. Run it once before, so that programs are built.
-double median_time_s(Device& device, const BenchStep& step, double seconds);
-
 /// Makes a step when its turn comes.
 using BenchStepMaker = std::function<BenchStep(Device&)>;
+
+/// The mini-batch step of each kind of CRBM: what a tuner looks at.
+std::vector<BenchStepMaker> crbm_minibatch_steps(std::size_t batch);
 
 /// The mini-batch step of every kind of layer at batch 100 and 1024, the MRBM's inference, the
 /// products of the model's sizes by both back ends, and the regeneration of ten samples of a
@@ -30,4 +29,4 @@ std::vector<BenchStepMaker> bench_steps();
 /// An epoch of a CRBM over a thousand to a million frames: whether the cost is that of the data.
 std::vector<BenchStepMaker> epoch_steps();
 
-}  // namespace mcdbn::cli
+}  // namespace mcdbn

@@ -1,24 +1,19 @@
-// The settings of the machines and of how they learn: defaults, presets, ranges, and the one list
-// from which flags, files and records are made.
+// The settings of networks and of how they learn: defaults, presets, ranges.
 
 #include <doctest/doctest.h>
 
-#include <limits>
-
+#include "base/settings_table.hpp"
 #include "learning/contrastive_divergence.hpp"
-#include "mcdbn/motion_model/training_schedule.hpp"
-#include "motion_model/settings_table.hpp"
+#include "mcdbn/learning/settings.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-const std::vector<Setting>& learning_settings() {
-  using C = TrainingConfig;
-  static const std::vector<Setting> settings = {
+const std::vector<Expected<LearningSettings>>& learning_settings() {
+  using C = LearningSettings;
+  static const std::vector<Expected<C>> settings = {
       {"seed", [](C& c) { return at(c.seed); }, "1"},
       {"order", [](C& c) { return at(c.order); }, "10"},
       {"hidden", [](C& c) { return at(c.hidden); }, "768"},
@@ -54,6 +49,7 @@ const std::vector<Setting>& learning_settings() {
       {"fine-tuning.steps", [](C& c) { return at(c.fine_tuning.steps); }, "3000"},
       {"fine-tuning.from-greedy", [](C& c) { return at(c.fine_tuning.from_greedy); }, "true"},
       {"fine-tuning.windows", [](C& c) { return at(c.fine_tuning.windows); }, "48"},
+      {"fine-tuning.people-power", [](C& c) { return at(c.fine_tuning.people_power); }, "0.5"},
       {"fine-tuning.window-frames", [](C& c) { return at(c.fine_tuning.window_frames); }, "20"},
       {"fine-tuning.settle-frames", [](C& c) { return at(c.fine_tuning.settle_frames); }, "4"},
       {"fine-tuning.rate", [](C& c) { return at(c.fine_tuning.rate); }, "0.002"},
@@ -69,28 +65,32 @@ const std::vector<Setting>& learning_settings() {
 }  // namespace
 
 TEST_CASE("learning settings: every one has its default, its own name and its own member") {
-  check_settings(learning_settings());
+  check_table(learning_settings());
 }
 
 TEST_CASE("learning settings: the list leaves no member out") {
-  CHECK(member_count<CdSettings>() == listed_under("gaussian."));
-  CHECK(member_count<CdSettings>() == listed_under("binary."));
-  CHECK(member_count<MultiPredictionSettings>() == listed_under("mrbm."));
-  // Beside them three weights of the loss on poses, and how many people it takes to spare one.
-  CHECK(member_count<FineTuningSettings>() + 4 == listed_under("fine-tuning."));
+  CHECK(member_count<CdSettings>() == listed_under<LearningSettings>("gaussian."));
+  CHECK(member_count<CdSettings>() == listed_under<LearningSettings>("binary."));
+  CHECK(member_count<MultiPredictionSettings>() == listed_under<LearningSettings>("mrbm."));
+  constexpr std::size_t kGroups = 4;
+  CHECK(member_count<LearningSettings>() - kGroups ==
+        listed_under<LearningSettings>("") - listed_under<LearningSettings>("gaussian.") -
+            listed_under<LearningSettings>("binary.") - listed_under<LearningSettings>("mrbm.") -
+            listed_under<LearningSettings>("fine-tuning."));
+  CHECK(member_count<FineTuningSettings>() == listed_under<LearningSettings>("fine-tuning."));
 }
 
 TEST_CASE(
     "learning settings: the greedy preset is two layers of the paper's size, trained longer") {
-  CHECK(changed_by(TrainingConfig::greedy()) == Values{{"order", "5"},
-                                                       {"hidden", "300"},
-                                                       {"layers", "2"},
-                                                       {"mrbm-hidden", "300"},
-                                                       {"gaussian.epochs", "100"},
-                                                       {"binary.epochs", "50"},
-                                                       {"mrbm.rate", "0.001"},
-                                                       {"mrbm.epochs", "30"},
-                                                       {"fine-tuning.steps", "0"}});
+  CHECK(changed_by(LearningSettings::greedy()) == Values{{"order", "5"},
+                                                         {"hidden", "300"},
+                                                         {"layers", "2"},
+                                                         {"mrbm-hidden", "300"},
+                                                         {"gaussian.epochs", "100"},
+                                                         {"binary.epochs", "50"},
+                                                         {"mrbm.rate", "0.001"},
+                                                         {"mrbm.epochs", "30"},
+                                                         {"fine-tuning.steps", "0"}});
 }
 
 TEST_CASE("learning settings: the paper's preset has the paper's own figures") {
@@ -112,53 +112,65 @@ TEST_CASE("learning settings: the paper's preset has the paper's own figures") {
     want[kind + ".initial-deviation"] = "1";
     want[kind + ".epochs"] = "100";
   }
-  CHECK(changed_by(TrainingConfig::paper()) == want);
+  CHECK(changed_by(LearningSettings::paper()) == want);
 }
 
 TEST_CASE("learning settings: the defaults and the presets are within range") {
-  CHECK_NOTHROW(TrainingConfig{}.validate());
-  CHECK_NOTHROW(TrainingConfig::greedy().validate());
-  CHECK_NOTHROW(TrainingConfig::paper().validate());
+  CHECK_NOTHROW(LearningSettings{}.validate());
+  CHECK_NOTHROW(LearningSettings::greedy().validate());
+  CHECK_NOTHROW(LearningSettings::paper().validate());
 }
 
 TEST_CASE("learning settings: what is out of range is refused by its name") {
-  const std::string positive = " must be above 0, not ";
-  for (const char* name :
-       {"hidden", "layers", "mrbm-hidden", "batch", "least-batches", "gaussian.gibbs-steps",
-        "gaussian.rate", "gaussian.epochs", "binary.gibbs-steps", "binary.rate", "binary.epochs",
-        "mrbm.rate", "mrbm.mean-field-steps", "mrbm.epochs", "fine-tuning.windows",
-        "fine-tuning.rate", "fine-tuning.mean-field-steps"})
-    check_refused(name, 0, positive + "0");
+  LearningSettings none;
+  none.hidden = 0;
+  CHECK_THROWS_AS(none.validate(), ConfigError);
+  const auto refused = check_refused<LearningSettings>;
+  const auto accepted = check_accepted<LearningSettings>;
+  for (const char* name : {"hidden", "mrbm-hidden", "batch", "least-batches", "gaussian.epochs",
+                           "binary.epochs", "mrbm.mean-field-steps", "mrbm.epochs",
+                           "fine-tuning.windows", "fine-tuning.mean-field-steps"}) {
+    refused(name, 0, "at least 1");
+    accepted(name, 1);
+  }
+  for (const char* name : {"gaussian.gibbs-steps", "binary.gibbs-steps"}) {
+    refused(name, 0, "at least 1 and at most 1000");
+    refused(name, 1001, "at least 1 and at most 1000");
+    accepted(name, 1);
+  }
+  refused("layers", 0, "at least 1 and at most 64");
+  refused("layers", 65, "at least 1 and at most 64");
+  refused("fine-tuning.window-frames", 1, "at least 2");
+  accepted("fine-tuning.window-frames", 2);
   for (const char* name : {"gaussian.rate", "binary.rate", "mrbm.rate", "fine-tuning.rate"}) {
-    check_refused(name, -0.5, positive + "-0.5");
-    check_refused(name, kNan, positive + "nan");
-    check_accepted(name, 1e-9);
+    for (const double value : {0.0, -0.5, kNan}) refused(name, value, "above 0");
+    refused(name, kInfinity, "a finite number");
+    accepted(name, 1e-9);
   }
   for (const char* name :
        {"gaussian.momentum", "binary.momentum", "fine-tuning.dropout", "fine-tuning.average"}) {
-    const std::string share = " must be at least 0 and below 1, not ";
-    check_refused(name, 1, share + "1");
-    check_refused(name, -0.25, share + "-0.25");
-    check_refused(name, kNan, share + "nan");
-    check_accepted(name, 0);
-    check_accepted(name, 0.999);
+    for (const double value : {1.0, -0.25, kNan}) refused(name, value, "at least 0 and below 1");
+    accepted(name, 0);
+    accepted(name, 0.999);
   }
-  check_refused("fine-tuning.window-frames", 1, " must be at least 2");
-  check_accepted("fine-tuning.window-frames", 2);
+  for (const double value : {-0.1, 1.1})
+    refused("fine-tuning.people-power", value, "at least 0 and at most 1");
+  for (const char* name :
+       {"gaussian.rate-A", "gaussian.rate-B", "gaussian.weight-decay", "gaussian.initial-deviation",
+        "binary.rate-A", "binary.rate-B", "binary.weight-decay", "binary.initial-deviation",
+        "mrbm.weight-decay", "mrbm.initial-deviation", "fine-tuning.weight-decay",
+        "fine-tuning.reverse"}) {
+    refused(name, -1e-6, "at least 0");
+    accepted(name, 0);
+  }
 }
 
 TEST_CASE("learning settings: what may be nothing is accepted as nothing") {
   for (const char* name :
-       {"seed", "order", "look-ahead", "gaussian.rate-A", "gaussian.rate-B", "gaussian.momentum",
-        "gaussian.momentum-from-epoch", "gaussian.weight-decay", "gaussian.initial-deviation",
-        "binary.rate-A", "binary.weight-decay", "mrbm.weight-decay", "mrbm.initial-deviation",
-        "fine-tuning.steps", "fine-tuning.from-greedy", "fine-tuning.settle-frames",
-        "fine-tuning.weight-decay", "fine-tuning.reverse"})
-    check_accepted(name, 0);
-  for (const char* name : {"hidden", "layers", "mrbm-hidden", "batch", "least-batches",
-                           "gaussian.gibbs-steps", "binary.epochs", "mrbm.mean-field-steps",
-                           "mrbm.epochs", "fine-tuning.windows", "fine-tuning.mean-field-steps"})
-    check_accepted(name, 1);
+       {"seed", "order", "look-ahead", "gaussian.momentum-from-epoch", "binary.momentum-from-epoch",
+        "fine-tuning.steps", "fine-tuning.from-greedy", "fine-tuning.people-power",
+        "fine-tuning.settle-frames"})
+    check_accepted<LearningSettings>(name, 0);
 }
 
 TEST_CASE("learning settings: what no setting says") {

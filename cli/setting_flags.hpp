@@ -1,0 +1,50 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "base/setting_values.hpp"
+
+namespace mcdbn::cli {
+
+/// "--gaussian-rate" of "gaussian.rate".
+std::string flag_of(const std::string& setting);
+
+/// A text of the library for who types flags: `gaussian.rate`, in backquotes, becomes
+/// --gaussian-rate.
+std::string with_flags(const std::string& text);
+
+/// Adds a flag for a number, with the setting's unit, help and range.
+/// @param set gets what was said and throws ConfigError if it will not do
+CLI::Option* add_number_flag(CLI::App& command, const std::string& flag, const Setting& setting,
+                             const std::function<void(const nlohmann::json&)>& set);
+
+/// Adds --flag and --no-flag. @param usual what holds if neither is said
+CLI::Option* add_switch_flag(CLI::App& command, const std::string& flag, const Setting& setting,
+                             bool usual, const std::function<void(const nlohmann::json&)>& set);
+
+/// Adds the flag of a setting that is this member; its value now is the default.
+template <typename Member>
+CLI::Option* add_setting_flag(CLI::App& command, const std::string& flag, const Setting& setting,
+                              Member& member) {
+  return add_number_flag(command, flag, setting,
+                         [&member, flag, setting](const nlohmann::json& value) {
+                           assign_value(flag, setting, value, member);
+                         })
+      ->default_str(nlohmann::json(member).dump());
+}
+
+/// The same of one that is left as it is if nobody says it.
+template <typename Member>
+CLI::Option* add_setting_flag(CLI::App& command, const std::string& flag, const Setting& setting,
+                              std::optional<Member>& member) {
+  return add_number_flag(command, flag, setting,
+                         [&member, flag, setting](const nlohmann::json& value) {
+                           assign_value(flag, setting, value, member.emplace());
+                         });
+}
+
+}  // namespace mcdbn::cli

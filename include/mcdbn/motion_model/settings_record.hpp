@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mcdbn/motion_model/training_config.hpp"
+
+namespace mcdbn {
+
+/// A value that somebody said for a setting.
+struct SaidSetting {
+  std::string name;      ///< "gaussian.rate", or the name that it had before
+  nlohmann::json value;  ///< a number, true or false
+  std::string who;       ///< stands before "must be" in errors: "run.toml:3: gaussian.rate"
+};
+
+/// Sets them in their order.
+/// @throws ConfigError for a setting that does not exist, a value of another kind or out of range
+void assign_settings(TrainingConfig& config, const std::vector<SaidSetting>& said);
+
+/// The settings of a TOML file, in which groups are tables.
+/// @throws ConfigError `file:line: what` if it is missing or no TOML; what it says is not checked
+std::vector<SaidSetting> read_settings_file(const std::filesystem::path& file);
+
+/// All settings as a TOML file that read_settings_file reads.
+std::string settings_toml(const TrainingConfig& config);
+
+/// All settings by name, nested at the dots: the record in a model file.
+nlohmann::json settings_json(const TrainingConfig& config);
+/// The settings that a model file records, as they are: other versions had other ranges.
+/// @throws ConfigError if they are not this program's
+TrainingConfig settings_from_json(const nlohmann::json& record);
+
+}  // namespace mcdbn

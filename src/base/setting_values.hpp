@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "mcdbn/base/settings.hpp"
+
+namespace mcdbn {
+
+/// Gives a member a value that was read: a JSON number, or true or false.
+/// @param who stands before "must be" in the error
+/// @throws ConfigError if the value is of another kind, or out of the setting's range
+void assign_value(const std::string& who, const Setting& setting, const nlohmann::json& value,
+                  bool& member);
+void assign_value(const std::string& who, const Setting& setting, const nlohmann::json& value,
+                  std::size_t& member);
+void assign_value(const std::string& who, const Setting& setting, const nlohmann::json& value,
+                  double& member);
+
+/// The number that a text is, the whole of it; a text that is none, as it is.
+nlohmann::json number_in(const std::string& text);
+
+/// Where a record, nested at the dots of the names, has a setting.
+nlohmann::json::json_pointer record_pointer(const std::string& setting);
+
+/// Every setting of a struct by its name, nested at the dots.
+template <typename Settings>
+nlohmann::json settings_record(const Settings& settings) {
+  nlohmann::json record;
+  visit_settings(settings, [&](const Setting& setting, const auto& value) {
+    record[record_pointer(setting.name)] = value;
+  });
+  return record;
+}
+
+}  // namespace mcdbn

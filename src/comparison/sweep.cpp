@@ -1,0 +1,141 @@
+#include "comparison/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <sstream>
+
+#include "base/text_file.hpp"
+#include "comparison/comparison_run.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/motion_model/training_run.hpp"
+#include "mcdbn/motion_model/training_schedule.hpp"
+
+namespace mcdbn {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+TrainedRun trained_run(Device& device, const std::vector<fs::path>& files,
+                       const TrainingConfig& config, const fs::path& folder,
+                       const Sweep::Watch& watch, bool counts) {
+  std::vector<LoadedClip> clips = load_clips(files, config.keep_first_frame);
+  const TrainingSet data = make_training_set(clips, config);
+  return train_to_folder(device, data, std::move(clips), config, folder,
+                         watch ? watch(counts) : EpochObserver());
+}
+
+/// An epoch or mini-batch of everything.
+TrainingConfig shortest(TrainingConfig config) {
+  config.gaussian.epochs = config.binary.epochs = config.mrbm.epochs = 1;
+  config.fine_tuning.steps = std::min<std::size_t>(config.fine_tuning.steps, 1);
+  return config;
+}
+
+/// Seconds to regenerate all clips; a first run builds the kernels.
+double inference_s(const Model& model, const std::vector<ClipResult>& results) {
+  std::vector<MatrixF> tracks;
+  for (const ClipResult& result : results) tracks.push_back(result.truth.track_features);
+  regenerate(model.network, {tracks.front()});
+  const auto start = std::chrono::steady_clock::now();
+  regenerate(model.network, tracks);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+std::string name_of(const SweepConfiguration& configuration) {
+  std::string name;
+  for (const SaidSetting& setting : configuration)
+    name += (name.empty() ? "" : ",") + setting.name + "=" + setting.value.dump();
+  return name.empty() ? "base" : name;
+}
+
+Sweep::Log::Log(fs::path path) : path_(std::move(path)) {
+  if (!fs::exists(path_)) return;
+  std::istringstream lines(read_text_file(path_));
+  for (std::string line; std::getline(lines, line);) {
+    ordered_json record = ordered_json::parse(line, nullptr, false);
+    if (record.is_object() && record.contains("settings")) records_.push_back(std::move(record));
+  }
+}
+
+const ordered_json* Sweep::Log::find(const ordered_json& settings) const {
+  for (const ordered_json& record : records_)
+    if (nlohmann::json(record.at("settings")) == nlohmann::json(settings)) return &record;
+  return nullptr;
+}
+
+void Sweep::Log::add(ordered_json record) {
+  records_.push_back(std::move(record));
+  std::string text;
+  for (const ordered_json& entry : records_) text += entry.dump() + '\n';
+  write_text_file(path_, text);
+}
+
+Sweep::Sweep(Device& device, const std::vector<fs::path>& test, std::vector<fs::path> clips,
+             Resolve resolve, fs::path run)
+    : device_(device),
+      test_(find_clips(test)),
+      clips_(std::move(clips)),
+      resolve_(std::move(resolve)),
+      run_(std::move(run)),
+      log_((make_folder(run_), run_ / "sweep.jsonl")) {}
+
+ordered_json Sweep::run(const SweepConfiguration& configuration, const Watch& watch) {
+  ordered_json record = {{"name", name_of(configuration)}, {"configuration", ordered_json()}};
+  for (const SaidSetting& setting : configuration)
+    record["configuration"][setting.name] = setting.value;
+  try {
+    const TrainingConfig config = resolve_(configuration);
+    record["settings"] = settings_json(config);
+    if (const ordered_json* done = log_.find(record["settings"])) return *done;
+    config.validate();
+    score(config, watch, record);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const DeviceError&) {
+    throw;
+  } catch (const std::exception& error) {
+    if (!record.contains("settings")) record["settings"] = record["configuration"];
+    if (const ordered_json* done = log_.find(record["settings"])) return *done;
+    record["status"] = "failed";
+    record["error"] = error.what();
+  }
+  log_.add(record);
+  return record;
+}
+
+void Sweep::score(const TrainingConfig& config, const Watch& watch, ordered_json& record) const {
+  const fs::path folder = run_ / record["name"].get<std::string>();
+  // No configuration is charged for compiling.
+  trained_run(device_, clips_, shortest(config), folder, watch, false);
+  const TrainedRun trained = trained_run(device_, clips_, config, folder, watch, true);
+  TestRunOptions options;
+  options.camera = trained.model.modalities.camera;
+  options.baselines = false;
+  options.fit.reset();  // it is networks that are compared, not what the track makes of them
+  const auto results = run_test(trained.model, test_, options);
+  std::vector<ClipScore> scores;
+  int frames = 0;
+  for (const ClipResult& result : results) {
+    scores.push_back(result.samples.front().score);
+    frames += result.truth.motion.frames();
+  }
+  const ClipScore mean = mean_score(scores);
+  const double seconds = inference_s(trained.model, results);
+  record["status"] = "ok";
+  record["training_s"] = trained.training_s;
+  record["inference_s"] = seconds;
+  record["inference_ms_per_frame"] = 1000.0 * seconds / frames;
+  record["clips"] = results.size();
+  record["frames"] = frames;
+  record["pcc_flat"] = mean.pcc_flat;
+  record["pcc_channel"] = mean.pcc_channel;
+  record["mpjpe_mm"] = mean.error.mpjpe_mm;
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mcdbn/device/device.hpp"
+#include "mcdbn/learning/epoch_report.hpp"
+#include "mcdbn/motion_model/settings_record.hpp"
+
+namespace mcdbn {
+
+/// The settings that a sweep varies, as one of its trainings has them.
+using SweepConfiguration = std::vector<SaidSetting>;
+
+struct SweepFile {
+  std::vector<std::filesystem::path> test;  ///< clips, or folders of them, to score on
+  std::vector<SweepConfiguration> configurations;
+};
+
+/// A TOML file: `test`, a list of paths (relative to the file); `[grid]`, lists of values whose
+/// combinations are all tried; `[[configuration]]`, tables of settings tried as they are.
+/// @throws ConfigError `file:line: what`
+SweepFile read_sweep_file(const std::filesystem::path& path);
+
+/// "hidden=8,order=3"
+std::string name_of(const SweepConfiguration& configuration);
+
+/// Trains configurations on clips and scores them on a sweep's test clips (Fig. 7). Each gets a
+/// folder in the run's, and a line in sweep.jsonl: its settings, training and inference time, PCC
+/// and MPJPE; or why it failed. Those that have a line already, with the same settings, are not run
+/// again.
+class Sweep {
+ public:
+  /// The whole configuration from what is varied. May throw ConfigError
+  using Resolve = std::function<TrainingConfig(const SweepConfiguration&)>;
+  /// Called as a training begins; before each that counts there is a short one that builds the
+  /// kernels. What it returns hears of its epochs and may throw Interrupted to stop the sweep.
+  using Watch = std::function<EpochObserver(bool counts)>;
+
+  /// @throws InputError if the test clips cannot be used or the folder not be made
+  Sweep(Device& device, const std::vector<std::filesystem::path>& test,
+        std::vector<std::filesystem::path> clips, Resolve resolve, std::filesystem::path run);
+
+  /// @return the line, also of a configuration that failed, or was done before
+  /// @throws Interrupted, DeviceError: the next one would fail too
+  nlohmann::ordered_json run(const SweepConfiguration& configuration, const Watch& watch = {});
+
+ private:
+  /// sweep.jsonl, kept whole: a line that was cut off by a crash is dropped.
+  class Log {
+   public:
+    explicit Log(std::filesystem::path path);
+    const nlohmann::ordered_json* find(const nlohmann::ordered_json& settings) const;
+    void add(nlohmann::ordered_json record);
+
+   private:
+    std::filesystem::path path_;
+    std::vector<nlohmann::ordered_json> records_;
+  };
+
+  void score(const TrainingConfig& config, const Watch& watch,
+             nlohmann::ordered_json& record) const;
+
+  Device& device_;
+  std::vector<std::filesystem::path> test_, clips_;
+  Resolve resolve_;
+  std::filesystem::path run_;
+  Log log_;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,107 @@
+#include "device/tuner.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "device/gemm.hpp"
+#include "device/median_time.hpp"
+#include "mcdbn/device/matrix.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// A change must gain this much, or noise would decide.
+constexpr double kWorthwhile = 0.97;
+
+/// `to` with what `from` has otherwise than the default.
+Tuning with_changes(Tuning to, const Tuning& from, const Tuning& usual) {
+  for (const auto parameter : {&Tuning::vector_width, &Tuning::largest_rows, &Tuning::accumulators,
+                               &Tuning::group, &Tuning::update_rows})
+    if (from.*parameter != usual.*parameter) to.*parameter = from.*parameter;
+  return to;
+}
+
+std::string described(const Tuning& tuning) {
+  return fmt::format("vector width {}, rows {}, accumulators {}, group {}, update rows {}",
+                     tuning.vector_width, tuning.largest_rows, tuning.accumulators, tuning.group,
+                     tuning.update_rows);
+}
+
+/// CLBlast's product within the rounding error of two float sums of k terms (Higham 3.5) of the
+/// host's in double.
+bool clblast_is_right(Device& device, Eigen::Index m, Eigen::Index n, Eigen::Index k) {
+  const MatrixF a = MatrixF::Random(m, k), b = MatrixF::Random(k, n);
+  Matrix c(device, static_cast<std::size_t>(m), static_cast<std::size_t>(n));
+  GemmOptions options;
+  options.backend = GemmBackend::clblast;
+  gemm(Matrix::from_host(device, a), Matrix::from_host(device, b), c, options);
+  const MatrixD want = a.cast<double>() * b.cast<double>();
+  const MatrixD bound = static_cast<double>(k + 2) * 0x1p-24 *
+                        (a.cwiseAbs().cast<double>() * b.cwiseAbs().cast<double>());
+  return ((c.to_host().cast<double>() - want).cwiseAbs().array() <= bound.array()).all();
+}
+
+double product_s(Device& device, std::size_t size, GemmBackend backend, double seconds) {
+  const Matrix a(device, size, size), b(device, size, size);
+  Matrix c(device, size, size);
+  GemmOptions options;
+  options.backend = backend;
+  const auto run = [&] { gemm(a, b, c, options); };
+  run();
+  return median_time_s(device, run, seconds);
+}
+
+}  // namespace
+
+Tuning fastest_tuning(const DeviceInfo& info, const TunedTime& time_s, const TuningNotice& notice) {
+  const Tuning usual = default_tuning(info);
+  Tuning best = usual;
+  for (const Tuning& rival : tuning_candidates(info, usual)) {
+    if (rival == usual) continue;
+    const Tuning merged = with_changes(best, rival, usual);
+    // The best so far is measured again beside each rival: a machine's speed drifts.
+    const double best_s = time_s(best), merged_s = time_s(merged);
+    if (notice)
+      notice(fmt::format("{}: {:.2f} of the best so far", described(merged), merged_s / best_s));
+    if (merged_s < kWorthwhile * best_s) best = merged;
+  }
+  return best;
+}
+
+std::int64_t clblast_threshold(Device& device, double seconds, const TuningNotice& notice) {
+  // From above the products of a mini-batch of 100 windows to above those of one of 1024.
+  constexpr std::array<std::size_t, 3> kSizes{256, 512, 1024};
+  for (const std::size_t size : kSizes) {
+    const double own_s = product_s(device, size, GemmBackend::own, seconds);
+    const double clblast_s = product_s(device, size, GemmBackend::clblast, seconds);
+    if (notice)
+      notice(
+          fmt::format("product of size {}: CLBlast takes {:.2f} of ours", size, clblast_s / own_s));
+    if (clblast_s >= kWorthwhile * own_s) continue;
+    const auto side = static_cast<Eigen::Index>(size);
+    if (clblast_is_right(device, side, side, side) && clblast_is_right(device, side + 1, 33, side))
+      return static_cast<std::int64_t>(size * size * size);
+    if (notice)
+      notice(fmt::format("CLBlast's product of size {} is wrong on {}; it stays unused", size,
+                         device.info().name));
+    return 0;
+  }
+  return 0;
+}
+
+void tune(Device& device, const TunedTime& time_s, double seconds, const TuningNotice& notice) {
+  Tuning best = fastest_tuning(
+      device.info(),
+      [&](const Tuning& tuning) {
+        device.set_tuning(tuning);
+        return time_s(tuning);
+      },
+      notice);
+  device.set_tuning(best);
+  best.clblast_from = clblast_threshold(device, seconds, notice);
+  device.set_tuning(best);
+  store_tuning(device.info(), best);
+}
+
+}  // namespace mcdbn

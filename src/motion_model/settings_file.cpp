@@ -1,0 +1,77 @@
+#include "motion_model/settings_file.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion_model/settings_record.hpp"
+
+namespace mcdbn {
+namespace {
+
+std::string location(const std::filesystem::path& file, const toml::source_region& source) {
+  return fmt::format("{}:{}", file.string(), source.begin.line);
+}
+
+void add_table(std::vector<SaidSetting>& said, const std::filesystem::path& file,
+               const toml::table& table, const std::string& prefix) {
+  for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
+    if (const toml::table* inner = node.as_table())
+      add_table(said, file, *inner, name + ".");
+    else
+      said.push_back({name, scalar_of(node), fmt::format("{}: {}", location_of(file, node), name)});
+  }
+}
+
+}  // namespace
+
+toml::table read_toml_file(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file))
+    throw ConfigError(fmt::format("{}: no such file; a TOML file is wanted", file.string()));
+  try {
+    return toml::parse_file(file.string());
+  } catch (const toml::parse_error& error) {
+    throw ConfigError(fmt::format("{}: {}", location(file, error.source()), error.description()));
+  }
+}
+
+std::string location_of(const std::filesystem::path& file, const toml::node& node) {
+  return location(file, node.source());
+}
+
+nlohmann::json scalar_of(const toml::node& node) {
+  if (const auto* boolean = node.as_boolean()) return boolean->get();
+  if (const auto* integer = node.as_integer()) return integer->get();
+  if (const auto* number = node.as_floating_point()) return number->get();
+  return nullptr;
+}
+
+std::vector<SaidSetting> read_settings_file(const std::filesystem::path& file) {
+  std::vector<SaidSetting> said;
+  add_table(said, file, read_toml_file(file), "");
+  return said;
+}
+
+std::string settings_toml(const TrainingConfig& config) {
+  toml::table table;
+  visit_settings(config, [&](const Setting& setting, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    toml::table* target = &table;
+    std::string key = setting.name;
+    if (const auto dot = key.find('.'); dot != std::string::npos) {
+      target = table.insert(key.substr(0, dot), toml::table{}).first->second.as_table();
+      key = key.substr(dot + 1);
+    }
+    if constexpr (std::is_same_v<Value, std::size_t>)
+      target->insert(key, static_cast<std::int64_t>(value));
+    else
+      target->insert(key, value);
+  });
+  std::ostringstream text;
+  text << table << '\n';
+  return text.str();
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,154 @@
+#include "comparison/sweep.hpp"
+
+#include <doctest/doctest.h>
+
+#include <sstream>
+
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "corpus/training_files.hpp"
+#include "device/every_device.hpp"
+#include "mcdbn/base/errors.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+using nlohmann::ordered_json;
+
+namespace {
+
+/// A network whose training takes no time.
+TrainingConfig tiny(const SweepConfiguration& varied) {
+  TrainingConfig config = TrainingConfig::greedy();
+  config.hidden = config.mrbm_hidden = 6;
+  config.layers = 1;
+  config.order = 2;
+  config.least_batches = 1;
+  config.gaussian.epochs = config.mrbm.epochs = 2;
+  assign_settings(config, varied);
+  return config;
+}
+
+SaidSetting said(const char* name, nlohmann::json value) {
+  return {name, std::move(value), name};
+}
+
+std::vector<ordered_json> lines_of(const std::filesystem::path& file) {
+  std::vector<ordered_json> lines;
+  std::istringstream text(read_text_file(file));
+  for (std::string line; std::getline(text, line);) lines.push_back(ordered_json::parse(line));
+  return lines;
+}
+
+std::string error_in(const std::string& text) {
+  const ScratchFolder folder;
+  const auto file = folder.write("s.toml", text);
+  try {
+    read_sweep_file(file);
+  } catch (const ConfigError& error) {
+    const std::string message = error.what();
+    CHECK(message.starts_with(file.string() + ":"));
+    return message.substr(file.string().size() + 1);
+  }
+  return "none";
+}
+
+std::vector<std::string> names_in(const std::string& text) {
+  const ScratchFolder folder;
+  std::vector<std::string> names;
+  for (const auto& configuration :
+       read_sweep_file(folder.write("s.toml", "test = ['t']\n" + text)).configurations)
+    names.push_back(name_of(configuration));
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("sweep file: all combinations of a grid, and configurations as they are") {
+  using Names = std::vector<std::string>;
+  CHECK(names_in("[grid]\norder = [2, 3]\nhidden = [8, 9]\n") ==
+        Names{"hidden=8,order=2", "hidden=8,order=3", "hidden=9,order=2", "hidden=9,order=3"});
+  CHECK(names_in("[[configuration]]\ngaussian.rate = 0.5\n[[configuration]]\n"
+                 "fine-tuning.from-greedy = false\nseed = [1, 2]\n") ==
+        Names{"gaussian.rate=0.5", "fine-tuning.from-greedy=false,seed=1",
+              "fine-tuning.from-greedy=false,seed=2"});
+  CHECK(names_in("[[configuration]]\n") == Names{"base"});
+}
+
+TEST_CASE("sweep file: test clips are beside it, and each value knows where it stands") {
+  const ScratchFolder folder;
+  const auto file = folder.write("s.toml", "test = ['a.bvh', 'b/']\n[grid]\norder = [2,\n -3]\n");
+  const SweepFile sweep = read_sweep_file(file);
+  CHECK(sweep.test == std::vector{folder / "a.bvh", folder / "b/"});
+  REQUIRE(sweep.configurations.size() == 2);
+  CHECK(sweep.configurations[1][0].who == file.string() + ":3: order");
+  CHECK(sweep.configurations[1][0].value == -3);
+}
+
+TEST_CASE("sweep file: what makes no sense is refused with its line") {
+  CHECK(error_in("test = ['t']\n") == " nothing to try: give a [grid] or [[configuration]]");
+  CHECK(error_in("[grid]\nseed = [1]\n") == " no 'test': name the clips to score on");
+  CHECK(error_in("test = 't'\n").starts_with("1: 'test' is a list"));
+  CHECK(error_in("test = [3]\n").starts_with("1: 'test' is a list"));
+  CHECK(error_in("test = ['t']\ngird = 3\n").starts_with("2: 'gird' is none of"));
+  CHECK(error_in("test = ['t']\n[grid]\nseed = []\n") == "3: 'seed' has no value to try");
+  CHECK(error_in("test = ['t']\n[grid]\nseed = ['x']\n")
+            .starts_with("3: a setting is a number or true or false"));
+}
+
+TEST_CASE("sweep: a line for each configuration, failed ones too, none done twice") {
+  const TrainingFiles files({{.subject = 1}, {.subject = 2}});
+  const ScratchFolder folder;
+  on_every_device([&](Device& device) {
+    std::filesystem::remove_all(folder / "run");
+    std::vector<bool> begun;
+    const Sweep::Watch watch = [&](bool counts) {
+      begun.push_back(counts);
+      return EpochObserver();
+    };
+    const auto sweep = [&] {
+      return Sweep(device, {files.files()[1]}, {files.files()[0]}, tiny, folder / "run");
+    };
+    const ordered_json scored = sweep().run({said("order", 3)}, watch);
+    CAPTURE(scored.dump());
+    CHECK(scored.at("name") == "order=3");
+    CHECK(scored.at("status") == "ok");
+    CHECK(scored.at("settings").at("order") == 3);
+    CHECK(scored.at("clips") == 1);
+    CHECK(scored.at("training_s").get<double>() > 0);
+    CHECK(scored.at("mpjpe_mm").get<double>() > 0);
+    CHECK(begun == std::vector<bool>{false, true});
+    CHECK(std::filesystem::exists(folder / "run/order=3/model.safetensors"));
+
+    const ordered_json diverged = sweep().run({said("gaussian.rate", 1e6)});
+    CHECK(diverged.at("status") == "failed");
+    CHECK(diverged.at("error").get<std::string>().find("`gaussian.rate`") != std::string::npos);
+    const ordered_json refused = sweep().run({said("hidden", 0)});
+    CHECK(refused.at("error") == "hidden must be at least 1, not 0");
+    CHECK(refused.at("settings") == ordered_json{{"hidden", 0}});
+
+    begun.clear();
+    const auto file = folder / "run/sweep.jsonl";
+    const std::string text = read_text_file(file);
+    write_text_file(file, text + "{\"name\":\"cut");
+    CHECK(sweep().run({said("order", 3)}, watch) == scored);
+    CHECK(sweep().run({said("hidden", 0)}, watch) == refused);
+    CHECK(begun.empty());
+    CHECK(lines_of(folder.write("whole.jsonl", text)) ==
+          std::vector<ordered_json>{scored, diverged, refused});
+  });
+}
+
+TEST_CASE("sweep: who watches may stop it, and no line says that a configuration failed") {
+  const TrainingFiles files({{.subject = 1}, {.subject = 2}});
+  const ScratchFolder folder;
+  on_every_device([&](Device& device) {
+    Sweep sweep(device, {files.files()[1]}, {files.files()[0]}, tiny, folder / "stopped");
+    const Sweep::Watch watch = [](bool counts) -> EpochObserver {
+      return [=](const EpochReport&) {
+        if (counts) throw Interrupted("stop");
+      };
+    };
+    CHECK_THROWS_AS(sweep.run({}, watch), Interrupted);
+    CHECK(!std::filesystem::exists(folder / "stopped/sweep.jsonl"));
+  });
+}

@@ -1,0 +1,88 @@
+#include "device/tuner.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/scratch_folder.hpp"
+#include "device/every_device.hpp"
+#include "device/median_time.hpp"
+#include "device/scoped_variable.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+DeviceInfo some_cpu() {
+  DeviceInfo info;
+  info.is_gpu = false;
+  return info;
+}
+
+}  // namespace
+
+TEST_CASE("tuner: the winners of one parameter after another are put together") {
+  const Tuning usual = default_tuning(some_cpu());
+  std::vector<std::string> notices;
+  const Tuning found = fastest_tuning(
+      some_cpu(),
+      [](const Tuning& tuning) {
+        // Each of these helps by itself; eight rows only beside a narrow vector.
+        double time_s = 10;
+        if (tuning.vector_width == 8) time_s -= 1;
+        if (tuning.largest_rows == 8 && tuning.vector_width == 8) time_s -= 2;
+        if (tuning.update_rows == 8) time_s -= 1;
+        return time_s;
+      },
+      [&](const std::string& notice) { notices.push_back(notice); });
+  Tuning want = usual;
+  want.vector_width = want.largest_rows = want.update_rows = 8;
+  CHECK(found == want);
+  CHECK(notices.size() == tuning_candidates(some_cpu(), usual).size() - 1);
+  CHECK(notices.front().find("0.90 of the best so far") != std::string::npos);
+}
+
+TEST_CASE("tuner: a gain that noise could make changes nothing") {
+  const auto tuned = [](double gain) {
+    return fastest_tuning(some_cpu(), [=](const Tuning& tuning) {
+      return tuning.update_rows == 8 ? 1.0 - gain : 1.0;
+    });
+  };
+  CHECK(tuned(0.02) == default_tuning(some_cpu()));
+  CHECK(tuned(0.04).update_rows == 8);
+}
+
+TEST_CASE("tuner: what was found is set on the device and stored for the next time") {
+  const ScratchFolder folder;
+  const ScopedVariable cache("XDG_CACHE_HOME", (folder / "cache").string());
+  on_every_device([](Device& device) {
+    const Tuning usual = device.tuning();
+    const auto candidates = tuning_candidates(device.info(), default_tuning(device.info()));
+    const Tuning& favourite = candidates.back();
+    tune(
+        device,
+        [&](const Tuning& tuning) {
+          CHECK(device.tuning() == tuning);  // the work is measured with it
+          return tuning == favourite ? 1.0 : 2.0;
+        },
+        0.0);
+    Tuning found = device.tuning();
+    CHECK(load_tuning(device.info()) == found);
+    constexpr std::int64_t k256 = 256 * 256 * 256;
+    CHECK((found.clblast_from == 0 || found.clblast_from == k256 ||
+           found.clblast_from == 8 * k256 || found.clblast_from == 64 * k256));
+    found.clblast_from = favourite.clblast_from;
+    CHECK(found == favourite);
+    device.set_tuning(usual);
+  });
+}
+
+TEST_CASE("median time: that of a run, however long its samples are") {
+  on_every_device([](Device& device) {
+    int runs = 0;
+    const double time_s = median_time_s(
+        device, [&] { ++runs; }, 0.0);
+    CHECK(time_s >= 0);
+    CHECK(time_s < 1e-3);  // of a run, not of a sample of many
+    CHECK(runs >= 6);      // one to see how long it is, then five samples at least
+  });
+}

@@ -1,0 +1,67 @@
+// The settings of a training run on clips: the sum of its parts'.
+#include "mcdbn/motion_model/training_config.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/settings_table.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+using Own = Expected<TrainingConfig>;
+
+const std::vector<Own>& own_settings() {
+  using C = TrainingConfig;
+  static const std::vector<Own> settings = {
+      {"fine-tuning.positions", [](C& c) { return at(c.pose_loss.positions); }, "0.5"},
+      {"fine-tuning.velocities", [](C& c) { return at(c.pose_loss.velocities); }, "0.2"},
+      {"fine-tuning.contacts", [](C& c) { return at(c.pose_loss.contacts); }, "0.1"},
+      {"fine-tuning.hold-out-among", [](C& c) { return at(c.hold_out_among); }, "20"}};
+  return settings;
+}
+
+}  // namespace
+
+TEST_CASE("training config: its settings are its parts' and the loss's, with their defaults") {
+  Values want = values_of(LearningSettings{});
+  want.merge(values_of(CorpusSettings{}));
+  for (const Own& own : own_settings()) want[own.name] = own.default_value;
+  CHECK(values_of(TrainingConfig{}) == want);
+  for (const Own& own : own_settings()) {
+    TrainingConfig config;
+    set(config, own.name, 7);
+    CHECK(text_of(own.member(config)) == "7");
+    CHECK(changed_by(config) == Values{{own.name, "7"}});
+  }
+  // What the loss weighs the others by, and which feet count as planted, nobody sets.
+  CHECK(member_count<PoseLossWeights>() == own_settings().size() - 1 + 2);
+}
+
+TEST_CASE("training config: presets are those of learning") {
+  CHECK(changed_by(TrainingConfig::greedy()) == changed_by(LearningSettings::greedy()));
+  CHECK(changed_by(TrainingConfig::paper()) == changed_by(LearningSettings::paper()));
+  for (const TrainingConfig& config :
+       {TrainingConfig{}, TrainingConfig::greedy(), TrainingConfig::paper()})
+    CHECK_NOTHROW(config.validate());
+}
+
+TEST_CASE("training config: its parts' ranges hold, and its own") {
+  TrainingConfig none;
+  none.batch = 0;
+  CHECK_THROWS_AS(none.validate(), ConfigError);
+  const auto refused = check_refused<TrainingConfig>;
+  refused("hidden", 0, "at least 1");
+  refused("camera.fov", 180, "above 0 and below 180");
+  for (const Own& own : own_settings()) {
+    if (std::string(own.name) != "fine-tuning.hold-out-among") refused(own.name, -1, "at least 0");
+    check_accepted<TrainingConfig>(own.name, 0);
+  }
+}
+
+TEST_CASE("training config: fine-tuning's settings had other names") {
+  CHECK(former_name("fine-tuning.rate") == "joint.rate");
+  CHECK(former_name("fine-tuning.positions") == "joint.places");
+  CHECK(former_name("gaussian.rate").empty());
+}
