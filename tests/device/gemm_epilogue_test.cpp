@@ -144,26 +144,26 @@ class Operands {
 
   Bounded wanted() const {
     const auto m = static_cast<Eigen::Index>(shape_.m);
+    const MatrixD factor = factor_.bottomRows(m).cast<double>();
     Bounded x = reference::product(a_.cast<double>(), b_.cast<double>());
-    if (epilogue_.bias == BiasKind::row) x = reference::plus_bias(x, bias_.cast<double>());
+    if (epilogue_.bias == BiasKind::row) x = plus_row(x, Bounded::exact(bias_.cast<double>()));
     if (epilogue_.bias == BiasKind::matrix)
-      x = reference::plus_bias(x, bias_.bottomRows(m).cast<double>());
+      x = x + Bounded::exact(bias_.bottomRows(m).cast<double>());
     if (epilogue_.activation == Activation::sigmoid) x = reference::sigmoid(x);
     if (epilogue_.activation == Activation::sigmoid_gradient)
-      x = reference::sigmoid_gradient(x, factor_.bottomRows(m).cast<double>());
+      x = times(x, reference::sigmoid_gradient(Bounded::exact(factor)));
     if (epilogue_.activation == Activation::relu) x = reference::relu(x);
-    if (epilogue_.activation == Activation::relu_gradient)
-      x = reference::relu_gradient(x, factor_.bottomRows(m).cast<double>());
+    if (epilogue_.activation == Activation::relu_gradient) x = reference::relu_gradient(x, factor);
     if (epilogue_.activation == Activation::centered_sigmoid) x = reference::centered_sigmoid(x);
     if (epilogue_.activation == Activation::centered_sigmoid_gradient)
-      x = reference::centered_sigmoid_gradient(x, factor_.bottomRows(m).cast<double>(),
-                                               double{epilogue_.kept_share});
+      x = reference::centered_sigmoid_gradient(x, factor, double{epilogue_.kept_share});
     return x;
   }
 
   void check_normal() const {
-    const auto want = reference::gaussian_sample(
-        out_.values().cast<double>(), normals(shape_.m, shape_.n), epilogue_.temperature);
+    const Bounded mean = Bounded::exact(out_.values().cast<double>());
+    const Bounded want =
+        tempered(mean, gaussian(mean, normals(shape_.m, shape_.n)), double{epilogue_.temperature});
     CHECK(misfit(sample_.values(), want.value, want.bound) == "");
   }
 
@@ -175,7 +175,8 @@ class Operands {
     if (epilogue_.temperature == 1.0F) {
       CHECK(sample_.values().cast<double>() == bits);
     } else {
-      const auto want = reference::bernoulli_sample(mean, bits, epilogue_.temperature);
+      const Bounded want =
+          tempered(Bounded::exact(mean), Bounded::exact(bits), double{epilogue_.temperature});
       CHECK(misfit(sample_.values(), want.value, want.bound) == "");
     }
     // Against the exact one only where it is as near to the draw as rounding can move it.

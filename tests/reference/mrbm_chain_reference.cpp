@@ -13,8 +13,7 @@ Bounded drawn(const Bounded& probability, const ClampedChain& chain, const PassD
   if (temperature == 0.0) return probability;
   const MatrixD uniform = draws(pass, probability.value.cols());
   const Bounded draw = relaxed ? concrete(probability, uniform) : bernoulli(probability, uniform);
-  if (temperature == 1.0) return draw;
-  return probability + temperature * (draw - probability);
+  return !relaxed && temperature == 1.0 ? draw : tempered(probability, draw, temperature);
 }
 
 /// All 2^units states of that many binary units, one a row.
@@ -42,16 +41,18 @@ Bounded bounded_clamped_chain(const Mrbm& model, int present, const MatrixD& val
                               const ClampedChain& chain, const PassDraws& draws) {
   const int absent = 1 - present;
   const Bounded W = Bounded::exact(model.weights[absent]);
-  const Bounded said = product(Bounded::exact(values), Bounded::exact(model.weights[present]));
-  const Bounded drive = plus_row(said, Bounded::exact(model.hidden_bias));
+  const Bounded given = Bounded::exact(values), V = Bounded::exact(model.weights[present]);
+  const Sum drive = Sum().add_product(given, V).add_row(Bounded::exact(model.hidden_bias));
   Bounded units, probability;
   for (int step = 0; step < chain.steps; ++step) {
-    Bounded input = drive;
-    if (step > 0) input = drive + product(units, W);
-    if (step == 0 && chain.double_first_pass) input = drive + said;
-    const Bounded hidden = drawn(sigmoid(input), chain, draws, 2 * step);
-    probability = sigmoid(
-        plus_row(product(hidden, W.transposed()), Bounded::exact(model.visible_bias[absent])));
+    Sum input = drive;
+    if (step > 0) input.add_product(units, W);
+    if (step == 0 && chain.double_first_pass) input.add_product(given, V);
+    const Bounded hidden = drawn(sigmoid(input.result()), chain, draws, 2 * step);
+    probability = sigmoid(Sum()
+                              .add_product(hidden, W.transposed())
+                              .add_row(Bounded::exact(model.visible_bias[absent]))
+                              .result());
     units = drawn(probability, chain, draws, 2 * step + 1);
   }
   return probability;

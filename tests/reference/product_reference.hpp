@@ -4,15 +4,9 @@
 
 namespace mcdbn::reference {
 
-/// alpha·A·B + beta·C with the bound (k + 2)·u·(|alpha||A||B| + |beta||C|), k being A's columns.
+/// alpha·A·B + beta·C, within (k + 2)·u·(|alpha||A||B| + |beta||C|), k being A's columns.
 Bounded product(const MatrixD& a, const MatrixD& b, double alpha = 1.0, double beta = 0.0,
                 const MatrixD& c = {});
-
-/// x + bias, one rounding more. @param bias as many rows as x, or one for all
-Bounded plus_bias(const Bounded& x, const MatrixD& bias);
-
-/// x·y·(1 − y): back through a sigmoid whose value was y.
-Bounded sigmoid_gradient(const Bounded& x, const MatrixD& y);
 
 /// The positive part, which brings no two numbers further apart.
 Bounded relu(const Bounded& x);
@@ -25,12 +19,5 @@ Bounded relu_gradient(const Bounded& x, const MatrixD& y);
 /// dropped.
 Bounded centered_sigmoid(const Bounded& x);
 Bounded centered_sigmoid_gradient(const Bounded& x, const MatrixD& y, double kept_share);
-
-/// mean + temperature·(draw − mean) for unit normals z, given the means that the device stored.
-/// Box-Muller's error is that of sqrt(−2·log u)·cospi(2u').
-Bounded gaussian_sample(const MatrixD& mean, const MatrixD& normal, double temperature);
-
-/// Same for given bits in place of the draw.
-Bounded bernoulli_sample(const MatrixD& probability, const MatrixD& bits, double temperature);
 
 }  // namespace mcdbn::reference
