@@ -7,16 +7,11 @@
 #include <sstream>
 
 #include "device/every_device.hpp"
+#include "learning/within_bounds.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "reference/crbm_reference.hpp"
-#include "reference/error_bounds.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
-using reference::gamma_n;
-using reference::kRoundoff;
-using reference::kSigmoidError;
-using reference::misfit;
 
 namespace {
 
@@ -37,16 +32,6 @@ CdRule rule_of(std::size_t gibbs_steps) {
   rule.W = rule.B = {0.05F, 0.9F, 0.01F};
   rule.A = {0.01F, 0.9F, 0.01F};
   return rule;
-}
-
-reference::Crbm model_of(const CrbmParameters& p) {
-  return {p.shape.kind == kGaussian ? reference::VisibleUnits::gaussian
-                                    : reference::VisibleUnits::binary,
-          p.W.cast<double>(),
-          p.A.cast<double>(),
-          p.B.cast<double>(),
-          p.a.cast<double>(),
-          p.b.cast<double>()};
 }
 
 /// Frames, windows into them, and a model to start from; all of the same numbers every time.
@@ -103,138 +88,50 @@ MatrixD uniforms(RandomKey key, int gibbs_step, std::size_t rows, std::size_t co
   return u;
 }
 
-MatrixD magnitude(const MatrixD& x) {
-  return x.cwiseAbs();
-}
-
-/// What rounding may do to a mini-batch whose draws come out as the reference's.
-struct CdBound {
-  MatrixD hidden;  ///< of any p(h), which is what a draw's distance from p must exceed
-  reference::Crbm gradient;
-  double loss = 0;
-};
-
-CdBound bound_of(const reference::Crbm& model, const reference::CrbmBatch& batch,
-                 const reference::CdResult& cd) {
-  const double n = static_cast<double>(batch.visible.rows());
-  const double visible_units = static_cast<double>(batch.visible.cols());
-  const double hidden_units = static_cast<double>(cd.hidden.cols());
-  const double past = static_cast<double>(batch.history.cols());
-  const bool gaussian = model.visible_units == reference::VisibleUnits::gaussian;
-  const MatrixD history = magnitude(batch.history), W = magnitude(model.weights);
-  // Sums of products with a bias, one rounding a term (Higham 3.5); two if stored in between.
-  const MatrixD bias_v = (history * magnitude(model.visible_history)).rowwise() +
-                         RowVectorD(model.visible_bias.cwiseAbs());
-  const MatrixD bias_h = (history * magnitude(model.hidden_history)).rowwise() +
-                         RowVectorD(model.hidden_bias.cwiseAbs());
-  // σ' ≤ ¼; hidden units that are on are 1, so that nothing carries over from step to step.
-  const MatrixD ones = MatrixD::Ones(batch.visible.rows(), cd.hidden.cols());
-  MatrixD visible = gamma_n(past + hidden_units + 4.0) * (bias_v + ones * W.transpose());
-  if (!gaussian)
-    visible = 0.25 * visible + kSigmoidError * kRoundoff * magnitude(cd.reconstruction);
-  const MatrixD reach = magnitude(cd.reconstruction).cwiseMax(magnitude(batch.visible)) + visible;
-  CdBound bound;
-  bound.hidden = 0.25 * (gamma_n(past + visible_units + 4.0) * (bias_h + reach * W) + visible * W) +
-                 kSigmoidError * kRoundoff * ones;
-
-  const MatrixD data = magnitude(batch.visible), end = magnitude(cd.reconstruction);
-  const MatrixD change_v = visible + kRoundoff * (data + end);
-  const MatrixD change_h = 2.0 * bound.hidden + 2.0 * kRoundoff * ones;
-  const double sums = gamma_n(2.0 * n + 4.0);
-  const auto mean_product = [&](const MatrixD& x, const MatrixD& y) {
-    return MatrixD(x.transpose() * y / n);
-  };
-  bound.gradient = model;
-  bound.gradient.weights = sums * (mean_product(data, cd.hidden) + mean_product(reach, ones)) +
-                           mean_product(data, bound.hidden) + mean_product(visible, ones) +
-                           mean_product(reach, bound.hidden);
-  bound.gradient.visible_history = mean_product(history, change_v + sums * (data + reach));
-  bound.gradient.hidden_history = mean_product(history, change_h + sums * 2.0 * ones);
-  bound.gradient.visible_bias = (change_v + sums * (data + reach)).colwise().mean();
-  bound.gradient.hidden_bias = (change_h + sums * 2.0 * ones).colwise().mean();
-  const MatrixD error = magnitude(batch.visible - cd.reconstruction);
-  bound.loss = ((2.0 * error + change_v).cwiseProduct(change_v).sum() +
-                gamma_n(visible_units + n + 4.0) * (error + change_v).squaredNorm()) /
-               (n * visible_units);
-  return bound;
-}
-
 struct ClearDraws {
   RandomKey key;
-  reference::CdResult want;
-  CdBound bound;
+  reference::BoundedCdStep want;
 };
 
 /// The reference's mini-batch with the first seed for which every draw is further from its
 /// probability than rounding can move that: then the device has to draw the same.
-ClearDraws clear_draws(const Case& test, const reference::Crbm& model,
-                       const reference::CrbmBatch& batch, std::size_t number) {
+ClearDraws clear_draws(const Case& test, const CrbmParameters& model,
+                       const reference::BoundedCrbm& velocities, const reference::CrbmBatch& batch,
+                       std::size_t number) {
+  const CdRule rule = rule_of(test.gibbs_steps);
   for (RandomKey key = key_of(number); key.seed < 1000; ++key.seed) {
-    auto want = reference::contrastive_divergence(
-        model, batch, static_cast<int>(test.gibbs_steps),
-        [&](int gibbs_step) { return uniforms(key, gibbs_step, test.batch, test.shape.hidden); });
-    CdBound bound = bound_of(model, batch, want);
-    if (want.closest_draw > bound.hidden.maxCoeff()) return {key, std::move(want), bound};
+    const auto draws = [&](int gibbs_step) {
+      return uniforms(key, gibbs_step, test.batch, test.shape.hidden);
+    };
+    auto want = reference::bounded_cd_step(reference::BoundedCrbm::exact(in_double(model)),
+                                           velocities, batch, static_cast<int>(test.gibbs_steps),
+                                           draws, rule.W, rule.A, rule.B);
+    if (want.uncertain_draws == 0.0) return {key, std::move(want)};
   }
   throw std::runtime_error("every seed has a draw too close to its probability");
-}
-
-/// Checks one parameter after an update; `velocity_bound` goes in as that of the old velocity and
-/// comes out as that of the new one.
-void check_parameter(const char* name, const MatrixF& got, const MatrixD& before,
-                     const MatrixD& want, const MatrixD& old_velocity, const MatrixD& gradient,
-                     const MatrixD& gradient_bound, const UpdateRule& rule,
-                     MatrixD& velocity_bound) {
-  const MatrixD pull = magnitude(gradient) + gradient_bound + rule.weight_decay * magnitude(before);
-  velocity_bound = rule.momentum * velocity_bound + rule.rate * gradient_bound +
-                   gamma_n(5.0) * (rule.momentum * magnitude(old_velocity) + rule.rate * pull);
-  const MatrixD bound = (1.0 + kRoundoff) * velocity_bound + kRoundoff * magnitude(want);
-  INFO(std::string(name));
-  CHECK(misfit(got, want, bound) == "");
 }
 
 /// Two mini-batches in a row, so that the momentum counts, each from the device's own parameters.
 void check_against_reference(Device& device, const Case& test, std::optional<RowTile> tile) {
   const Problem problem(test);
-  const CdRule rule = rule_of(test.gibbs_steps);
-  UpdateRule bias_rule = rule.W;
-  bias_rule.weight_decay = 0.0F;
   const Matrix frames = Matrix::from_host(device, problem.frames);
   const IndexBuffer index(device, problem.index);
   mcdbn::Crbm crbm(device, problem.start);
   ContrastiveDivergence cd(crbm, test.batch, tile);
   LossAccumulator losses(device, 1, test.batch);
 
-  reference::Crbm velocity = model_of(CrbmParameters::zeros(test.shape));
-  reference::Crbm velocity_bound = velocity;
+  auto velocities = reference::BoundedCrbm::zeros_like(in_double(problem.start));
   for (std::size_t number = 0; number < 2; ++number) {
     CAPTURE(number);
-    const reference::Crbm before = model_of(crbm.to_host());
-    const reference::CrbmBatch batch = problem.batch(number);
-    const auto [key, want, bound] = clear_draws(test, before, batch, number);
-    cd.step(Rows::indexed(frames, index, number * test.batch, test.batch), rule, key, losses);
+    const auto [key, want] =
+        clear_draws(test, crbm.to_host(), velocities, problem.batch(number), number);
+    cd.step(Rows::indexed(frames, index, number * test.batch, test.batch),
+            rule_of(test.gibbs_steps), key, losses);
     const CrbmParameters got = crbm.to_host();
-    const reference::Crbm old_velocity = velocity;
-    reference::Crbm after = before;
-    reference::update(after, velocity, want.gradient, rule.W, rule.A, rule.B);
-    const reference::Crbm &g = want.gradient, &e = bound.gradient, &v = old_velocity;
-    check_parameter("W", got.W, before.weights, after.weights, v.weights, g.weights, e.weights,
-                    rule.W, velocity_bound.weights);
-    check_parameter("A", got.A, before.visible_history, after.visible_history, v.visible_history,
-                    g.visible_history, e.visible_history, rule.A, velocity_bound.visible_history);
-    check_parameter("B", got.B, before.hidden_history, after.hidden_history, v.hidden_history,
-                    g.hidden_history, e.hidden_history, rule.B, velocity_bound.hidden_history);
-    MatrixD bound_a = velocity_bound.visible_bias, bound_b = velocity_bound.hidden_bias;
-    check_parameter("a", got.a, before.visible_bias, after.visible_bias, v.visible_bias,
-                    g.visible_bias, e.visible_bias, bias_rule, bound_a);
-    check_parameter("b", got.b, before.hidden_bias, after.hidden_bias, v.hidden_bias, g.hidden_bias,
-                    e.hidden_bias, bias_rule, bound_b);
-    velocity_bound.visible_bias = bound_a;
-    velocity_bound.hidden_bias = bound_b;
+    check_within(got, want.parameters);
     CHECK(crbm.W_transposed.to_host() == got.W.transpose());
-    const double loss = (batch.visible - want.reconstruction).squaredNorm() /
-                        static_cast<double>(test.batch * test.shape.visible);
-    CHECK(std::abs(losses.read_and_reset()[0] - loss) <= bound.loss);
+    check_within("loss", losses.read_and_reset()[0], want.loss);
+    velocities = want.velocities;
   }
   for (const Matrix* matrix : {&crbm.W, &crbm.A, &crbm.B, &crbm.a, &crbm.b, &crbm.W_transposed})
     if (!matrix->empty()) CHECK(padding_is_zero(*matrix));
