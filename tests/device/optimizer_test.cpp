@@ -5,18 +5,28 @@
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
+#include "reference/update_error_bound.hpp"
 #include "reference/update_reference.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
-using reference::gamma_n;
-using reference::kDivisionError;
-using reference::kRoundoff;
-using reference::kSmallestNormal;
-using reference::kSqrtError;
-using reference::misfit;
+using reference::Bounded;
 
 namespace {
+
+Bounded exact(const MatrixF& values) {
+  return Bounded::exact(values.cast<double>());
+}
+
+void check_within(const MatrixF& got, const Bounded& want) {
+  CHECK(reference::misfit(got, want.value, want.bound) == "");
+}
+
+/// The bounded update computes what the plain one computes.
+void check_value(const Bounded& bounded, const MatrixD& plain) {
+  CHECK((bounded.value - plain).cwiseAbs().maxCoeff() <=
+        1e-14 * std::max(1.0, plain.cwiseAbs().maxCoeff()));
+}
 
 /// Parameters of one matrix, with their optimizer.
 struct OneMatrix {
@@ -67,18 +77,15 @@ void check_momentum(Device& device, std::size_t rows, std::size_t columns, const
   device_side.set_gradient(gradient);
   device_side.update(rule);
 
-  MatrixD want_parameter = parameter.cast<double>(), want_velocity = velocity.cast<double>();
-  reference::momentum_update(want_parameter, want_velocity, -gradient.cast<double>(), rule);
-  const MatrixD pull = gradient.cwiseAbs().cast<double>() +
-                       double{rule.weight_decay} * parameter.cwiseAbs().cast<double>();
-  const MatrixD magnitude =
-      double{rule.momentum} * velocity.cwiseAbs().cast<double>() + double{rule.rate} * pull;
-  // decay's product, the difference, the rate's product, the sum
-  const MatrixD velocity_bound = gamma_n(4) * magnitude;
-  CHECK(misfit(device_side.state(0), want_velocity, velocity_bound) == "");
-  const MatrixD parameter_bound =
-      (1.0 + kRoundoff) * velocity_bound + kRoundoff * want_parameter.cwiseAbs();
-  CHECK(misfit(device_side.values(), want_parameter, parameter_bound) == "");
+  Bounded want = exact(parameter), want_velocity = exact(velocity);
+  reference::bounded_momentum_update(want, want_velocity, -exact(gradient), rule);
+  check_within(device_side.state(0), want_velocity);
+  check_within(device_side.values(), want);
+
+  MatrixD plain = parameter.cast<double>(), plain_velocity = velocity.cast<double>();
+  reference::momentum_update(plain, plain_velocity, -gradient.cast<double>(), rule);
+  check_value(want, plain);
+  check_value(want_velocity, plain_velocity);
 }
 
 void check_adam(Device& device, std::size_t rows, std::size_t columns, int step,
@@ -96,31 +103,18 @@ void check_adam(Device& device, std::size_t rows, std::size_t columns, int step,
   device_side.set_gradient(gradient);
   device_side.update(rule, step);
 
-  MatrixD want = parameter.cast<double>(), want_mean = mean.cast<double>();
-  MatrixD want_square = square.cast<double>();
-  reference::adam_update(want, want_mean, want_square, gradient.cast<double>(), rule, step);
+  Bounded want = exact(parameter), want_mean = exact(mean), want_square = exact(square);
+  reference::bounded_adam_update(want, want_mean, want_square, exact(gradient), rule, step);
+  check_within(device_side.state(0), want_mean);
+  check_within(device_side.state(1), want_square);
+  check_within(device_side.values(), want);
 
-  // 1 − β (exact for β in [½, 1]), two products and their sum; g² has one product more.
-  const double beta1 = rule.momentum, correction1 = 1.0 - std::pow(beta1, step);
-  const double correction2 = 1.0 - std::pow(double{rule.beta2}, step);
-  const MatrixD mean_bound = gamma_n(3) * (beta1 * mean.cwiseAbs().cast<double>() +
-                                           (1.0 - beta1) * gradient.cwiseAbs().cast<double>());
-  const MatrixD square_bound = gamma_n(4) * want_square;
-  CHECK(misfit(device_side.state(0), want_mean, mean_bound) == "");
-  CHECK(misfit(device_side.state(1), want_square, square_bound) == "");
-
-  const MatrixD divisor = (want_square / correction2).cwiseSqrt().array() + double{rule.epsilon};
-  const double divisor_error = (4.0 + kDivisionError + 1.0) / 2.0 + kSqrtError + 1.0;
-  const MatrixD direction = (want_mean / correction1).cwiseQuotient(divisor);
-  const MatrixD direction_bound =
-      (1.0 + gamma_n(30)) * (mean_bound / correction1).cwiseQuotient(divisor) +
-      gamma_n(2.0 * kDivisionError + 1.0 + divisor_error) * direction.cwiseAbs();
-  const MatrixD pull =
-      direction.cwiseAbs() + double{weight_decay} * parameter.cwiseAbs().cast<double>();
-  const MatrixD bound =
-      double{rule.rate} * ((1.0 + gamma_n(3)) * direction_bound + gamma_n(3) * pull) +
-      kRoundoff * want.cwiseAbs();
-  CHECK(misfit(device_side.values(), want, bound) == "");
+  MatrixD plain = parameter.cast<double>(), plain_mean = mean.cast<double>();
+  MatrixD plain_square = square.cast<double>();
+  reference::adam_update(plain, plain_mean, plain_square, gradient.cast<double>(), rule, step);
+  check_value(want, plain);
+  check_value(want_mean, plain_mean);
+  check_value(want_square, plain_square);
 }
 
 const UpdateRule kRules[] = {{.rate = 1e-3F, .momentum = 0.0F, .weight_decay = 0.0F},
@@ -226,17 +220,15 @@ TEST_CASE(
     Parameters both = parameters.in(gradients);
     both.upload("first", first);
     both.upload("second", second);
-    const double length =
-        std::sqrt(first.cast<double>().squaredNorm() + second.cast<double>().squaredNorm());
+    MatrixF all(1, first.size() + second.size());
+    all << first.reshaped<Eigen::RowMajor>().transpose(), second;
+    const Bounded length = reference::square_root(total(times(exact(all), exact(all))));
+    const auto half_length = static_cast<float>(0.5 * length.value(0));
     GradientLimit limit(parameters);
-    limit.measure(gradients, static_cast<float>(0.5 * length));
-    const double scale = static_cast<double>(limit.scale().to_host()(0));
-    // A sum of squares of so many terms under a root, the root, the division, and 0.5·length
-    // itself.
-    const double terms = static_cast<double>(first.size() + second.size());
-    const double relative = gamma_n(terms / 2.0 + kSqrtError + kDivisionError + 3.0);
-    CHECK(std::abs(scale - 0.5) <= 0.5 * relative);
-    limit.measure(gradients, static_cast<float>(2.0 * length));
+    limit.measure(gradients, half_length);
+    check_within(limit.scale().to_host(),
+                 quotient(exact(MatrixF::Constant(1, 1, half_length)), length));
+    limit.measure(gradients, 4.0F * half_length);
     CHECK(limit.scale().to_host()(0) == 1.0F);
     CHECK_THROWS_AS(limit.measure(Matrix(device, 1, 16), 1.0F), ShapeError);
 
@@ -258,11 +250,8 @@ TEST_CASE("small: a moving average goes the given share of the way") {
     const MatrixF before = random_matrix(5, 19, 1), parameter = random_matrix(5, 19, 2);
     Matrix average = Matrix::from_host(device, before);
     average_update(average, Matrix::from_host(device, parameter), 0.3F);
-    const MatrixD from = before.cast<double>(), to = parameter.cast<double>();
-    const MatrixD want = from + double{0.3F} * (to - from);
-    // The difference, then one fma.
-    const MatrixD bound = gamma_n(1) * 0.3 * (to - from).cwiseAbs() + kRoundoff * want.cwiseAbs();
-    CHECK(misfit(average.to_host(), want, MatrixD((1.0 + gamma_n(2)) * bound)) == "");
+    check_within(average.to_host(),
+                 exact(before) + double{0.3F} * (exact(parameter) - exact(before)));
     CHECK(padding_is_zero(average));
   });
 }

@@ -5,12 +5,11 @@
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
+#include "reference/running_error.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
-using reference::gamma_n;
-using reference::kRoundoff;
-using reference::misfit;
+using reference::Bounded;
 
 namespace {
 
@@ -19,6 +18,14 @@ struct Size {
 };
 const std::vector<Size> kSmallSizes = {{1, 1}, {3, 3}, {1, 17}, {17, 1}, {7, 13}, {5, 33}};
 const std::vector<Size> kModelSizes = {{100, 96}, {100, 190}, {100, 300}, {480, 300}, {101, 149}};
+
+Bounded exact(const MatrixF& values) {
+  return Bounded::exact(values.cast<double>());
+}
+
+void check_within(const MatrixF& got, const Bounded& want) {
+  CHECK(reference::misfit(got, want.value, want.bound) == "");
+}
 
 void check_difference(Device& device, const Size& size) {
   CAPTURE(size.rows);
@@ -29,9 +36,8 @@ void check_difference(Device& device, const Size& size) {
   const GuardedBlock out(device, size.rows, size.columns);
   scaled_difference(Rows(x_device, 2, size.rows), Rows(y_device, 1, size.rows), 0.3F, out.rows());
   const auto rows = static_cast<Eigen::Index>(size.rows);
-  const MatrixD want =
-      double{0.3F} * (x.bottomRows(rows).cast<double>() - y.bottomRows(rows).cast<double>());
-  CHECK(misfit(out.values(), want, MatrixD(gamma_n(2) * want.cwiseAbs())) == "");
+  check_within(out.values(),
+               double{0.3F} * (exact(x.bottomRows(rows)) - exact(y.bottomRows(rows))));
   CHECK(out.intact());
 }
 
@@ -78,12 +84,9 @@ void check_column_sum(Device& device, const Size& size, float beta) {
   Matrix out = Matrix::from_host(device, before), again = Matrix::from_host(device, before);
   column_sum(Rows(in_device, 1, size.rows), -0.7F, beta, out);
   column_sum(Rows(in_device, 1, size.rows), -0.7F, beta, again);
-  const MatrixD summands = in.bottomRows(static_cast<Eigen::Index>(size.rows)).cast<double>();
-  const MatrixD want = double{-0.7F} * summands.colwise().sum() + beta * before.cast<double>();
-  const MatrixD magnitude =
-      0.7 * summands.cwiseAbs().colwise().sum() + std::abs(beta) * before.cwiseAbs().cast<double>();
-  // rows − 1 additions, the scale, beta's product and sum
-  CHECK(misfit(out.to_host(), want, MatrixD(gamma_n(size.rows + 2.0) * magnitude)) == "");
+  const auto rows = static_cast<Eigen::Index>(size.rows);
+  check_within(out.to_host(), double{-0.7F} * column_sum(exact(in.bottomRows(rows))) +
+                                  double{beta} * exact(before));
   CHECK(out.to_host() == again.to_host());
   CHECK(padding_is_zero(out));
 }
@@ -97,14 +100,10 @@ void check_block_sum(Device& device, const Size& size, std::size_t blocks) {
   const Matrix out(device, size.rows, size.columns);
   block_sum(in_device, out);
   const auto rows = static_cast<Eigen::Index>(size.rows);
-  MatrixD want = MatrixD::Zero(rows, in.cols());
-  MatrixD magnitude = want;
-  for (Eigen::Index t = 0; t < static_cast<Eigen::Index>(blocks); ++t) {
-    want += in.middleRows(t * rows, rows).cast<double>();
-    magnitude += in.middleRows(t * rows, rows).cwiseAbs().cast<double>();
-  }
-  CHECK(misfit(out.to_host(), want, MatrixD(gamma_n(static_cast<double>(blocks)) * magnitude)) ==
-        "");
+  reference::Sum want;
+  for (Eigen::Index t = 0; t < static_cast<Eigen::Index>(blocks); ++t)
+    want.add(exact(in.middleRows(t * rows, rows)));
+  check_within(out.to_host(), want.result());
   CHECK(padding_is_zero(out));
 }
 
@@ -164,15 +163,12 @@ TEST_CASE("small: drop-out keeps what the host's draws keep, and what is expecte
       const MatrixF x = random_matrix(rows, columns, 3);
       const GuardedBlock block(device, rows, columns, x);
       dropout(block.rows(), 0.75F, key);
-      const MatrixF got = block.values();
-      for (Eigen::Index r = 0; r < rows; ++r)
-        for (Eigen::Index c = 0; c < columns; ++c) {
-          const bool kept = random_uniform(key, static_cast<std::uint32_t>(r),
-                                           static_cast<std::uint32_t>(c)) < 0.75F;
-          // One division, of 2.5 ulp.
-          const double want = kept ? double{x(r, c)} / 0.75 : 0.0;
-          CHECK(std::abs(got(r, c) - want) <= 5.0 * 0x1p-24 * std::abs(want));
-        }
+      const MatrixF kept = MatrixF::NullaryExpr(rows, columns, [&](auto r, auto c) {
+        const float u =
+            random_uniform(key, static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c));
+        return u < 0.75F ? x(r, c) : 0.0F;
+      });
+      check_within(block.values(), divided(exact(kept), 0.75));
       CHECK(block.intact());
     }
     const Matrix ones = Matrix::from_host(device, MatrixF::Ones(200, 100));
