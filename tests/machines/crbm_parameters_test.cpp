@@ -7,12 +7,13 @@
 #include "mcdbn/machines/crbm.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 #include "reference/error_bounds.hpp"
-#include "reference/running_error.hpp"
+#include "reference/mrbm_chain_reference.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
 using reference::misfit;
+using reference::Sum;
 
 namespace {
 
@@ -121,15 +122,16 @@ TEST_CASE("small: a layer's biases and hidden probabilities are eq 11, 16 and 17
         const auto t = static_cast<Eigen::Index>(first + i), row = static_cast<Eigen::Index>(i);
         const Bounded history =
             exact(history_of(frames, t, static_cast<Eigen::Index>(shape.order)));
-        Bounded hidden_bias = exact(p.b);
+        const Bounded visible_bias =
+            Sum().add(exact(p.a)).add_product(history, exact(p.A)).result();
+        Sum hidden_input = Sum().add(exact(p.b)).add_product(history, exact(p.B));
+        const Bounded hidden_bias = hidden_input.result();
         if (shape.order > 0) {
-          const Bounded visible_bias = exact(p.a) + product(history, exact(p.A));
-          hidden_bias = hidden_bias + product(history, exact(p.B));
           CHECK(misfit(visible.to_host().row(row), visible_bias.value, visible_bias.bound) == "");
           CHECK(misfit(hidden.to_host().row(row), hidden_bias.value, hidden_bias.bound) == "");
         }
-        const Bounded want =
-            reference::sigmoid(hidden_bias + product(exact(frames.row(t)), exact(p.W)));
+        hidden_input.add_product(exact(frames.row(t)), exact(p.W));
+        const Bounded want = reference::sigmoid(hidden_input.result());
         CHECK(misfit(code.to_host().row(row), want.value, want.bound) == "");
       }
     }
@@ -232,15 +234,13 @@ TEST_CASE("small: inference of the MRBM is so many steps from the modality that 
     for (const Modality modality : {Modality::track, Modality::pose})
       for (const std::size_t steps : {0U, 1U, 2U, 7U})
         for (const bool doubled : {false, true}) {
-          const std::size_t here = index_of(modality), there = 1 - here;
-          const Bounded W = exact(p.W[there]), said = product(exact(codes), exact(p.W[here]));
-          const Bounded drive = plus_row(said, exact(p.b));
-          Bounded want = Bounded::exact(MatrixD::Zero(6, 5));
-          for (std::size_t step = 0; step < std::max<std::size_t>(steps, 1); ++step) {
-            const Bounded other = step == 0 && doubled ? said : product(want, W);
-            want = reference::sigmoid(plus_row(
-                product(reference::sigmoid(drive + other), W.transposed()), exact(p.a[there])));
-          }
+          const reference::ClampedChain mean_field{std::max(static_cast<int>(steps), 1), 0.0,
+                                                   doubled};
+          const Bounded want = reference::bounded_clamped_chain(
+              {{p.W[0].cast<double>(), p.W[1].cast<double>()},
+               {p.a[0].cast<double>(), p.a[1].cast<double>()},
+               p.b.cast<double>()},
+              static_cast<int>(index_of(modality)), codes.cast<double>(), mean_field, {});
           mrbm.infer(modality, present, steps, absent, doubled);
           CHECK(misfit(absent.to_host(), want.value, want.bound) == "");
         }

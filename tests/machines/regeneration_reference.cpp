@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "mcdbn/base/random.hpp"
-#include "reference/error_bounds.hpp"
 
 namespace mcdbn::reference {
 namespace {
@@ -25,37 +24,26 @@ MatrixD numbers(const RandomKey& key, const MatrixD& shape, Number&& number) {
   return values;
 }
 
-/// A draw with variance 1 about the mean, by Box-Muller in single precision.
-Bounded gaussian(const Bounded& mean, const RandomKey& key) {
-  const MatrixD normal = numbers(key, mean.value, random_normal);
-  const double operations = kLogError / 2 + kSqrtError + kCospiError + 2;
-  return mean + Bounded{normal, gamma_n(operations) * normal.cwiseAbs()};
-}
-
-/// mean + share · (draw − mean), the draw's and the mean's errors each by their own weight.
+/// mean + share · (draw − mean)
 Bounded drawn(const Bounded& mean, Draw kind, double share, const RandomKey& key) {
   if (share == 0.0) return mean;
-  Bounded draw;
-  if (kind == Draw::gaussian) {
-    draw = gaussian(mean, key);
-  } else {
-    const MatrixD uniform = numbers(key, mean.value, random_uniform);
-    draw = kind == Draw::bernoulli ? bernoulli(mean, uniform) : concrete(mean, uniform);
-  }
-  const MatrixD size = mean.value.cwiseAbs() + mean.bound + draw.value.cwiseAbs() + draw.bound;
-  return {
-      mean.value + share * (draw.value - mean.value),
-      std::abs(1.0 - share) * mean.bound + share * draw.bound + gamma_n(5) * (1.0 + share) * size};
+  if (kind == Draw::gaussian)
+    return tempered(mean, gaussian(mean, numbers(key, mean.value, random_normal)), share);
+  const MatrixD uniform = numbers(key, mean.value, random_uniform);
+  return tempered(
+      mean, kind == Draw::bernoulli ? bernoulli(mean, uniform) : concrete(mean, uniform), share);
 }
 
-/// The frames before frame t, weighted: Σ over the order, the oldest frame first (eq 16, 17).
-Bounded history_part(const Frames& frames, std::size_t t, const MatrixF& weights,
-                     const CrbmShape& shape) {
+/// bias + Σ over the order of the frames before frame t, weighted (eq 16, 17). One sum with what
+/// the other layer adds: the device may store it and go on from there.
+Sum dynamic_bias(const Frames& frames, std::size_t t, const MatrixF& weights, const MatrixF& bias,
+                 const CrbmShape& shape) {
   const auto units = static_cast<Eigen::Index>(shape.visible);
-  Bounded sum = Bounded::exact(MatrixD::Zero(frames[t].value.rows(), weights.cols()));
+  Sum sum;
+  sum.add(exact(bias.replicate(frames[t].value.rows(), 1)));
   for (std::size_t q = 0; q < shape.order; ++q)
-    sum = sum + product(frames[t - shape.order + q],
-                        exact(weights.middleRows(static_cast<Eigen::Index>(q) * units, units)));
+    sum.add_product(frames[t - shape.order + q],
+                    exact(weights.middleRows(static_cast<Eigen::Index>(q) * units, units)));
   return sum;
 }
 
@@ -64,23 +52,23 @@ Bounded activated(const Bounded& input, VisibleKind kind) {
 }
 
 /// eq 10 (eq 6 for binary units) with eq 16.
-Bounded visible_means(const CrbmParameters& p, const Bounded& visible_bias, const Bounded& above) {
-  return activated(visible_bias + product(above, exact(p.W).transposed()), p.shape.kind);
+Bounded visible_means(const CrbmParameters& p, Sum visible_bias, const Bounded& above) {
+  return activated(visible_bias.add_product(above, exact(p.W).transposed()).result(), p.shape.kind);
 }
 
 /// k times the units below and the top ones, drawn; then the means below.
 Bounded sampled_frame(const CrbmParameters& p, const Frames& below, const Bounded& code,
                       std::size_t t, const DrawRule& rule) {
-  const Bounded visible_bias = plus_row(history_part(below, t, p.A, p.shape), exact(p.a));
-  const Bounded hidden_bias = plus_row(history_part(below, t, p.B, p.shape), exact(p.b));
+  const Sum visible_bias = dynamic_bias(below, t, p.A, p.a, p.shape);
+  const Sum hidden_bias = dynamic_bias(below, t, p.B, p.b, p.shape);
   const Draw kind = p.shape.kind == VisibleKind::binary ? Draw::bernoulli : Draw::gaussian;
   Bounded top = code;
   RandomKey key{rule.seed, static_cast<std::uint32_t>(t), kDecoderStream, 0};
   for (std::size_t k = 0; k < rule.gibbs_steps; ++k) {
     const Bounded visible = drawn(visible_means(p, visible_bias, top), kind, rule.share, key);
     ++key.phase;
-    top = drawn(sigmoid(hidden_bias + product(visible, exact(p.W))), Draw::bernoulli, rule.share,
-                key);
+    top = drawn(sigmoid(Sum(hidden_bias).add_product(visible, exact(p.W)).result()),
+                Draw::bernoulli, rule.share, key);
     ++key.phase;
   }
   return visible_means(p, visible_bias, top);
@@ -93,8 +81,8 @@ Frames codes(const std::vector<CrbmParameters>& layers, Frames frames) {
     first += p.shape.order;
     Frames code(frames.size());
     for (std::size_t t = first; t < frames.size(); ++t)
-      code[t] = sigmoid(history_part(frames, t, p.B, p.shape) + exact(p.b) +
-                        product(frames[t], exact(p.W)));
+      code[t] = sigmoid(
+          dynamic_bias(frames, t, p.B, p.b, p.shape).add_product(frames[t], exact(p.W)).result());
     frames = std::move(code);
   }
   return frames;
@@ -111,12 +99,13 @@ Bounded pose_code(const Network& network, const Bounded& track_code, const DrawR
   RandomKey key{rule.seed, rule.steady ? 0U : step, kMrbmStream, 0};
   const MrbmParameters& p = network.mrbm;
   const Bounded W = exact(p.W[1]);
-  const Bounded drive = plus_row(product(track_code, exact(p.W[0])), exact(p.b));
+  const Sum drive = Sum().add_product(track_code, exact(p.W[0])).add_row(exact(p.b));
   Bounded units = Bounded::exact(MatrixD::Zero(track_code.value.rows(), p.W[1].rows())), means;
   for (std::size_t k = 0; k < steps; ++k) {
-    const Bounded hidden = drawn(sigmoid(drive + product(units, W)), kind, share, key);
+    const Bounded hidden =
+        drawn(sigmoid(Sum(drive).add_product(units, W).result()), kind, share, key);
     ++key.phase;
-    means = sigmoid(plus_row(product(hidden, W.transposed()), exact(p.a[1])));
+    means = sigmoid(Sum().add_product(hidden, W.transposed()).add_row(exact(p.a[1])).result());
     units = drawn(means, kind, share, key);
     ++key.phase;
   }
@@ -175,10 +164,8 @@ Frames decoded(const std::vector<CrbmParameters>& layers, const Frames& code, st
     const bool samples = i + 1 == layers.size() && rule.share > 0.0 && rule.gibbs_steps > 0;
     Frames below(code.size(), exact(p.visible_mean.replicate(sequences, 1)));
     for (std::size_t t = first; t < last; ++t)
-      below[t] = samples
-                     ? sampled_frame(p, below, above[t], t, rule)
-                     : visible_means(p, plus_row(history_part(below, t, p.A, p.shape), exact(p.a)),
-                                     above[t]);
+      below[t] = samples ? sampled_frame(p, below, above[t], t, rule)
+                         : visible_means(p, dynamic_bias(below, t, p.A, p.a, p.shape), above[t]);
     above = std::move(below);
   }
   return above;

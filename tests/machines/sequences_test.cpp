@@ -44,13 +44,13 @@ std::vector<Bounded> codes(const CrbmParameters& p, const std::vector<Bounded>& 
                            std::size_t first) {
   std::vector<Bounded> result(frames.size());
   for (std::size_t t = first; t < frames.size(); ++t) {
-    Bounded input = exact(p.b) + product(frames[t], exact(p.W));
+    reference::Sum input;
+    input.add(exact(p.b)).add_product(frames[t], exact(p.W));
     const auto visible = static_cast<Eigen::Index>(p.shape.visible);
     for (std::size_t q = 0; q < p.shape.order; ++q)
-      input =
-          input + product(frames[t - p.shape.order + q],
-                          exact(p.B.middleRows(static_cast<Eigen::Index>(q) * visible, visible)));
-    result[t] = reference::sigmoid(input);
+      input.add_product(frames[t - p.shape.order + q],
+                        exact(p.B.middleRows(static_cast<Eigen::Index>(q) * visible, visible)));
+    result[t] = reference::sigmoid(input.result());
   }
   return result;
 }
