@@ -165,7 +165,7 @@ TEST_CASE("greedy reports: health is that of the stage's own layer on its own in
             crbm_health(parameters, health_windows(sequences_of(device, code), frames));
         CHECK(want.free_run_error.has_value());
         check_health(last_health(watched.reports, stage), want);
-        code = reference::up_pass(crbm_in_double(parameters), code);
+        code = reference::up_pass(in_double(parameters), code);
       }
     }
     const auto [track, pose] = pairs_of(codes[0], codes[1], scene.plan.look_ahead);

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "device/every_device.hpp"
+#include "learning/within_bounds.hpp"
 #include "mcdbn/learning/greedy_schedule.hpp"
-#include "reference/error_bounds.hpp"
 #include "reference/greedy_reference.hpp"
 
 namespace mcdbn::test {
@@ -152,34 +152,19 @@ inline reference::GreedyRun train_on_host(const GreedyScene& scene,
                                  start);
 }
 
-inline reference::Crbm crbm_in_double(const CrbmParameters& p) {
-  return {p.shape.kind == VisibleKind::gaussian ? reference::VisibleUnits::gaussian
-                                                : reference::VisibleUnits::binary,
-          p.W.cast<double>(),
-          p.A.cast<double>(),
-          p.B.cast<double>(),
-          p.a.cast<double>(),
-          p.b.cast<double>()};
-}
-
 inline reference::GreedyMachine machine_in_double(const Mcdbn& model) {
   reference::GreedyMachine machine;
   const auto layers_of = [](const Cdbn& cdbn) {
     std::vector<reference::GreedyLayer> layers;
     for (const Crbm& crbm : cdbn.layers) {
       const CrbmParameters p = crbm.to_host();
-      layers.push_back({crbm_in_double(p), p.visible_mean.cast<double>()});
+      layers.push_back({in_double(p), p.visible_mean.cast<double>()});
     }
     return layers;
   };
   machine.track = layers_of(model.track);
   machine.pose = layers_of(model.pose);
-  const MrbmParameters p = model.mrbm.to_host();
-  for (std::size_t m = 0; m < 2; ++m) {
-    machine.mrbm.weights[m] = p.W[m].cast<double>();
-    machine.mrbm.visible_bias[m] = p.a[m].cast<double>();
-  }
-  machine.mrbm.hidden_bias = p.b.cast<double>();
+  machine.mrbm = in_double(model.mrbm.to_host());
   return machine;
 }
 

@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
+#include "learning/within_bounds.hpp"
 #include "mcdbn/learning/layer_health.hpp"
-#include "reference/crbm_reference.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -20,16 +20,6 @@ CrbmParameters random_crbm(const CrbmShape& shape) {
   p.a = random_matrix(1, shape.visible, 4, 0.5F);
   p.b = random_matrix(1, shape.hidden, 5, 7.0F);
   return p;
-}
-
-reference::Crbm in_double(const CrbmParameters& p) {
-  return {p.shape.kind == VisibleKind::gaussian ? reference::VisibleUnits::gaussian
-                                                : reference::VisibleUnits::binary,
-          p.W.cast<double>(),
-          p.A.cast<double>(),
-          p.B.cast<double>(),
-          p.a.cast<double>(),
-          p.b.cast<double>()};
 }
 
 /// The last frames of `frames`, side by side, the oldest first. @return [1 x order·visible]

@@ -9,10 +9,8 @@
 #include "device/every_device.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/multi_prediction.hpp"
+#include "learning/within_bounds.hpp"
 #include "mcdbn/machines/sequences.hpp"
-#include "reference/crbm_reference.hpp"
-#include "reference/error_bounds.hpp"
-#include "reference/mrbm_reference.hpp"
 #include "reference/units_reference.hpp"
 #include "reference/update_reference.hpp"
 
@@ -58,16 +56,6 @@ CrbmParameters made_up_crbm(const CrbmShape& shape) {
   p.a = random_matrix(1, shape.visible, 4);
   p.b = random_matrix(1, shape.hidden, 5);
   return p;
-}
-
-reference::Crbm in_double(const CrbmParameters& p) {
-  return {p.shape.kind == VisibleKind::gaussian ? reference::VisibleUnits::gaussian
-                                                : reference::VisibleUnits::binary,
-          p.W.cast<double>(),
-          p.A.cast<double>(),
-          p.B.cast<double>(),
-          p.a.cast<double>(),
-          p.b.cast<double>()};
 }
 
 struct CdScene {
@@ -197,11 +185,7 @@ struct MrbmWanted {
 };
 
 MrbmWanted wanted(const MrbmScene& scene) {
-  const MrbmParameters& p = scene.start;
-  MrbmWanted want{{{p.W[0].cast<double>(), p.W[1].cast<double>()},
-                   {p.a[0].cast<double>(), p.a[1].cast<double>()},
-                   p.b.cast<double>()},
-                  {}};
+  MrbmWanted want{in_double(scene.start), {}};
   reference::Mrbm decaying =
       want.model.with_parameters(Eigen::VectorXd::Zero(want.model.flattened().size()));
   for (MatrixD& weights : decaying.weights) weights.setOnes();
