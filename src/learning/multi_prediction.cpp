@@ -92,8 +92,7 @@ void MultiPrediction::step(const Rows& track, const Rows& pose, const UpdateRule
   if (!track.index || !pose.index) throw ShapeError("multi-prediction: wants indexed codes");
   optimizer_.next_step();
   if (tile_) {
-    gather_at(track, codes_, 0);
-    gather_at(pose, codes_, block_ * padded(track.columns));
+    gather_two(track, pose, codes_, block_ * padded(track.columns));
     fused_chain();
     fused_update(rule, losses);
     return;
