@@ -23,10 +23,7 @@
 #undef SAMPLE
 #define SAMPLE 1
 #endif
-#include "tile.clh"
-#include "mrbm_shape.clh"
-
-#define X_LD PADDED(LARGEST)
+#include "mean_field.clh"
 
 // Probabilities of this tile become what lies between them and their draws.
 INLINE void draw_tile(local float* x, const int ld, const int count, int column, int row0,
@@ -45,7 +42,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
   local float x[ROWS * X_LD];  // the present modality, then the absent one
   local float h[ROWS * H_LD];
   const int row0 = get_group_id(0) * ROWS;
-  const int P = UNITS(p), Q = UNITS(q), P_LD = PADDED(P), Q_LD = PADDED(Q);
+  const int P = UNITS(p), Q = UNITS(q), P_LD = PADDED(P);
   global const float* w_p = parameters + W_AT(p);
   global const float* w_q = parameters + W_AT(q);
   global const float* wt_q = transposed + WT_AT(q);
@@ -62,31 +59,17 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
   floatN sum[ROWS][COLUMNS];
   SYNC();
 
-  FOR_TILES(H_LD, {
-    clear_tile(sum, count);
-    add_products(sum, count, x, X_LD, P, w_p, H_LD, column);
-    add_tile(sum, count, b, 0, column);
-    store_tile(sum, count, drive, H_LD, column);
-  });
+  ADD_TO_DRIVE(P, w_p, b, 0);
   for (int step = 0; step < steps; ++step) {
     const bool last = step + 1 == steps;
     // What is in x: the present modality at first, whose products the drive has.
     const int units = step > 0 ? Q : doubled ? P : 0;
     global const float* weights = step > 0 ? w_q : w_p;
-    FOR_TILES(H_LD, {
-      clear_tile(sum, count);
-      add_products(sum, count, x, X_LD, units, weights, H_LD, column);
-      add_tile(sum, count, drive, H_LD, column);
-      apply_sigmoid(sum, count, column, HIDDEN);
-      keep_tile(sum, count, h, H_LD, column);
+    SHARED_UNITS(units, weights, drive, {
       draw_tile(h, H_LD, count, column, row0, temperature, random, 2 * step);
     });
     SYNC();
-    FOR_TILES(Q_LD, {
-      clear_tile(sum, count);
-      add_products(sum, count, h, H_LD, HIDDEN, wt_q, Q_LD, column);
-      add_tile(sum, count, a_q, 0, column);
-      apply_sigmoid(sum, count, column, Q);
+    ABSENT_UNITS(Q, wt_q, a_q, {
       if (last) {
         store_first_rows(sum, count, absent, absent_ld, column, rows - row0);
       } else {

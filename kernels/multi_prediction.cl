@@ -15,10 +15,7 @@
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
 //   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97
 
-#include "tile.clh"
-#include "mrbm_shape.clh"
-
-#define X_LD PADDED(LARGEST)
+#include "mean_field.clh"
 
 // sum ∘= y · (1 − y), the derivative of the sigmoid whose value is y
 INLINE void through_sigmoid(floatN sum[ROWS][COLUMNS], const int count, global const float* y,
@@ -87,26 +84,14 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
     SYNC();
     global const float* before = i == 0 ? parameters + B_AT : drive;
     const int before_ld = i == 0 ? 0 : H_LD;
-    FOR_TILES(H_LD, {
-      load_tile(sum, count, before, before_ld, column);
-      add_products(sum, count, x, X_LD, P, w_p, H_LD, column);
-      store_tile(sum, count, drive, H_LD, column);
-    });
+    ADD_TO_DRIVE(P, w_p, before, before_ld);
     SYNC();
   }
   for (int t = 0; t < STEPS; ++t) {
-    FOR_TILES(H_LD, {
-      load_tile(sum, count, drive, H_LD, column);
-      if (t > 0) add_products(sum, count, x, X_LD, Q, w_q, H_LD, column);
-      apply_sigmoid(sum, count, column, HIDDEN);
-      store_tile(sum, count, hidden + t * hidden_block, H_LD, column);
-      keep_tile(sum, count, h, H_LD, column);
-    });
+    SHARED_UNITS(t > 0 ? Q : 0, w_q, drive,
+                 { store_tile(sum, count, hidden + t * hidden_block, H_LD, column); });
     SYNC();
-    FOR_TILES(Q_LD, {
-      load_tile(sum, count, a_q, 0, column);
-      add_products(sum, count, h, H_LD, HIDDEN, wt_q, Q_LD, column);
-      apply_sigmoid(sum, count, column, Q);
+    ABSENT_UNITS(Q, wt_q, a_q, {
       store_tile(sum, count, values + t * value_block, Q_LD, column);
       keep_tile(sum, count, x, X_LD, column);
     });
