@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "clips.hpp"
 #include "evaluation/bone_length.hpp"
@@ -54,6 +55,16 @@ TEST_CASE("foot_slide: a low foot that is fast is not planted, nor a slow one up
   CHECK(foot_slide(truth, truth, {0}, 10).planted == 0);
   truth.col(1).setZero();
   CHECK(foot_slide(truth, truth, {0}, 10).planted == 2);
+  // Up to 40 mm and 400 mm/s.
+  for (const auto& [height, step, planted] :
+       {std::tuple(40.0, 40.0, 4), std::tuple(41.0, 40.0, 2), std::tuple(40.0, 41.0, 3)}) {
+    MatrixD edge = MatrixD::Zero(5, 3);
+    edge.col(0) << 0, step, step, step, step;
+    edge.col(1) << 0, 0, 0, height, height;
+    CAPTURE(height);
+    CAPTURE(step);
+    CHECK(foot_slide(edge, edge, {0}, 10).planted == planted);
+  }
   // Each foot has its own ground: an ankle is never as low as a toe.
   MatrixD two(5, 6);
   two << truth, truth;
