@@ -1,6 +1,7 @@
 #pragma once
 
-#include <math.h>  // Boost 1.74's pchip.hpp calls isnan without saying whose
+// Boost 1.74's pchip.hpp calls isnan without saying whose.
+#include <math.h>  // NOLINT(modernize-deprecated-headers)
 
 #include <Eigen/Core>
 #include <boost/math/interpolators/pchip.hpp>
