@@ -2,11 +2,9 @@
 
 #include <cstdint>
 
-namespace mcdbn {
-
 /// RandomKey::stream of everything that draws numbers from one seed: no two may share one, or they
 /// would draw the same.
-namespace random_streams {
+namespace mcdbn::random_streams {
 
 inline constexpr std::uint16_t kPoseLayers = 0;    ///< and one more for each further layer
 inline constexpr std::uint16_t kTrackLayers = 64;  ///< likewise
@@ -27,5 +25,4 @@ inline constexpr std::uint16_t kHiddenArm = 204;
 inline constexpr std::uint16_t kHiddenLimbs = 205;
 inline constexpr std::uint16_t kPerceptron = 0x4d4c;  ///< and the next for each layer's drop-out
 
-}  // namespace random_streams
-}  // namespace mcdbn
+}  // namespace mcdbn::random_streams
