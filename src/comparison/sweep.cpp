@@ -38,6 +38,7 @@ TrainingConfig shortest(TrainingConfig config) {
 /// Seconds to regenerate all clips; a first run builds the kernels.
 double inference_s(const Model& model, const std::vector<ClipResult>& results) {
   std::vector<MatrixF> tracks;
+  tracks.reserve(results.size());
   for (const ClipResult& result : results) tracks.push_back(result.truth.track_features);
   regenerate(model.network, {tracks.front()});
   const auto start = std::chrono::steady_clock::now();
