@@ -10,7 +10,10 @@ namespace mcdbn {
 namespace {
 
 /// Blocks are dealt out whole: what counts is how long the busiest compute unit works. A block
-/// costs its rows plus what does not depend on them (loading weights, launching).
+/// costs its rows plus what does not depend on them (loading weights, launching): timed alone, a
+/// block of the Gaussian chain costs as much as 3 rows more, but whole mini-batches of 100 and 1024
+/// take as long with 3 as with 1.5, which lets the blocks of 10 rows sum two columns of vectors at
+/// once.
 double busiest_unit_cost(std::size_t batch, std::size_t rows, std::size_t units) {
   constexpr double kBlockOverheadRows = 1.5;
   const std::size_t blocks = ceil_divide(ceil_divide(batch, rows), units);
