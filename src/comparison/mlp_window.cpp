@@ -157,9 +157,7 @@ class Trainer {
     const UpdateRule rule =
         UpdateRule::adam(static_cast<float>(rate), static_cast<float>(settings_.weight_decay));
     optimizer_.next_step();
-    optimizer_.update([&rule](const ParameterShape& shape) {
-      return shape.is_weight ? rule : rule.without_decay();
-    });
+    optimizer_.update(rule);
     for (TrainedLayer& layer : layers_) layer.refresh();
   }
 

@@ -71,9 +71,11 @@ void Optimizer::update(const std::function<UpdateRule(const ParameterShape&)>& r
   for (const Parameters::Entry& entry : parameters_.entries()) {
     if (entry.floats() == 0) continue;
     const LaunchSize work{{vectors_of(device, entry.floats()), 1}};
+    const UpdateRule rule = rule_of(entry);
+    const cl_float8 taken = argument(entry.is_weight ? rule : rule.without_decay());
     const auto run = [&](cl::Kernel& kernel, const auto&... scale) {
       launch(device, kernel, work, parameters_.all().buffer(), gradients().buffer(), state_buffer(),
-             size(), to_int(entry.first), argument(rule_of(entry)), scale...);
+             size(), to_int(entry.first), taken, scale...);
     };
     if (gradient_scale)
       run(optimizer_kernel(device, "update_parameters", {{"OPTIMIZER", define()}, {"SCALED", 1}}),

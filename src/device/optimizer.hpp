@@ -58,12 +58,15 @@ class Optimizer {
   /// Floats of one block of states.
   int size() const;
 
-  /// Every parameter by its gradient in gradients().
-  /// @param rule_of what an entry takes  @param gradient_scale [1 x 1] what gradients are
-  /// multiplied
+  /// Every parameter by its gradient in gradients(); biases without the rule's decay.
+  /// @param rule_of what an entry takes, or one rule for all  @param gradient_scale [1 x 1] what
+  /// gradients are multiplied
   ///        with first
   void update(const std::function<UpdateRule(const ParameterShape&)>& rule_of,
               const Matrix* gradient_scale = nullptr);
+  void update(const UpdateRule& rule, const Matrix* gradient_scale = nullptr) {
+    update([&rule](const ParameterShape&) { return rule; }, gradient_scale);
+  }
 
  private:
   Parameters parameters_;

@@ -48,12 +48,7 @@ ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_bat
       row_losses_(crbm.device(), 1, visible_data_.rows()) {
   if (tile_) return;
   hidden_sample_ = Matrix::like(hidden_data_);
-  const Parameters gradients = crbm.parameters().in(optimizer_.gradients());
-  gradient_W_ = gradients.matrix("W");
-  gradient_A_ = gradients.matrix("A");
-  gradient_B_ = gradients.matrix("B");
-  gradient_a_ = gradients.matrix("a");
-  gradient_b_ = gradients.matrix("b");
+  gradient_.emplace(crbm.parameters().in(optimizer_.gradients()));
 }
 
 void ContrastiveDivergence::learn(std::span<const Rows> visible, const LearningStep& step,
@@ -69,11 +64,11 @@ void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const Ran
   require(rows.count > 0 && rows.count <= visible_data_.rows(),
           "CD: the mini-batch is larger than it was made for");
   require(rule.gibbs_steps > 0, "CD: wants at least one Gibbs step");
+  optimizer_.next_step();
   if (!tile_) {
     composed_step(rows, rule, key, losses);
     return;
   }
-  optimizer_.next_step();
   fused_chain(rows, rule.gibbs_steps, key);
   fused_update(rows, rule, losses);
 }
@@ -86,9 +81,7 @@ void ContrastiveDivergence::composed_step(const Rows& rows, const CdRule& rule,
   losses.add_squared_error(0, data, reconstruction,
                            1.0F / static_cast<float>(rows.count * crbm_.shape().visible));
   composed_gradients(rows);
-  optimizer_.next_step();
   optimizer_.update([&rule](const ParameterShape& shape) {
-    if (!shape.is_weight) return rule.W.without_decay();
     return shape.name == "A" ? rule.A : shape.name == "B" ? rule.B : rule.W;
   });
   crbm_.refresh_transposed();
@@ -137,17 +130,17 @@ void ContrastiveDivergence::composed_gradients(const Rows& rows) {
   const Rows visible_data(visible_data_, 0, n), hidden_data(hidden_data_, 0, n);
   const Rows visible(visible_, 0, n), hidden(hidden_, 0, n);
   // eq 37
-  gemm_transposed_a(visible_data, hidden_data, gradient_W_, -mean);
-  gemm_transposed_a(visible, hidden, gradient_W_, mean, 1.0F);
+  gemm_transposed_a(visible_data, hidden_data, gradient_->W, -mean);
+  gemm_transposed_a(visible, hidden, gradient_->W, mean, 1.0F);
   // What the directed weights and biases learn from (eq 38 to 41, errata).
   scaled_difference(visible, visible_data, mean, visible);
   scaled_difference(hidden, hidden_data, mean, hidden);
-  column_sum(visible, 1.0F, 0.0F, gradient_a_);
-  column_sum(hidden, 1.0F, 0.0F, gradient_b_);
+  column_sum(visible, 1.0F, 0.0F, gradient_->a);
+  column_sum(hidden, 1.0F, 0.0F, gradient_->b);
   if (crbm_.shape().order == 0) return;
   const Rows history = crbm_.history(rows);
-  gemm_transposed_a(history, visible, gradient_A_);
-  gemm_transposed_a(history, hidden, gradient_B_);
+  gemm_transposed_a(history, visible, gradient_->A);
+  gemm_transposed_a(history, hidden, gradient_->B);
 }
 
 CrbmParameters ContrastiveDivergence::gradients() {

@@ -72,7 +72,7 @@ class ContrastiveDivergence : public LearningRule {
   Matrix row_losses_;                             // [1 x batch], fused
   // Composed only.
   Matrix hidden_sample_;
-  Matrix gradient_W_, gradient_A_, gradient_B_, gradient_a_, gradient_b_;  // within the optimizer's
+  std::optional<CrbmMatrices> gradient_;  // the optimizer's
 };
 
 }  // namespace mcdbn

@@ -62,16 +62,13 @@ void MultiPrediction::make_stacks() {
 }
 
 void MultiPrediction::make_matrices() {
-  const Parameters gradients = mrbm_.parameters().in(optimizer_.gradients());
   for (std::size_t m = 0; m < 2; ++m) {
     const std::size_t visible = mrbm_.W[m].rows();
     target_[m] = Matrix(mrbm_.device(), block_, visible);
     values_[m] = Matrix(mrbm_.device(), (steps_ + 1) * block_, visible);
     value_errors_[m] = Matrix(mrbm_.device(), steps_ * block_, visible);
-    gradient_W_[m] = gradients.matrix(std::string("W_") + kModalityNames[m]);
-    gradient_a_[m] = gradients.matrix(std::string("a_") + kModalityNames[m]);
   }
-  gradient_b_ = gradients.matrix("b");
+  gradient_.emplace(mrbm_.parameters().in(optimizer_.gradients()));
 }
 
 void MultiPrediction::learn(std::span<const Rows> visible, const LearningStep& step,
@@ -101,9 +98,7 @@ void MultiPrediction::step(const Rows& track, const Rows& pose, const UpdateRule
   gather(pose, target_[index_of(Modality::pose)]);
   back_propagate(Modality::track, false, losses);
   back_propagate(Modality::pose, true, losses);
-  optimizer_.update([&rule](const ParameterShape& shape) {
-    return shape.is_weight ? rule : rule.without_decay();
-  });
+  optimizer_.update(rule);
   mrbm_.refresh_transposed();
 }
 
@@ -144,11 +139,11 @@ void MultiPrediction::back_propagate(Modality present, bool add, LossAccumulator
   block_sum(hidden_errors_, drive_error_);
 
   const float beta = add ? 1.0F : 0.0F;
-  gemm_transposed_a(value_errors_[q], hidden_, gradient_W_[q], 1.0F, beta);
-  gemm_transposed_a(Rows(values_[q], 0, steps_ * n), hidden_errors_, gradient_W_[q], 1.0F, 1.0F);
-  gemm_transposed_a(target_[p], drive_error_, gradient_W_[p], 1.0F, beta);
-  column_sum(value_errors_[q], 1.0F, 0.0F, gradient_a_[q]);
-  column_sum(drive_error_, 1.0F, beta, gradient_b_);
+  gemm_transposed_a(value_errors_[q], hidden_, gradient_->W[q], 1.0F, beta);
+  gemm_transposed_a(Rows(values_[q], 0, steps_ * n), hidden_errors_, gradient_->W[q], 1.0F, 1.0F);
+  gemm_transposed_a(target_[p], drive_error_, gradient_->W[p], 1.0F, beta);
+  column_sum(value_errors_[q], 1.0F, 0.0F, gradient_->a[q]);
+  column_sum(drive_error_, 1.0F, beta, gradient_->b);
 }
 
 MrbmParameters MultiPrediction::gradients() {

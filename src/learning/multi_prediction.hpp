@@ -65,12 +65,11 @@ class MultiPrediction : public LearningRule {
   std::array<Matrix, 2> target_;                 // [batch x visible]
   std::array<Matrix, 2> values_, value_errors_;  // [steps·batch x visible], zeros before the values
   // Composed: of one direction; fused: of both, one after the other.
-  Matrix drive_, drive_error_;                     // [block x hidden]
-  Matrix hidden_, hidden_errors_;                  // [steps·block x hidden]
-  Matrix row_losses_;                              // [1 x 2·block], fused
-  Matrix partial_;                                 // [pieces x floats of both W], fused
-  std::array<Matrix, 2> gradient_W_, gradient_a_;  // within the optimizer's, composed
-  Matrix gradient_b_;
+  Matrix drive_, drive_error_;            // [block x hidden]
+  Matrix hidden_, hidden_errors_;         // [steps·block x hidden]
+  Matrix row_losses_;                     // [1 x 2·block], fused
+  Matrix partial_;                        // [pieces x floats of both W], fused
+  std::optional<MrbmMatrices> gradient_;  // the optimizer's, composed
 };
 
 }  // namespace mcdbn

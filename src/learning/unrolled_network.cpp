@@ -70,27 +70,12 @@ MrbmParameters uncentered(MrbmParameters mrbm) {
   return shifted(std::move(mrbm), -1.0F);
 }
 
-UnrolledNetwork::CrbmGradient::CrbmGradient(const Parameters& gradients)
-    : W(gradients.matrix("W")),
-      A(gradients.matrix("A")),
-      B(gradients.matrix("B")),
-      a(gradients.matrix("a")),
-      b(gradients.matrix("b")) {}
-
-UnrolledNetwork::MrbmGradient::MrbmGradient(const Parameters& gradients)
-    : b(gradients.matrix("b")) {
-  for (std::size_t m = 0; m < 2; ++m) {
-    W[m] = gradients.matrix(std::string("W_") + kModalityNames[m]);
-    a[m] = gradients.matrix(std::string("a_") + kModalityNames[m]);
-  }
-}
-
 UnrolledNetwork::Layer::Layer(const Parameters& parameters, const Parameters& gradients,
-                              const CrbmParameters& start)
-    : crbm(parameters, start),
+                              const CrbmShape& shape, const MatrixF& visible_mean)
+    : crbm(parameters, shape, visible_mean),
       gradient(gradients),
-      A_following(parameters.device(), start.shape.order * crbm.A.stride(), start.shape.visible),
-      B_following(parameters.device(), start.shape.order * crbm.B.stride(), start.shape.visible) {}
+      A_following(parameters.device(), shape.order * crbm.A.stride(), shape.visible),
+      B_following(parameters.device(), shape.order * crbm.B.stride(), shape.visible) {}
 
 UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t mean_field_steps)
     : look_ahead_(start.look_ahead),
@@ -106,8 +91,10 @@ UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t
   for (const Modality modality : {Modality::track, Modality::pose})
     for (const Crbm& layer : start.cdbn(modality).layers) {
       const std::string prefix = prefix_of(modality, layers(modality).size());
-      layers(modality).emplace_back(parameters_.part(prefix), gradients.part(prefix),
-                                    centered(layer.to_host()));
+      const CrbmParameters own = centered(layer.to_host());
+      own.write(parameters_.part(prefix));
+      layers(modality).emplace_back(parameters_.part(prefix), gradients.part(prefix), own.shape,
+                                    own.visible_mean);
     }
   centered(start.mrbm.to_host()).write(mrbm_.parameters());
   averages_.copy_from(parameters_.all());
@@ -117,11 +104,7 @@ UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t
 void UnrolledNetwork::update(const UpdateRule& rule, float longest_gradient, float average_kept) {
   limit_.measure(optimizer_.gradients(), longest_gradient);
   optimizer_.next_step();
-  optimizer_.update(
-      [&rule](const ParameterShape& shape) {
-        return shape.is_weight ? rule : rule.without_decay();
-      },
-      &limit_.scale());
+  optimizer_.update(rule, &limit_.scale());
   average_update(averages_, parameters_.all(), 1.0F - average_kept);
   refresh_copies();
 }

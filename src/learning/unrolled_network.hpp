@@ -26,26 +26,18 @@ class UnrolledNetwork {
   UnrolledNetwork(const UnrolledNetwork&) = delete;
   UnrolledNetwork& operator=(const UnrolledNetwork&) = delete;
 
-  struct CrbmGradient {
-    explicit CrbmGradient(const Parameters& gradients);
-    Matrix W, A, B, a, b;
-  };
-  struct MrbmGradient {
-    explicit MrbmGradient(const Parameters& gradients);
-    std::array<Matrix, 2> W, a;
-    Matrix b;
-  };
   struct Layer {
-    Layer(const Parameters& parameters, const Parameters& gradients, const CrbmParameters& start);
+    Layer(const Parameters& parameters, const Parameters& gradients, const CrbmShape& shape,
+          const MatrixF& visible_mean);
     Layer(const Layer&) = delete;
     Layer& operator=(const Layer&) = delete;
     Crbm crbm;  ///< centered
-    CrbmGradient gradient;
+    CrbmMatrices gradient;
     Matrix A_following, B_following;  ///< transpose_lags of A and B
   };
   std::deque<Layer>& layers(Modality modality) { return layers_[index_of(modality)]; }
   Mrbm& mrbm() { return mrbm_; }
-  MrbmGradient& mrbm_gradient() { return mrbm_gradient_; }
+  MrbmMatrices& mrbm_gradient() { return mrbm_gradient_; }
   std::size_t mean_field_steps() const { return mean_field_steps_; }
   Device& device() const { return parameters_.device(); }
 
@@ -68,7 +60,7 @@ class UnrolledNetwork {
   Optimizer optimizer_;
   std::array<std::deque<Layer>, 2> layers_;
   Mrbm mrbm_;
-  MrbmGradient mrbm_gradient_;
+  MrbmMatrices mrbm_gradient_;
   GradientLimit limit_;
   Matrix averages_, spare_;  // [1 x floats]
 };

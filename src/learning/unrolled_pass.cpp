@@ -217,7 +217,7 @@ void UnrolledPass::mean_field_backward() {
     if (t > 1) gemm(hidden_error(t), mrbm.W_transposed[q], value_error(t - 1), through_units(&v));
   }
   block_sum(hidden_errors_, drive_error_);
-  UnrolledNetwork::MrbmGradient& gradient = network_.mrbm_gradient();
+  MrbmMatrices& gradient = network_.mrbm_gradient();
   gemm_transposed_a(value_errors_, hidden_, gradient.W[q], 1.0F, 1.0F);
   gemm_transposed_a(Rows(values_, 0, steps_ * rows_), hidden_errors_, gradient.W[q], 1.0F, 1.0F);
   column_sum(value_errors_, 1.0F, 1.0F, gradient.a[q]);

@@ -21,6 +21,12 @@ MatrixF normal_matrix(Eigen::Index rows, Eigen::Index columns, double deviation,
   return values;
 }
 
+Parameters uploaded(Device& device, const CrbmParameters& start) {
+  Parameters parameters(device, Crbm::parameter_shapes(start.shape));
+  start.write(parameters);
+  return parameters;
+}
+
 }  // namespace
 
 CrbmParameters CrbmParameters::zeros(const CrbmShape& shape) {
@@ -58,6 +64,14 @@ CrbmParameters CrbmParameters::read(const Parameters& from, const CrbmShape& sha
           MatrixF::Zero(1, static_cast<Eigen::Index>(shape.visible))};
 }
 
+void CrbmParameters::write(Parameters to) const {
+  to.upload("W", W);
+  to.upload("A", A);
+  to.upload("B", B);
+  to.upload("a", a);
+  to.upload("b", b);
+}
+
 std::vector<ParameterShape> Crbm::parameter_shapes(const CrbmShape& shape) {
   const std::size_t history = shape.order * shape.visible;
   return {{.name = "W", .rows = shape.visible, .columns = shape.hidden},
@@ -67,24 +81,22 @@ std::vector<ParameterShape> Crbm::parameter_shapes(const CrbmShape& shape) {
           {.name = "b", .rows = 1, .columns = shape.hidden, .is_weight = false}};
 }
 
-Crbm::Crbm(Device& device, const CrbmParameters& start)
-    : Crbm(Parameters(device, parameter_shapes(start.shape)), start) {}
+CrbmMatrices::CrbmMatrices(const Parameters& parameters)
+    : W(parameters.matrix("W")),
+      A(parameters.matrix("A")),
+      B(parameters.matrix("B")),
+      a(parameters.matrix("a")),
+      b(parameters.matrix("b")) {}
 
-Crbm::Crbm(const Parameters& place, const CrbmParameters& start)
-    : shape_(start.shape),
-      parameters_(place),
-      W(place.matrix("W")),
-      A(place.matrix("A")),
-      B(place.matrix("B")),
-      a(place.matrix("a")),
-      b(place.matrix("b")),
-      W_transposed(place.device(), shape_.hidden, shape_.visible),
-      visible_mean(Matrix::from_host(place.device(), start.visible_mean)) {
-  parameters_.upload("W", start.W);
-  parameters_.upload("A", start.A);
-  parameters_.upload("B", start.B);
-  parameters_.upload("a", start.a);
-  parameters_.upload("b", start.b);
+Crbm::Crbm(Device& device, const CrbmParameters& start)
+    : Crbm(uploaded(device, start), start.shape, start.visible_mean) {}
+
+Crbm::Crbm(const Parameters& parameters, const CrbmShape& shape, const MatrixF& visible_mean_row)
+    : CrbmMatrices(parameters),
+      W_transposed(parameters.device(), shape.hidden, shape.visible),
+      visible_mean(Matrix::from_host(parameters.device(), visible_mean_row)),
+      shape_(shape),
+      parameters_(parameters) {
   refresh_transposed();
 }
 

@@ -15,11 +15,16 @@ std::size_t columns_of(const MatrixF& matrix) {
   return static_cast<std::size_t>(matrix.cols());
 }
 
+/// "W_track"
+std::string name_of(const char* letter, std::size_t modality) {
+  return std::string(letter) + '_' + kModalityNames[modality];
+}
+
 std::vector<ParameterShape> transposed_shapes(const Parameters& parameters) {
   std::vector<ParameterShape> shapes;
-  for (const std::string name : kModalityNames) {
-    const ParameterShape& W = parameters.entry("W_" + name);
-    shapes.push_back({.name = name, .rows = W.columns, .columns = W.rows});
+  for (std::size_t m = 0; m < kModalityNames.size(); ++m) {
+    const ParameterShape& W = parameters.entry(name_of("W", m));
+    shapes.push_back({.name = W.name, .rows = W.columns, .columns = W.rows});
   }
   return shapes;
 }
@@ -28,11 +33,11 @@ std::vector<ParameterShape> transposed_shapes(const Parameters& parameters) {
 std::vector<std::int32_t> layout_of(const Parameters& parameters, const Parameters& transposed) {
   std::vector<std::int32_t> layout;
   std::size_t units_before = 0;
-  for (const std::string name : kModalityNames) {
-    const Parameters::Entry& W = parameters.entry("W_" + name);
+  for (std::size_t m = 0; m < kModalityNames.size(); ++m) {
+    const Parameters::Entry& W = parameters.entry(name_of("W", m));
     for (const std::size_t value :
-         {W.rows, units_before, W.first, parameters.entry("a_" + name).first,
-          transposed.entry(name).first})
+         {W.rows, units_before, W.first, parameters.entry(name_of("a", m)).first,
+          transposed.entry(W.name).first})
       layout.push_back(static_cast<std::int32_t>(value));
     units_before += padded(W.rows);
   }
@@ -52,8 +57,8 @@ Parameters uploaded(Device& device, const MrbmParameters& start) {
 
 void MrbmParameters::write(Parameters to) const {
   for (std::size_t m = 0; m < 2; ++m) {
-    to.upload(std::string("W_") + kModalityNames[m], W[m]);
-    to.upload(std::string("a_") + kModalityNames[m], a[m]);
+    to.upload(name_of("W", m), W[m]);
+    to.upload(name_of("a", m), a[m]);
   }
   to.upload("b", b);
 }
@@ -77,8 +82,8 @@ MrbmParameters MrbmParameters::random(std::size_t track, std::size_t pose, std::
 MrbmParameters MrbmParameters::read(const Parameters& from) {
   MrbmParameters host;
   for (std::size_t m = 0; m < 2; ++m) {
-    host.W[m] = from.to_host(std::string("W_") + kModalityNames[m]);
-    host.a[m] = from.to_host(std::string("a_") + kModalityNames[m]);
+    host.W[m] = from.to_host(name_of("W", m));
+    host.a[m] = from.to_host(name_of("a", m));
   }
   host.b = from.to_host("b");
   return host;
@@ -88,9 +93,9 @@ std::vector<ParameterShape> Mrbm::parameter_shapes(const std::array<std::size_t,
                                                    std::size_t hidden) {
   std::vector<ParameterShape> shapes;
   for (std::size_t m = 0; m < visible.size(); ++m) {
-    const std::string name = kModalityNames[m];
-    shapes.push_back({.name = "W_" + name, .rows = visible[m], .columns = hidden});
-    shapes.push_back({.name = "a_" + name, .rows = 1, .columns = visible[m], .is_weight = false});
+    shapes.push_back({.name = name_of("W", m), .rows = visible[m], .columns = hidden});
+    shapes.push_back(
+        {.name = name_of("a", m), .rows = 1, .columns = visible[m], .is_weight = false});
   }
   shapes.push_back({.name = "b", .rows = 1, .columns = hidden, .is_weight = false});
   return shapes;
@@ -98,17 +103,19 @@ std::vector<ParameterShape> Mrbm::parameter_shapes(const std::array<std::size_t,
 
 Mrbm::Mrbm(Device& device, const MrbmParameters& start) : Mrbm(uploaded(device, start)) {}
 
-Mrbm::Mrbm(const Parameters& parameters)
-    : parameters_(parameters),
-      transposed_(parameters.device(), transposed_shapes(parameters)),
-      layout_(parameters.device(), layout_of(parameters_, transposed_)),
-      b(parameters.matrix("b")) {
+MrbmMatrices::MrbmMatrices(const Parameters& parameters) : b(parameters.matrix("b")) {
   for (std::size_t m = 0; m < 2; ++m) {
-    const std::string name = kModalityNames[m];
-    W[m] = parameters.matrix("W_" + name);
-    a[m] = parameters.matrix("a_" + name);
-    W_transposed[m] = transposed_.matrix(name);
+    W[m] = parameters.matrix(name_of("W", m));
+    a[m] = parameters.matrix(name_of("a", m));
   }
+}
+
+Mrbm::Mrbm(const Parameters& parameters)
+    : MrbmMatrices(parameters),
+      parameters_(parameters),
+      transposed_(parameters.device(), transposed_shapes(parameters)),
+      layout_(parameters.device(), layout_of(parameters_, transposed_)) {
+  for (std::size_t m = 0; m < 2; ++m) W_transposed[m] = transposed_.matrix(name_of("W", m));
   refresh_transposed();
 }
 

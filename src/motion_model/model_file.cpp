@@ -55,11 +55,12 @@ Cdbn get_cdbn(Device& device, const Safetensors& file, const std::string& path,
   Cdbn cdbn;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const std::string prefix = fmt::format("{}.{}.", name, i);
-    CrbmParameters start = CrbmParameters::zeros(shape_from(shapes[i]));
-    start.visible_mean = file.get(prefix + "visible_mean", path, 1, start.visible_mean.cols());
-    Crbm& layer = cdbn.layers.emplace_back(device, start);
-    get(file, path, prefix, layer.parameters());
-    layer.refresh_transposed();
+    const CrbmShape shape = shape_from(shapes[i]);
+    const Parameters parameters(device, Crbm::parameter_shapes(shape));
+    get(file, path, prefix, parameters);
+    cdbn.layers.emplace_back(
+        parameters, shape,
+        file.get(prefix + "visible_mean", path, 1, static_cast<Eigen::Index>(shape.visible)));
   }
   if (cdbn.layers.empty())
     throw InputError(path + ": a CDBN without layers; train the model again");
@@ -70,10 +71,9 @@ constexpr const char* kMrbmPrefix = "mrbm.";
 
 Mrbm get_mrbm(Device& device, const Safetensors& file, const std::string& path,
               const std::array<std::size_t, 2>& visible, std::size_t hidden) {
-  Mrbm mrbm(Parameters(device, Mrbm::parameter_shapes(visible, hidden)));
-  get(file, path, kMrbmPrefix, mrbm.parameters());
-  mrbm.refresh_transposed();
-  return mrbm;
+  const Parameters parameters(device, Mrbm::parameter_shapes(visible, hidden));
+  get(file, path, kMrbmPrefix, parameters);
+  return Mrbm(parameters);
 }
 
 json sampling_json(const SamplingRule& rule) {

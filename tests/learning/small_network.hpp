@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "device/every_device.hpp"
+#include "learning/within_bounds.hpp"
 #include "mcdbn/machines/mcdbn.hpp"
 #include "reference/unrolled_reference.hpp"
 
@@ -75,22 +76,11 @@ inline reference::UnrolledModel in_double(const NetworkParameters& parameters) {
   reference::UnrolledModel model;
   for (std::size_t m = 0; m < 2; ++m) {
     for (const CrbmParameters& own : parameters.stacks[m]) {
-      reference::Crbm layer;
-      layer.visible_units = own.shape.kind == VisibleKind::gaussian
-                                ? reference::VisibleUnits::gaussian
-                                : reference::VisibleUnits::binary;
-      layer.weights = own.W.cast<double>();
-      layer.visible_history = own.A.cast<double>();
-      layer.hidden_history = own.B.cast<double>();
-      layer.visible_bias = own.a.cast<double>();
-      layer.hidden_bias = own.b.cast<double>();
-      model.stacks[m].push_back(std::move(layer));
+      model.stacks[m].push_back(in_double(own));
       model.start[m].push_back(own.visible_mean.cast<double>());
     }
-    model.mrbm.weights[m] = parameters.mrbm.W[m].cast<double>();
-    model.mrbm.visible_bias[m] = parameters.mrbm.a[m].cast<double>();
   }
-  model.mrbm.hidden_bias = parameters.mrbm.b.cast<double>();
+  model.mrbm = in_double(parameters.mrbm);
   return model;
 }
 

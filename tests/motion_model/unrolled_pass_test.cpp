@@ -6,6 +6,7 @@
 #include "device/every_device.hpp"
 #include "device/pointwise.hpp"
 #include "features/small_figure.hpp"
+#include "learning/small_network.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 #include "motion_model/pose_loss.hpp"
@@ -47,36 +48,9 @@ struct SmallNetwork {
     mrbm.b = random_matrix(1, 3, 54, 0.5F);
   }
 
-  Mcdbn on(Device& device) const {
-    Mcdbn network{{}, {}, Mrbm(device, mrbm), 0, kSteps};
-    for (const auto& own : parameters[0]) network.track.layers.emplace_back(device, own);
-    for (const auto& own : parameters[1]) network.pose.layers.emplace_back(device, own);
-    return network;
-  }
+  Mcdbn on(Device& device) const { return on_device(device, {parameters, mrbm}, 0, kSteps); }
 
-  reference::UnrolledModel in_double() const {
-    reference::UnrolledModel model;
-    for (std::size_t m = 0; m < 2; ++m)
-      for (const CrbmParameters& own : parameters[m]) {
-        reference::Crbm crbm;
-        crbm.visible_units = own.shape.kind == VisibleKind::gaussian
-                                 ? reference::VisibleUnits::gaussian
-                                 : reference::VisibleUnits::binary;
-        crbm.weights = own.W.cast<double>();
-        crbm.visible_history = own.A.cast<double>();
-        crbm.hidden_history = own.B.cast<double>();
-        crbm.visible_bias = own.a.cast<double>();
-        crbm.hidden_bias = own.b.cast<double>();
-        model.stacks[m].push_back(crbm);
-        model.start[m].push_back(own.visible_mean.cast<double>());
-      }
-    for (std::size_t m = 0; m < 2; ++m) {
-      model.mrbm.weights[m] = mrbm.W[m].cast<double>();
-      model.mrbm.visible_bias[m] = mrbm.a[m].cast<double>();
-    }
-    model.mrbm.hidden_bias = mrbm.b.cast<double>();
-    return model;
-  }
+  reference::UnrolledModel in_double() const { return test::in_double({parameters, mrbm}); }
 
   std::array<std::vector<CrbmParameters>, 2> parameters;
   MrbmParameters mrbm;

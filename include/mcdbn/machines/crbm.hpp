@@ -33,19 +33,30 @@ struct CrbmParameters {
   /// What stands in a machine's buffer (Crbm::parameter_shapes), or in one of gradients;
   /// visible_mean is zero.
   static CrbmParameters read(const Parameters& from, const CrbmShape& shape);
+  /// W, A, B, a and b. @throws ShapeError
+  void write(Parameters to) const;
+};
+
+/// The paper's letters in place among parameters of Crbm::parameter_shapes, or among gradients. A
+/// and B have order·stride rows: a history is read with its padding, whose weights are zero and
+/// stay zero because the padding is.
+struct CrbmMatrices {
+  explicit CrbmMatrices(const Parameters& parameters);
+  Matrix W, A, B, a, b;
 };
 
 /// A conditional RBM (eq 13 to 17; Gaussian units have variance 1, as data is standardized); an RBM
 /// or Gaussian RBM where the order is 0 (eq 1 to 11). Frames stand in one matrix
 /// [frames x visible], so that the history of row t is the `order` rows before it, read in place.
-class Crbm {
+class Crbm : public CrbmMatrices {
  public:
   /// W, A, B, a, b.
   static std::vector<ParameterShape> parameter_shapes(const CrbmShape& shape);
 
   Crbm(Device& device, const CrbmParameters& start);
-  /// In parameters that stand among those of a larger machine. @throws ShapeError
-  Crbm(const Parameters& place, const CrbmParameters& start);
+  /// Of these parameters as they are; they may stand among those of a larger machine.
+  /// @param visible_mean_row [1 x visible]  @throws ShapeError
+  Crbm(const Parameters& parameters, const CrbmShape& shape, const MatrixF& visible_mean_row);
   CrbmParameters to_host() const;
   const CrbmShape& shape() const { return shape_; }
   const Parameters& parameters() const { return parameters_; }
@@ -63,16 +74,12 @@ class Crbm {
   /// Brings the transposed copy of W up to date after W changed.
   void refresh_transposed();
 
+  Matrix W_transposed;  ///< [hidden x visible]
+  Matrix visible_mean;  ///< [1 x visible], see CrbmParameters
+
  private:
   CrbmShape shape_;
   Parameters parameters_;
-
- public:
-  // The paper's letters, in parameters(). A and B have order·stride rows: a history is read with
-  // its padding, whose weights are zero and stay zero because the padding is.
-  Matrix W, A, B, a, b;
-  Matrix W_transposed;  ///< [hidden x visible]
-  Matrix visible_mean;  ///< [1 x visible], see CrbmParameters
 };
 
 }  // namespace mcdbn

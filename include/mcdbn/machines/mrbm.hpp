@@ -31,8 +31,15 @@ struct MrbmParameters {
   void write(Parameters to) const;
 };
 
+/// The paper's letters in place among parameters of Mrbm::parameter_shapes, or among gradients.
+struct MrbmMatrices {
+  explicit MrbmMatrices(const Parameters& parameters);
+  std::array<Matrix, 2> W, a;
+  Matrix b;
+};
+
 /// Two binary RBMs that share their hidden layer (eq 18 to 23).
-class Mrbm {
+class Mrbm : public MrbmMatrices {
  public:
   /// W_track, a_track, W_pose, a_pose, b.
   static std::vector<ParameterShape> parameter_shapes(const std::array<std::size_t, 2>& visible,
@@ -60,15 +67,11 @@ class Mrbm {
              bool doubled = false) const;
   void refresh_transposed();
 
+  std::array<Matrix, 2> W_transposed;  ///< [hidden x visible], in transposed()
+
  private:
   Parameters parameters_, transposed_;
   IndexBuffer layout_;
-
- public:
-  // The paper's letters, in parameters() and transposed().
-  std::array<Matrix, 2> W, a;
-  Matrix b;
-  std::array<Matrix, 2> W_transposed;  ///< [hidden x visible]
 };
 
 }  // namespace mcdbn
