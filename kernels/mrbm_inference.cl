@@ -1,6 +1,6 @@
-// The MRBM's chain with one modality clamped (Algorithm 5's inference) in one launch: `steps` times
-// the shared hidden units given both modalities (eq 21, 32), then the absent one given them (eq 22,
-// 23, 33). Rows are independent, so one work-group runs all of it for its ROWS rows. The absent
+// The chain of an MRBM of two binary modalities with one clamped (Algorithm 5's inference) in one
+// launch: `steps` times the shared hidden units given both modalities (eq 21, 32), then the absent
+// one given them (eq 22, 23, 33). Rows are independent, so one work-group runs all of it for its ROWS rows. The absent
 // modality starts from zeros, so that the first hidden pass sees the present one alone, counted
 // twice with `doubled`. Sums are those of gemm.cl, bias last: the same bits as product by product.
 //
@@ -69,7 +69,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
       draw_tile(h, H_LD, count, column, row0, temperature, random, 2 * step);
     });
     SYNC();
-    ABSENT_UNITS(Q, wt_q, a_q, {
+    ABSENT_UNITS(Q, wt_q, a_q, 0, {
       if (last) {
         store_first_rows(sum, count, absent, absent_ld, column, rows - row0);
       } else {

@@ -8,12 +8,13 @@
 // Stacks are made of blocks of `stride` rows, block t after block t − 1, for one modality after
 // another; rows past `rows` have errors of zero. Of a modality: codes [1 block], the mini-batch; values
 // and value_errors [STEPS blocks]. Of direction d: hidden, hidden_errors [STEPS blocks at d · STEPS],
-// drive, drive_errors [1 block at d], loss[d · stride + row] = Σ cross-entropy of the row.
+// drive, drive_errors [1 block at d], loss[d · stride + row] = −log p(target | prediction)
+// of the row but for a constant: Σ cross-entropy, or of Gaussian units half the squared errors.
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 STEPS=1,10 GROUP=1,64 SAMPLE=
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
-//   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97
+//   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97 BINARY=0,1
 
 #include "mean_field.clh"
 
@@ -43,6 +44,17 @@ INLINE float row_cross_entropy(global const float* target, local const float* pr
   return sum_lanes(sum);
 }
 
+// ½ Σ (t − y)² of one row; padding is zero in both.
+INLINE float row_half_squares(global const float* target, local const float* prediction,
+                              const int ld) {
+  floatN sum = (floatN)(0.0f);
+  for (int column = 0; column < ld; column += VEC) {
+    const floatN error = loadN(column, target) - loadN(column, prediction);
+    sum = fma(0.5f * error, error, sum);
+  }
+  return sum_lanes(sum);
+}
+
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
     global const int* layout, int rows, int stride, global const float* parameters,
     global const float* transposed, global const float* codes, global float* values,
@@ -54,7 +66,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
   // q is the absent modality. No branch around barriers: with one, groups of more than one work-item
   // gave wrong results on PoCL 3.1 (the cause was not isolated).
   const int q = get_group_id(1);
-  const int Q = UNITS(q), Q_LD = PADDED(Q);
+  const int Q = UNITS(q), Q_LD = PADDED(Q), gaussian = IS_GAUSSIAN(q);
   global const float* w_q = parameters + W_AT(q);
   global const float* wt_q = transposed + WT_AT(q);
   global const float* a_q = parameters + A_AT(q);
@@ -91,17 +103,18 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
     SHARED_UNITS(t > 0 ? Q : 0, w_q, drive,
                  { store_tile(sum, count, hidden + t * hidden_block, H_LD, column); });
     SYNC();
-    ABSENT_UNITS(Q, wt_q, a_q, {
+    ABSENT_UNITS(Q, wt_q, a_q, gaussian, {
       store_tile(sum, count, values + t * value_block, Q_LD, column);
       keep_tile(sum, count, x, X_LD, column);
     });
     SYNC();
   }
 
-  // The cross-entropy's error before the sigmoid is prediction − target.
+  // The error before the units' activation is prediction − target, of either kind.
   const float mean = 1.0f / (float)rows;
   for (int r = get_local_id(0); r < ROWS && row0 + r < rows; r += GROUP)
-    loss[r] = row_cross_entropy(target + r * Q_LD, x + r * X_LD, Q, Q_LD);
+    loss[r] = gaussian ? row_half_squares(target + r * Q_LD, x + r * X_LD, Q_LD)
+                       : row_cross_entropy(target + r * Q_LD, x + r * X_LD, Q, Q_LD);
   SYNC();
   for (int r = 0; r < ROWS; ++r)
     for (int column = get_local_id(0) * VEC; column < Q_LD; column += GROUP * VEC) {
@@ -128,7 +141,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
     FOR_TILES(Q_LD, {
       clear_tile(sum, count);
       add_products(sum, count, h, H_LD, HIDDEN, wt_q, Q_LD, column);
-      through_sigmoid(sum, count, values + (t - 1) * value_block, Q_LD, column);
+      if (!gaussian) through_sigmoid(sum, count, values + (t - 1) * value_block, Q_LD, column);
       store_tile(sum, count, value_errors + (t - 1) * value_block, Q_LD, column);
       keep_tile(sum, count, x, X_LD, column);
     });

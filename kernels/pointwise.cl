@@ -39,19 +39,19 @@ kernel void gather_rows(global const float* frames, int ld, global const int* ro
          out);
 }
 
-// The same of two frame matrices in one launch, rows of out_ld_0 and out_ld_1 floats from `out` on, one
-// block after the other. global: (vectors of the wider, 2 · count)
+// The same of two frame matrices in one launch, rows of out_ld_0 and out_ld_1 floats from the floats
+// out_0 and out_1 of `out` on. global: (vectors of the wider, 2 · count)
 kernel void gather_two(global const float* frames_0, int ld_0, global const int* rows_0, int first_0,
                        int shift_0, global const float* frames_1, int ld_1,
                        global const int* rows_1, int first_1, int shift_1, int count,
-                       global float* out, int out_ld_0, int out_1, int out_ld_1) {
+                       global float* out, int out_0, int out_ld_0, int out_1, int out_ld_1) {
   const int column = get_global_id(0) * VEC;
   const bool is_0 = get_global_id(1) < count;
   const int row = is_0 ? get_global_id(1) : get_global_id(1) - count;
   if (column >= (is_0 ? out_ld_0 : out_ld_1)) return;
   if (is_0)
     storeN(loadN((rows_0[first_0 + row] + shift_0) * ld_0 + column, frames_0),
-           row * out_ld_0 + column, out);
+           out_0 + row * out_ld_0 + column, out);
   else
     storeN(loadN((rows_1[first_1 + row] + shift_1) * ld_1 + column, frames_1),
            out_1 + row * out_ld_1 + column, out);

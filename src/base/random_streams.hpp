@@ -6,8 +6,12 @@
 /// would draw the same.
 namespace mcdbn::random_streams {
 
-inline constexpr std::uint16_t kPoseLayers = 0;    ///< and one more for each further layer
-inline constexpr std::uint16_t kTrackLayers = 64;  ///< likewise
+/// Of a CDBN's first layer, and one more for each further one: CDBN 0 is trained first. Those of two
+/// modalities lie before the MRBM's, further ones behind all others.
+constexpr std::uint16_t layers_of(std::size_t cdbn) {
+  return static_cast<std::uint16_t>(cdbn < 2 ? 64 * cdbn : 0x1000 + 64 * (cdbn - 2));
+}
+inline constexpr std::size_t kMostModalities = 64;  ///< so that layers_of ends before kPerceptron
 inline constexpr std::uint16_t kMrbm = 128;
 inline constexpr std::uint16_t kAugmentedViews = 192;
 inline constexpr std::uint16_t kWindows = 193;  ///< which windows make a mini-batch

@@ -41,10 +41,11 @@ void gather(const Rows& rows, const Rows& out) {
          to_int(rows.columns), out.matrix->buffer(), out.offset(), out.stride());
 }
 
-void gather_two(const Rows& x, const Rows& y, const Matrix& buffer, std::size_t second) {
+void gather_two(const Rows& x, const Rows& y, const Matrix& buffer, std::size_t first,
+                std::size_t second) {
   const std::size_t x_stride = padded(x.columns), y_stride = padded(y.columns);
   require(x.index != nullptr && y.index != nullptr && x.count == y.count &&
-              x.count * x_stride <= second && second + y.count * y_stride <= buffer.element_count(),
+              first + x.count * x_stride <= second && second + y.count * y_stride <= buffer.element_count(),
           "gather: wants indices, and room for the rows");
   if (x.count == 0) return;
   Device& device = buffer.device();
@@ -53,7 +54,7 @@ void gather_two(const Rows& x, const Rows& y, const Matrix& buffer, std::size_t 
   launch(device, units_kernel(device, "gather_two"), {{vectors, 2 * x.count}}, x.matrix->buffer(),
          x.stride(), x.index->buffer(), to_int(x.index_first), x.shift, y.matrix->buffer(),
          y.stride(), y.index->buffer(), to_int(y.index_first), y.shift, to_int(x.count),
-         buffer.buffer(), to_int(x_stride), to_int(second), to_int(y_stride));
+         buffer.buffer(), to_int(first), to_int(x_stride), to_int(second), to_int(y_stride));
 }
 
 void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& out) {

@@ -11,8 +11,9 @@ void apply_epilogue(const Rows& c, const GemmOptions& options);
 /// rows.columns]
 void gather(const Rows& rows, const Rows& out);
 /// The rows of two matrices into `buffer` [1 x floats] in one launch, each row padded: those of x
-/// from its first float on, those of y from float `second` on. @throws ShapeError
-void gather_two(const Rows& x, const Rows& y, const Matrix& buffer, std::size_t second);
+/// from its float `first` on, those of y behind them from float `second` on. @throws ShapeError
+void gather_two(const Rows& x, const Rows& y, const Matrix& buffer, std::size_t first,
+                std::size_t second);
 /// out = scale · (x − y), all of one shape, none indexed.
 void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& out);
 /// Drop-out, in place: an entry is divided by `kept_share` with that probability, else zero.

@@ -115,53 +115,75 @@ BenchStep epoch_step(Device& device, std::size_t frames) {
           }};
 }
 
-BenchStep mrbm_step(Device& device, std::size_t visible, std::size_t hidden, std::size_t batch,
-                    std::size_t mean_field_steps) {
-  struct State {
-    Matrix track, pose;
-    IndexBuffer index;
-    Mrbm mrbm;
+/// An MRBM of as many binary units in each modality, and codes of them.
+struct MrbmState {
+  std::vector<Matrix> codes;
+  IndexBuffer index;
+  Mrbm mrbm;
+
+  MrbmState(Device& device, std::size_t modalities, std::size_t visible, std::size_t hidden,
+            std::size_t batch)
+      : index(scattered_rows(device, batch, 0)),
+        mrbm(device,
+             MrbmParameters::random(shape(modalities, visible, hidden), kWeightDeviation, {})) {
+    for (std::size_t m = 0; m < modalities; ++m)
+      codes.push_back(
+          Matrix::from_host(device, random_frames(kFrames, visible, VisibleKind::binary)));
+  }
+
+  static MrbmShape shape(std::size_t modalities, std::size_t visible, std::size_t hidden) {
+    MrbmShape shape{{}, hidden};
+    for (std::size_t m = 0; m < modalities; ++m)
+      shape.modalities.push_back({std::to_string(m), visible});
+    return shape;
+  }
+  std::vector<Rows> rows(std::size_t batch) const {
+    std::vector<Rows> rows;
+    for (const Matrix& code : codes) rows.push_back(Rows::indexed(code, index, 0, batch));
+    return rows;
+  }
+};
+
+BenchStep mrbm_step(Device& device, std::size_t modalities, std::size_t visible, std::size_t hidden,
+                    std::size_t batch, std::size_t mean_field_steps) {
+  struct State : MrbmState {
     MultiPrediction multi_prediction;
     LossAccumulator losses;
-    State(Device& device, std::size_t visible, std::size_t hidden, std::size_t batch,
-          std::size_t steps)
-        : track(Matrix::from_host(device, random_frames(kFrames, visible, VisibleKind::binary))),
-          pose(Matrix::from_host(device, random_frames(kFrames, visible, VisibleKind::binary))),
-          index(scattered_rows(device, batch, 0)),
-          mrbm(device, MrbmParameters::random(visible, visible, hidden, kWeightDeviation, {})),
+    State(Device& device, std::size_t modalities, std::size_t visible, std::size_t hidden,
+          std::size_t batch, std::size_t steps)
+        : MrbmState(device, modalities, visible, hidden, batch),
           multi_prediction(mrbm, batch, {.mean_field_steps = steps}),
-          losses(device, 2, batch) {}
+          losses(device, modalities, batch) {}
   };
-  const auto state = std::make_shared<State>(device, visible, hidden, batch, mean_field_steps);
-  // A direction: the present modality's drive and its gradient; T downs, T − 1 ups (the first
+  const auto state =
+      std::make_shared<State>(device, modalities, visible, hidden, batch, mean_field_steps);
+  // A direction: the present modalities' drive and its gradient; T downs, T − 1 ups (the first
   // starts from zeros), their back-propagation and their gradients.
-  const double products = 2.0 * (6.0 * static_cast<double>(mean_field_steps) - 1.0);
+  const auto n = static_cast<double>(modalities), steps = static_cast<double>(mean_field_steps);
+  const double products = n * (6.0 * steps - 3.0 + 2.0 * (n - 1.0));
   const double multiply_adds = products * static_cast<double>(visible * hidden);
   return {{{"layer", "mrbm"},
-           {"visible", 2 * visible},
+           {"modalities", modalities},
+           {"visible", modalities * visible},
            {"hidden", hidden},
            {"batch", batch},
            {"steps", mean_field_steps}},
           2.0 * multiply_adds * static_cast<double>(batch),
           [state, batch] {
-            state->multi_prediction.step(Rows::indexed(state->track, state->index, 0, batch),
-                                         Rows::indexed(state->pose, state->index, 0, batch),
-                                         UpdateRule::adam(), state->losses);
+            state->multi_prediction.step(state->rows(batch), UpdateRule::adam(), state->losses);
           }};
 }
 
 /// Inference of one modality from the other, mean field or sampled.
 BenchStep mrbm_chain_step(Device& device, std::size_t visible, std::size_t hidden,
                           std::size_t batch, std::size_t steps, double temperature) {
-  struct State {
-    Matrix track, pose;
-    Mrbm mrbm;
+  struct State : MrbmState {
+    Matrix inferred;
     MrbmChain chain;
     State(Device& device, std::size_t visible, std::size_t hidden, std::size_t batch)
-        : track(Matrix::from_host(device, random_frames(batch, visible, VisibleKind::binary))),
-          pose(device, batch, visible),
-          mrbm(device, MrbmParameters::random(visible, visible, hidden, kWeightDeviation, {})),
-          chain(mrbm, Modality::track, batch) {}
+        : MrbmState(device, 2, visible, hidden, batch),
+          inferred(device, batch, visible),
+          chain(mrbm, {true, false}, batch) {}
   };
   const auto state = std::make_shared<State>(device, visible, hidden, batch);
   MrbmChainOptions options;
@@ -176,7 +198,9 @@ BenchStep mrbm_chain_step(Device& device, std::size_t visible, std::size_t hidde
            {"steps", steps},
            {"temperature", temperature}},
           2.0 * multiply_adds * static_cast<double>(batch),
-          [=] { state->chain.run(state->track, options, state->pose); }};
+          [=] {
+            state->chain.run({Rows(state->codes[0], 0, batch), state->inferred}, options);
+          }};
 }
 
 BenchStep gemm_step(Device& device, std::size_t m, std::size_t n, std::size_t k,
@@ -208,8 +232,10 @@ Cdbn random_cdbn(Device& device, std::size_t visible, std::size_t hidden, std::s
 BenchStep regeneration_step(Device& device, double temperature) {
   constexpr std::size_t kTrack = 43, kPose = 96, kHidden = 300, kOrder = 5, kClipFrames = 1000;
   const auto network = std::make_shared<Mcdbn>(Mcdbn{
-      random_cdbn(device, kTrack, kHidden, kOrder), random_cdbn(device, kPose, kHidden, kOrder),
-      Mrbm(device, MrbmParameters::random(kHidden, kHidden, kHidden, kWeightDeviation, {})), 5, 5});
+      {random_cdbn(device, kTrack, kHidden, kOrder), random_cdbn(device, kPose, kHidden, kOrder)},
+      MrbmState(device, 2, kHidden, kHidden, 1).mrbm,
+      5,
+      5});
   RegenerationOptions options;
   options.samples = 10;
   options.temperature = temperature;
@@ -238,7 +264,9 @@ std::vector<BenchStepMaker> bench_steps() {
   std::vector<BenchStepMaker> makers;
   for (const std::size_t batch : {100U, 1024U}) {
     for (BenchStepMaker& make : crbm_minibatch_steps(batch)) makers.push_back(std::move(make));
-    makers.emplace_back([=](Device& device) { return mrbm_step(device, 300, 150, batch, 10); });
+    for (const std::size_t modalities : {2U, 3U})
+      makers.emplace_back(
+          [=](Device& device) { return mrbm_step(device, modalities, 300, 150, batch, 10); });
     for (const double temperature : {0.0, 1.0})
       makers.emplace_back([=](Device& device) {
         return mrbm_chain_step(device, 300, 150, batch, 10, temperature);

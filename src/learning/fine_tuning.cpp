@@ -23,7 +23,7 @@ constexpr const char* kStage = "fine-tuning";
 
 /// Mini-batches between two reports.
 constexpr std::size_t kReportEvery = 25;
-/// The other direction takes part in every so many mini-batches, with as many times its weight.
+/// The other directions take part in every so many mini-batches, with as many times their weight.
 constexpr std::size_t kReverseEvery = 4;
 
 /// Of the loss, whose parts start near 1: errors that explode through time are cut here.
@@ -37,30 +37,54 @@ double rate_at(double rate, std::size_t step, std::size_t steps) {
   return rate * fall * std::min(1.0, static_cast<double>(step + 1) / kRise);
 }
 
-/// Frames that either direction's up-pass needs before the first it can judge.
+/// Frames that every direction's up-pass needs before the first it can judge.
 std::size_t longest_history(const Mcdbn& network) {
-  return std::max(network.track.total_order(), network.pose.total_order());
+  std::size_t longest = 0;
+  for (const Cdbn& cdbn : network.cdbns) longest = std::max(longest, cdbn.total_order());
+  return longest;
 }
+
+/// All modalities' clips on the device, and the rows of a mini-batch's windows in them.
+class Windows {
+ public:
+  Windows(Device& device, const SynchronizedClips& clips, std::size_t rows) : rows_(rows) {
+    for (const ModalityClips& modality : clips.modalities)
+      sequences_.push_back(Sequences::from_host(device, modality.clips));
+  }
+
+  /// The first modality's frames are those look_ahead later (WindowSampler::rows).
+  std::vector<Rows> rows(const IndexBuffer& index) const {
+    std::vector<Rows> rows;
+    for (const Sequences& sequences : sequences_)
+      rows.push_back(Rows::indexed(sequences.values, index, rows.empty() ? rows_ : 0, rows_));
+    return rows;
+  }
+  std::size_t dimension(std::size_t modality) const {
+    return sequences_[modality].values.columns();
+  }
+
+ private:
+  std::size_t rows_;
+  std::vector<Sequences> sequences_;
+};
 
 /// Windows of the clips held out, always the same, seen without drop-out.
 class HeldOutWindows {
  public:
-  HeldOutWindows(Device& device, const PairedClips& clips, const SequenceWindows& windows,
+  HeldOutWindows(Device& device, const SynchronizedClips& clips, const SequenceWindows& windows,
                  const LearningSettings& settings, const SequenceLossMaker& make_loss)
-      : windows_(windows),
-        tracks_(Sequences::from_host(device, clips.tracks)),
-        poses_(Sequences::from_host(device, clips.poses)),
+      : windows_(device, clips, windows.rows()),
         loss_(make_loss(device, windows)),
-        target_(device, windows.rows(), poses_.values.columns()) {
+        target_(device, windows.rows(), windows_.dimension(clips.modalities.size() - 1)) {
     const WindowSampler sampler(clips, windows, settings);
     for (std::size_t i = 0; i < kBatches; ++i) indices_.emplace_back(device, sampler.rows(i));
   }
 
   double loss(UnrolledPass& forward) {
     for (const IndexBuffer& index : indices_) {
-      gather(Rows::indexed(poses_.values, index, 0, windows_.rows()), target_);
-      forward.forward(Rows::indexed(tracks_.values, index, windows_.rows(), windows_.rows()), 1.0F,
-                      {});
+      const std::vector<Rows> rows = windows_.rows(index);
+      gather(rows.back(), target_);
+      forward.forward(rows, 1.0F, {});
       loss_->differentiate(forward.prediction(), target_, forward.prediction_error());
     }
     return loss_->read_and_reset();
@@ -69,53 +93,58 @@ class HeldOutWindows {
  private:
   static constexpr std::size_t kBatches = 4;
 
-  SequenceWindows windows_;
-  Sequences tracks_, poses_;
+  Windows windows_;
   std::unique_ptr<SequenceLoss> loss_;
   Matrix target_;
   std::vector<IndexBuffer> indices_;
 };
 
-/// Both directions, their losses, and what a mini-batch of them needs.
+/// One direction: a modality predicted from all others, and its loss.
+struct Direction {
+  std::size_t modality;
+  UnrolledPass pass;
+  std::unique_ptr<SequenceLoss> loss;
+  Matrix target;
+
+  void learn(std::span<const Rows> rows, float kept, const RandomKey& key) {
+    gather(rows[modality], target);
+    pass.forward(rows, kept, key);
+    loss->differentiate(pass.prediction(), target, pass.prediction_error());
+    pass.backward();
+  }
+};
+
+/// All directions, and what a mini-batch of them needs.
 class FineTuner {
  public:
-  FineTuner(Device& device, const Mcdbn& start, const PairedClips& clips,
+  FineTuner(Device& device, const Mcdbn& start, const SynchronizedClips& clips,
             const SequenceWindows& windows, const LearningSettings& settings,
             const SequenceLossMaker& make_loss)
       : settings_(settings.fine_tuning),
         seed_(settings.seed),
-        windows_(windows),
         network_(device, start, settings_.mean_field_steps),
-        tracks_(Sequences::from_host(device, clips.tracks)),
-        poses_(Sequences::from_host(device, clips.poses)),
+        windows_(device, clips, windows.rows()),
         sampler_(clips, windows, settings),
-        forward_(network_, Modality::track, windows),
-        reverse_(network_, Modality::pose, windows),
-        pose_loss_(make_loss(device, windows)),
-        track_loss_(device, windows, settings_.reverse * static_cast<double>(kReverseEvery)),
-        pose_target_(device, windows.rows(), poses_.values.columns()),
-        track_target_(device, windows.rows(), tracks_.values.columns()),
-        index_(device, sampler_.rows(0)) {}
+        index_(device, sampler_.rows(0)) {
+    const double others = settings_.reverse * static_cast<double>(kReverseEvery);
+    for (std::size_t m = start.modality_count(); m-- > 0;)
+      directions_.push_back({m, UnrolledPass(network_, m, windows),
+                             directions_.empty()
+                                 ? make_loss(device, windows)
+                                 : std::make_unique<SquaredLoss>(device, windows, others),
+                             Matrix(device, windows.rows(), windows_.dimension(m))});
+  }
 
   void step(std::size_t step) {
-    Device& device = network_.device();
-    index_.upload(device, sampler_.rows(step));
-    const Rows pose = Rows::indexed(poses_.values, index_, 0, windows_.rows());
-    const Rows track = Rows::indexed(tracks_.values, index_, windows_.rows(), windows_.rows());
+    index_.upload(network_.device(), sampler_.rows(step));
+    const std::vector<Rows> rows = windows_.rows(index_);
     const auto kept = static_cast<float>(1.0 - settings_.dropout);
-    const RandomKey key{seed_, static_cast<std::uint32_t>(step), random_streams::kDropout, 0};
+    RandomKey key{seed_, static_cast<std::uint32_t>(step), random_streams::kDropout, 0};
     network_.clear_gradients();
-    gather(pose, pose_target_);
-    forward_.forward(track, kept, key);
-    pose_loss_->differentiate(forward_.prediction(), pose_target_, forward_.prediction_error());
-    forward_.backward();
-    if (settings_.reverse > 0 && step % kReverseEvery == 0) {
-      gather(track, track_target_);
-      RandomKey other = key;
-      other.phase = 0x100;
-      reverse_.forward(pose, kept, other);
-      track_loss_.differentiate(reverse_.prediction(), track_target_, reverse_.prediction_error());
-      reverse_.backward();
+    for (Direction& direction : directions_) {
+      direction.learn(rows, kept, key);
+      if (settings_.reverse == 0 || step % kReverseEvery != 0) break;
+      key.phase = static_cast<std::uint16_t>(key.phase + 0x100);
     }
     UpdateRule rule =
         UpdateRule::adam(static_cast<float>(rate_at(settings_.rate, step, settings_.steps)),
@@ -126,13 +155,13 @@ class FineTuner {
     network_.update(rule, kLongestGradient, static_cast<float>(std::min(settings_.average, young)));
   }
 
-  /// The weighted loss since the last call.
-  double read_loss() { return pose_loss_->read_and_reset(); }
+  /// The weighted loss of the last modality since the last call.
+  double read_loss() { return directions_.front().loss->read_and_reset(); }
 
   /// The loss of the parameters' moving average on the clips held out.
   double loss_on(HeldOutWindows& windows) {
     network_.exchange_averages();
-    const double loss = windows.loss(forward_);
+    const double loss = windows.loss(directions_.front().pass);
     network_.exchange_averages();
     return loss;
   }
@@ -142,14 +171,10 @@ class FineTuner {
  private:
   const FineTuningSettings& settings_;
   std::uint64_t seed_;
-  SequenceWindows windows_;
   UnrolledNetwork network_;
-  Sequences tracks_, poses_;
+  Windows windows_;
   WindowSampler sampler_;
-  UnrolledPass forward_, reverse_;
-  std::unique_ptr<SequenceLoss> pose_loss_;
-  SquaredLoss track_loss_;
-  Matrix pose_target_, track_target_;
+  std::vector<Direction> directions_;  ///< of the last modality, then of those before it
   IndexBuffer index_;
 };
 
@@ -209,7 +234,9 @@ FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& so
   const SequenceWindows windows = sequence_windows(start, settings.fine_tuning);
   std::optional<HeldOutWindows> judged;
   if (held_out) judged.emplace(device, held_out->sequences(), windows, settings, make_loss);
-  FineTuner tuner(device, start, source.sequences(), windows, settings, make_loss);
+  const SynchronizedClips clips = source.sequences();
+  clips.check();
+  FineTuner tuner(device, start, clips, windows, settings, make_loss);
   HeldOutRecord record;
   DivergenceGuard guard(
       kStage, fmt::format("lower `fine-tuning.rate` (now {:g})", settings.fine_tuning.rate));

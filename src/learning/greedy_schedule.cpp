@@ -112,10 +112,10 @@ double crbm_cost(const CrbmShape& shape, const CdSettings& settings) {
          (histories + (2.0 * static_cast<double>(settings.gibbs_steps) + 3.0) * v * h);
 }
 
-double mrbm_cost(std::size_t track, std::size_t pose, const LearningSettings& learning) {
+double mrbm_cost(std::size_t codes, const LearningSettings& learning) {
   return static_cast<double>(learning.mrbm.epochs) * 6.0 *
          static_cast<double>(learning.mrbm.mean_field_steps) *
-         static_cast<double>((track + pose) * learning.mrbm_hidden);
+         static_cast<double>(codes * learning.mrbm_hidden);
 }
 
 /// Turns each stage's progress into that of the whole run.
@@ -140,8 +140,9 @@ class OverallProgress {
   double done_ = 0;
 };
 
-std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings& learning) {
-  std::vector<CrbmShape> shapes{{visible, learning.hidden, learning.order, VisibleKind::gaussian}};
+std::vector<CrbmShape> layer_shapes(std::size_t visible, VisibleKind kind,
+                                    const LearningSettings& learning) {
+  std::vector<CrbmShape> shapes{{visible, learning.hidden, learning.order, kind}};
   while (shapes.size() < learning.layers)
     shapes.push_back({learning.hidden, learning.hidden, learning.order, VisibleKind::binary});
   return shapes;
@@ -163,21 +164,20 @@ CrbmParameters small_weights(const CrbmShape& shape, const LearningSettings& lea
 }
 
 /// @param start weights to start from; nothing: small random ones
-TrainedCdbn train_cdbn(Device& device, std::span<const MatrixF> clips,
+TrainedCdbn train_cdbn(Device& device, const ModalityClips& modality,
                        const LearningSettings& learning, const Cdbn* start,
-                       std::uint16_t first_stream, const std::string& name,
-                       OverallProgress& progress) {
+                       std::uint16_t first_stream, OverallProgress& progress) {
   TrainedCdbn trained;
-  trained.code = Sequences::from_host(device, clips);
+  trained.code = Sequences::from_host(device, modality.clips);
   std::uint16_t stream = first_stream;
-  for (const CrbmShape& shape : layer_shapes(trained.code.values.columns(), learning)) {
+  for (const CrbmShape& shape : layer_shapes(modality.dimension(), modality.kind, learning)) {
     const CdSettings& settings = settings_for(shape, learning);
     const std::size_t layer = trained.cdbn.layers.size();
     trained.cdbn.layers.push_back(train_crbm(
         device, trained.code,
         start ? start->layers.at(layer).to_host() : small_weights(shape, learning, stream),
         settings, learning, stream, progress.stage(crbm_cost(shape, settings)),
-        fmt::format("{}.{}", name, layer)));
+        fmt::format("{}.{}", modality.name, layer)));
     ++stream;
     trained.code = up_pass(trained.cdbn.layers.back(), trained.code);
   }
@@ -189,40 +189,54 @@ MatrixF logit(const MatrixF& p) {
   return (safe / (1.0F - safe)).log().matrix();
 }
 
-MrbmParameters small_weights(const Sequences& track, const Sequences& pose,
+MrbmParameters small_weights(const MrbmShape& shape, std::span<const Sequences> codes,
                              const LearningSettings& learning) {
-  MrbmParameters initial = MrbmParameters::random(
-      track.values.columns(), pose.values.columns(), learning.mrbm_hidden,
-      learning.mrbm.initial_deviation, key_of(learning, random_streams::kMrbm, 0, kWeightPhase));
+  MrbmParameters initial =
+      MrbmParameters::random(shape, learning.mrbm.initial_deviation,
+                             key_of(learning, random_streams::kMrbm, 0, kWeightPhase));
   // So that the mean field starts near the codes' own means rather than at one half.
-  initial.a = {logit(mean_of(track)), logit(mean_of(pose))};
+  for (std::size_t m = 0; m < codes.size(); ++m)
+    initial.a[m] = shape.modalities[m].kind == VisibleKind::binary ? logit(mean_of(codes[m]))
+                                                                   : mean_of(codes[m]);
   return initial;
 }
 
-/// Rows t such that both the 3D code of t and the 2D code of t + look_ahead exist.
-std::vector<std::int32_t> paired_rows(const Sequences& codes, std::size_t look_ahead) {
+/// How many frames ahead each modality's code is of those that it belongs to (Mcdbn::ahead).
+std::vector<int> frames_ahead(std::size_t modalities, const LearningSettings& learning) {
+  std::vector<int> ahead(modalities, 0);
+  ahead.front() = static_cast<int>(learning.look_ahead);
+  return ahead;
+}
+
+/// Rows t such that every modality has a code where it belongs to t.
+std::vector<std::int32_t> paired_rows(std::span<const Sequences> codes, std::size_t look_ahead) {
+  std::size_t valid_from = 0;
+  for (const Sequences& code : codes) valid_from = std::max(valid_from, code.valid_from);
   std::vector<std::int32_t> rows;
-  for (const auto& clip : codes.clips)
-    for (std::size_t t = codes.valid_from; t + look_ahead < clip.frames; ++t)
+  for (const auto& clip : codes.front().clips)
+    for (std::size_t t = valid_from; t + look_ahead < clip.frames; ++t)
       rows.push_back(static_cast<std::int32_t>(clip.first + t));
   return rows;
 }
 
-/// A hundred pairs of codes at most, for mrbm_health. @return [rows x dimension] of each modality
-std::pair<MatrixF, MatrixF> some_pairs(const Sequences& track, const Sequences& pose,
-                                       std::size_t look_ahead) {
+/// A hundred windows' codes at most, for mrbm_health. @return [rows x dimension] of each modality
+std::vector<MatrixF> some_codes(std::span<const Sequences> codes,
+                                const LearningSettings& learning) {
   constexpr std::size_t kMost = 100;
-  const auto rows = paired_rows(pose, look_ahead);
+  const auto rows = paired_rows(codes, learning.look_ahead);
   std::vector<std::int32_t> some(std::min(kMost, rows.size()));
   for (std::size_t i = 0; i < some.size(); ++i) some[i] = rows[i * rows.size() / some.size()];
-  Device& device = pose.values.device();
+  Device& device = codes.front().values.device();
   const IndexBuffer index(device, some);
-  const auto gathered = [&](const Matrix& values, int shift) {
-    Matrix out(device, some.size(), values.columns());
-    gather(Rows::indexed(values, index, 0, some.size(), shift), out);
-    return out.to_host();
-  };
-  return {gathered(track.values, static_cast<int>(look_ahead)), gathered(pose.values, 0)};
+  const std::vector<int> ahead = frames_ahead(codes.size(), learning);
+  std::vector<MatrixF> gathered;
+  for (std::size_t m = 0; m < codes.size(); ++m) {
+    const Matrix& values = codes[m].values;
+    const Matrix out(device, some.size(), values.columns());
+    gather(Rows::indexed(values, index, 0, some.size(), ahead[m]), out);
+    gathered.push_back(out.to_host());
+  }
+  return gathered;
 }
 
 }  // namespace
@@ -254,23 +268,23 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
   return crbm;
 }
 
-Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
-                const MrbmParameters& initial, const LearningSettings& learning,
-                std::uint16_t stream, const EpochObserver& observer) {
+Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
+                const LearningSettings& learning, std::uint16_t stream,
+                const EpochObserver& observer) {
   const MultiPredictionSettings& settings = learning.mrbm;
   Mrbm mrbm(device, initial);
-  MinibatchSchedule schedule(device, paired_rows(pose, learning.look_ahead), learning.batch,
+  MinibatchSchedule schedule(device, paired_rows(codes, learning.look_ahead), learning.batch,
                              learning.least_batches);
   MultiPrediction multi_prediction(mrbm, schedule.batch(), settings);
   DivergenceGuard guard(
       "mrbm", fmt::format("lower `mrbm.rate` (now {:g}) or `mrbm.initial-deviation` (now {:g})",
                           settings.rate, settings.initial_deviation));
-  const std::pair<MatrixF, MatrixF> pairs = some_pairs(track, pose, learning.look_ahead);
-  run_epochs({"mrbm",
-              settings.epochs,
-              multi_prediction,
-              {{&track.values, static_cast<int>(learning.look_ahead)}, {&pose.values, 0}},
-              [&] { return mrbm_health(mrbm.to_host(), pairs.first, pairs.second); }},
+  const std::vector<int> ahead = frames_ahead(codes.size(), learning);
+  std::vector<std::pair<const Matrix*, int>> sequences;
+  for (std::size_t m = 0; m < codes.size(); ++m) sequences.emplace_back(&codes[m].values, ahead[m]);
+  const std::vector<MatrixF> some = some_codes(codes, learning);
+  run_epochs({"mrbm", settings.epochs, multi_prediction, std::move(sequences),
+              [&] { return mrbm_health(mrbm.to_host(), some); }},
              schedule, guard, key_of(learning, stream, 0, 0), observer);
   return mrbm;
 }
@@ -278,23 +292,37 @@ Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
 Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningSettings& learning,
                    const EpochObserver& observer, const Mcdbn* start) {
   learning.validate();
-  const PairedClips clips = source.sequences();
-  const double last_cost = mrbm_cost(learning.hidden, learning.hidden, learning);
+  const SynchronizedClips clips = source.sequences();
+  clips.check();
+  const std::size_t modalities = clips.modalities.size();
+  if (modalities > random_streams::kMostModalities)
+    throw ConfigError(
+        fmt::format("{} modalities; {} are the most", modalities, random_streams::kMostModalities));
+  MrbmShape shape;
+  shape.hidden = learning.mrbm_hidden;
+  const double last_cost = mrbm_cost(modalities * learning.hidden, learning);
   double total = last_cost;
-  for (const Eigen::Index dimension : {clips.poses.front().cols(), clips.tracks.front().cols()})
-    for (const CrbmShape& shape : layer_shapes(static_cast<std::size_t>(dimension), learning))
-      total += crbm_cost(shape, settings_for(shape, learning));
+  for (const ModalityClips& modality : clips.modalities) {
+    shape.modalities.push_back({modality.name, learning.hidden});
+    for (const CrbmShape& layer : layer_shapes(modality.dimension(), modality.kind, learning))
+      total += crbm_cost(layer, settings_for(layer, learning));
+  }
   OverallProgress progress(observer, total);
-  TrainedCdbn pose = train_cdbn(device, clips.poses, learning, start ? &start->pose : nullptr,
-                                random_streams::kPoseLayers, "pose", progress);
-  TrainedCdbn track = train_cdbn(device, clips.tracks, learning, start ? &start->track : nullptr,
-                                 random_streams::kTrackLayers, "track", progress);
-  Mrbm mrbm =
-      train_mrbm(device, track.code, pose.code,
-                 start ? start->mrbm.to_host() : small_weights(track.code, pose.code, learning),
-                 learning, random_streams::kMrbm, progress.stage(last_cost));
-  return {std::move(track.cdbn), std::move(pose.cdbn), std::move(mrbm), learning.look_ahead,
-          learning.mrbm.mean_field_steps};
+  std::vector<Cdbn> cdbns(modalities);
+  std::vector<Sequences> codes(modalities);
+  // Algorithm 1 begins with 3D, the last.
+  for (std::size_t i = 0; i < modalities; ++i) {
+    const std::size_t m = modalities - 1 - i;
+    TrainedCdbn trained =
+        train_cdbn(device, clips.modalities[m], learning, start ? &start->cdbns.at(m) : nullptr,
+                   random_streams::layers_of(i), progress);
+    cdbns[m] = std::move(trained.cdbn);
+    codes[m] = std::move(trained.code);
+  }
+  Mrbm mrbm = train_mrbm(device, codes,
+                         start ? start->mrbm.to_host() : small_weights(shape, codes, learning),
+                         learning, random_streams::kMrbm, progress.stage(last_cost));
+  return {std::move(cdbns), std::move(mrbm), learning.look_ahead, learning.mrbm.mean_field_steps};
 }
 
 }  // namespace mcdbn

@@ -87,12 +87,15 @@ LayerHealth crbm_health(const CrbmParameters& parameters, const std::vector<Matr
   return health;
 }
 
-LayerHealth mrbm_health(const MrbmParameters& parameters, const MatrixF& track,
-                        const MatrixF& pose) {
+LayerHealth mrbm_health(const MrbmParameters& parameters, const std::vector<MatrixF>& codes) {
   LayerHealth health;
-  health.weight_norm = std::hypot(parameters.W[0].norm(), parameters.W[1].norm());
-  MatrixF input = track * parameters.W[0] + pose * parameters.W[1];
-  input.rowwise() += parameters.b.row(0);
+  double squares = 0;
+  MatrixF input = parameters.b.replicate(codes.front().rows(), 1);
+  for (std::size_t m = 0; m < codes.size(); ++m) {
+    squares += static_cast<double>(parameters.W[m].squaredNorm());
+    input += codes[m] * parameters.W[m];
+  }
+  health.weight_norm = std::sqrt(squares);
   measure_hidden(sigmoid_on_host(input), health);
   return health;
 }

@@ -14,9 +14,17 @@ namespace {
 
 std::optional<RowTile> choose_tile(const Mrbm& mrbm, std::size_t batch) {
   CrbmShape shape;
-  shape.visible = std::max(mrbm.visible(Modality::track), mrbm.visible(Modality::pose));
+  for (const Modality& modality : mrbm.shape().modalities)
+    shape.visible = std::max(shape.visible, modality.visible);
   shape.hidden = mrbm.hidden();
   return choose_chain_tile(mrbm.device(), shape, batch);
+}
+
+std::vector<std::size_t> all_but(std::size_t modality, std::size_t modalities) {
+  std::vector<std::size_t> others;
+  for (std::size_t m = 0; m < modalities; ++m)
+    if (m != modality) others.push_back(m);
+  return others;
 }
 
 /// Flat, then falling, so that the last epochs average out the noise.
@@ -41,11 +49,11 @@ MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch,
       tile_(tile),
       block_(whole_blocks(batch, tile)),
       optimizer_(mrbm.parameters(), optimizer),
-      drive_(mrbm.device(), (tile ? 2 : 1) * block_, mrbm.hidden()),
+      drive_(mrbm.device(), (tile ? mrbm.modality_count() : 1) * block_, mrbm.hidden()),
       drive_error_(Matrix::like(drive_)),
       hidden_(mrbm.device(), steps_ * drive_.rows(), mrbm.hidden()),
       hidden_errors_(Matrix::like(hidden_)),
-      row_losses_(mrbm.device(), 1, 2 * block_) {
+      row_losses_(mrbm.device(), 1, mrbm.modality_count() * block_) {
   if (steps_ == 0) throw ConfigError("`mrbm.mean-field-steps` must be at least 1");
   if (tile_)
     make_stacks();
@@ -62,68 +70,86 @@ void MultiPrediction::make_stacks() {
 }
 
 void MultiPrediction::make_matrices() {
-  for (std::size_t m = 0; m < 2; ++m) {
-    const std::size_t visible = mrbm_.W[m].rows();
-    target_[m] = Matrix(mrbm_.device(), block_, visible);
-    values_[m] = Matrix(mrbm_.device(), (steps_ + 1) * block_, visible);
-    value_errors_[m] = Matrix(mrbm_.device(), steps_ * block_, visible);
+  for (const Matrix& W : mrbm_.W) {
+    target_.emplace_back(mrbm_.device(), block_, W.rows());
+    values_.emplace_back(mrbm_.device(), (steps_ + 1) * block_, W.rows());
+    value_errors_.emplace_back(mrbm_.device(), steps_ * block_, W.rows());
   }
-  gradient_.emplace(mrbm_.parameters().in(optimizer_.gradients()));
+  gradient_.emplace(mrbm_.parameters().in(optimizer_.gradients()), mrbm_.shape());
 }
 
 void MultiPrediction::learn(std::span<const Rows> visible, const LearningStep& step,
                             LossAccumulator& losses) {
-  require(visible.size() == 2, "multi-prediction: wants two sequences");
   const UpdateRule rule =
       UpdateRule::adam(static_cast<float>(falling_rate(settings_.rate, step.progress)),
                        static_cast<float>(settings_.weight_decay));
-  this->step(visible[0], visible[1], rule, losses);
+  this->step({visible.begin(), visible.end()}, rule, losses);
 }
 
-void MultiPrediction::step(const Rows& track, const Rows& pose, const UpdateRule& rule,
+void MultiPrediction::step(const std::vector<Rows>& codes, const UpdateRule& rule,
                            LossAccumulator& losses) {
-  if (track.count != pose.count)
-    throw ShapeError("multi-prediction: the modalities differ in rows");
-  if (track.count != batch_)
-    throw ShapeError("multi-prediction: the mini-batch has another size than it was made for");
-  if (!track.index || !pose.index) throw ShapeError("multi-prediction: wants indexed codes");
+  require(codes.size() == mrbm_.modality_count(), "multi-prediction: wants every modality");
+  for (const Rows& rows : codes) {
+    require(rows.index != nullptr, "multi-prediction: wants indexed codes");
+    require(rows.count == batch_,
+            "multi-prediction: the mini-batch has another size than it was made for");
+  }
   optimizer_.next_step();
   if (tile_) {
-    gather_two(track, pose, codes_, block_ * padded(track.columns));
+    gather_codes(codes);
     fused_chain();
     fused_update(rule, losses);
     return;
   }
-  gather(track, target_[index_of(Modality::track)]);
-  gather(pose, target_[index_of(Modality::pose)]);
-  back_propagate(Modality::track, false, losses);
-  back_propagate(Modality::pose, true, losses);
+  optimizer_.gradients().set_zero();
+  for (std::size_t m = 0; m < codes.size(); ++m) gather(codes[m], target_[m]);
+  for (std::size_t m = codes.size(); m-- > 0;) back_propagate(m, losses);
   optimizer_.update(rule);
   mrbm_.refresh_transposed();
 }
 
-void MultiPrediction::back_propagate(Modality present, bool add, LossAccumulator& losses) {
+/// Into the stack of multi_prediction.cl, two at a time; of an odd number one comes twice.
+void MultiPrediction::gather_codes(const std::vector<Rows>& codes) {
+  std::vector<std::size_t> first{0};
+  for (const Rows& rows : codes) first.push_back(first.back() + block_ * padded(rows.columns));
+  for (std::size_t m = 1; m < codes.size(); m += 2)
+    gather_two(codes[m - 1], codes[m], codes_, first[m - 1], first[m]);
+  const std::size_t last = codes.size() - 1;
+  if (last % 2 == 0) gather_two(codes[last - 1], codes[last], codes_, first[last - 1], first[last]);
+}
+
+/// Forward, eq 32 and 33, block t of a stack being mean-field step t; block 0 of the values is
+/// zero.
+void MultiPrediction::unroll(std::size_t q) {
+  const std::vector<std::size_t> present = all_but(q, mrbm_.modality_count());
+  std::vector<Rows> units(target_.begin(), target_.end());
+  drive_of(mrbm_, present, units, drive_);
+  for (std::size_t t = 0; t < steps_; ++t) {
+    const Rows hidden(hidden_, t * batch_, batch_);
+    units[q] = Rows(values_[q], t * batch_, batch_);
+    shared_units(mrbm_, std::span(&q, 1), units, drive_, mean_of_units(VisibleKind::binary),
+                 hidden);
+    absent_units(mrbm_, q, hidden, mean_of_units(mrbm_.kind(q)),
+                 Rows(values_[q], (t + 1) * batch_, batch_));
+  }
+}
+
+void MultiPrediction::back_propagate(std::size_t q, LossAccumulator& losses) {
   const std::size_t n = batch_;
-  const std::size_t p = index_of(present), q = index_of(other(present));
+  const bool binary = mrbm_.kind(q) == VisibleKind::binary;
   const Matrix& W = mrbm_.W[q];
-  const Matrix& Wt = mrbm_.W_transposed[q];
-  // Block t of a stack: the values of mean-field step t.
   const auto value = [&](std::size_t t) { return Rows(values_[q], t * n, n); };
   const auto hidden = [&](std::size_t t) { return Rows(hidden_, (t - 1) * n, n); };
   const auto value_error = [&](std::size_t t) { return Rows(value_errors_[q], (t - 1) * n, n); };
   const auto hidden_error = [&](std::size_t t) { return Rows(hidden_errors_, (t - 1) * n, n); };
+  unroll(q);
+  const float mean = 1.0F / static_cast<float>(n * W.rows());
+  if (binary)
+    losses.add_cross_entropy(q, target_[q], value(steps_), mean);
+  else
+    losses.add_squared_error(q, target_[q], value(steps_), 0.5F * mean);
 
-  // Forward, eq 32 and 33; block 0 of the values is zero.
-  GemmOptions probabilities;
-  probabilities.activation = Activation::sigmoid;
-  drive_of(mrbm_, p, target_[p], drive_);
-  for (std::size_t t = 1; t <= steps_; ++t) {
-    shared_units(mrbm_, q, value(t - 1), drive_, probabilities, hidden(t));
-    absent_units(mrbm_, q, hidden(t), probabilities, value(t));
-  }
-  losses.add_cross_entropy(q, target_[q], value(steps_), 1.0F / static_cast<float>(n * W.rows()));
-
-  // Backward: the cross-entropy's error before the sigmoid is prediction − target.
+  // The error before the units' activation is prediction − target, of either kind.
   scaled_difference(value(steps_), target_[q], 1.0F / static_cast<float>(n), value_error(steps_));
   for (std::size_t t = steps_; t >= 1; --t) {
     GemmOptions up, down;
@@ -132,22 +158,28 @@ void MultiPrediction::back_propagate(Modality present, bool add, LossAccumulator
     up.factor = &h;
     gemm(value_error(t), W, hidden_error(t), up);
     if (t == 1) break;
-    down.activation = Activation::sigmoid_gradient;
-    down.factor = &v;
-    gemm(hidden_error(t), Wt, value_error(t - 1), down);
+    if (binary) {
+      down.activation = Activation::sigmoid_gradient;
+      down.factor = &v;
+    }
+    gemm(hidden_error(t), mrbm_.W_transposed[q], value_error(t - 1), down);
   }
   block_sum(hidden_errors_, drive_error_);
+  add_gradients(q);
+}
 
-  const float beta = add ? 1.0F : 0.0F;
-  gemm_transposed_a(value_errors_[q], hidden_, gradient_->W[q], 1.0F, beta);
-  gemm_transposed_a(Rows(values_[q], 0, steps_ * n), hidden_errors_, gradient_->W[q], 1.0F, 1.0F);
-  gemm_transposed_a(target_[p], drive_error_, gradient_->W[p], 1.0F, beta);
-  column_sum(value_errors_[q], 1.0F, 0.0F, gradient_->a[q]);
-  column_sum(drive_error_, 1.0F, beta, gradient_->b);
+void MultiPrediction::add_gradients(std::size_t q) {
+  const Rows before(values_[q], 0, steps_ * batch_);
+  gemm_transposed_a(value_errors_[q], hidden_, gradient_->W[q], 1.0F, 1.0F);
+  gemm_transposed_a(before, hidden_errors_, gradient_->W[q], 1.0F, 1.0F);
+  for (const std::size_t p : all_but(q, mrbm_.modality_count()))
+    gemm_transposed_a(target_[p], drive_error_, gradient_->W[p], 1.0F, 1.0F);
+  column_sum(value_errors_[q], 1.0F, 1.0F, gradient_->a[q]);
+  column_sum(drive_error_, 1.0F, 1.0F, gradient_->b);
 }
 
 MrbmParameters MultiPrediction::gradients() {
-  return MrbmParameters::read(mrbm_.parameters().in(optimizer_.gradients()));
+  return MrbmParameters::read(mrbm_.parameters().in(optimizer_.gradients()), mrbm_.shape());
 }
 
 }  // namespace mcdbn

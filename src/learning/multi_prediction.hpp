@@ -9,8 +9,9 @@
 namespace mcdbn {
 
 /// Multi-prediction MinVI training of the MRBM (eq 42; Goodfellow et al., Sohn et al.): each
-/// modality is predicted from the other by the unrolled mean field of eq 32 and 33, and the
-/// cross-entropy of that prediction is back-propagated through all steps, in both directions.
+/// modality is predicted from all others by the unrolled mean field of eq 32 and 33, and the
+/// cross-entropy of that prediction (half the squared error, if its units are Gaussian) is
+/// back-propagated through all steps, in every direction.
 ///
 /// A mini-batch is gathered, then taken in three launches (multi_prediction.cl,
 /// multi_prediction_update.cl) where a block of rows fits the device's local memory, else in one
@@ -24,23 +25,26 @@ class MultiPrediction : public LearningRule {
   MultiPrediction(Mrbm& mrbm, std::size_t batch, const MultiPredictionSettings& settings,
                   std::optional<RowTile> tile, OptimizerKind optimizer = OptimizerKind::adam);
 
-  std::size_t loss_count() const override { return 2; }
-  /// step() by the rule that the settings say. @param visible the track's codes, the pose's
+  std::size_t loss_count() const override { return mrbm_.modality_count(); }
+  /// step() by the rule that the settings say. @param visible the codes of each modality
   void learn(std::span<const Rows> visible, const LearningStep& step,
              LossAccumulator& losses) override;
 
-  /// One mini-batch with its update: enqueues and returns. Adds to `losses` the mean cross-entropy
-  /// of a unit: in slot m that of the modality m, predicted from the other.
-  /// @param track, pose the same windows' codes, indexed, `batch` of them  @throws ShapeError
-  void step(const Rows& track, const Rows& pose, const UpdateRule& rule, LossAccumulator& losses);
+  /// One mini-batch with its update: enqueues and returns. Adds to `losses` the mean loss of a
+  /// unit: in slot m that of the modality m, predicted from the others.
+  /// @param codes the same windows' of each modality, indexed, `batch` of them  @throws ShapeError
+  void step(const std::vector<Rows>& codes, const UpdateRule& rule, LossAccumulator& losses);
 
-  /// The gradients of eq 42 (mean over the mini-batch, summed over both directions) of the last
+  /// The gradients of eq 42 (mean over the mini-batch, summed over all directions) of the last
   /// step, where they are kept: composed, or with the optimizer none; for tests.
   MrbmParameters gradients();
 
  private:
-  /// Gradients of −log p(absent | present), added to those of the other direction if `add`.
-  void back_propagate(Modality present, bool add, LossAccumulator& losses);
+  /// Adds the gradients of −log p(modality q | the others).
+  void back_propagate(std::size_t q, LossAccumulator& losses);
+  void unroll(std::size_t q);
+  void add_gradients(std::size_t q);
+  void gather_codes(const std::vector<Rows>& codes);
   std::size_t all_units() const;
   void make_stacks();
   void make_matrices();
@@ -59,16 +63,16 @@ class MultiPrediction : public LearningRule {
   std::optional<RowTile> tile_;
   std::size_t block_;  ///< rows of one mean-field step in the stacks: the batch, or whole blocks
   Optimizer optimizer_;
-  // Stacks of both modalities [1 x floats] as multi_prediction.cl has them, fused.
+  // Stacks of all modalities [1 x floats] as multi_prediction.cl has them, fused.
   Matrix codes_, stacked_values_, stacked_value_errors_;
   // Composed.
-  std::array<Matrix, 2> target_;                 // [batch x visible]
-  std::array<Matrix, 2> values_, value_errors_;  // [steps·batch x visible], zeros before the values
-  // Composed: of one direction; fused: of both, one after the other.
+  std::vector<Matrix> target_;                 // [batch x visible]
+  std::vector<Matrix> values_, value_errors_;  // [steps·batch x visible], zeros before the values
+  // Composed: of one direction; fused: of all, one after the other.
   Matrix drive_, drive_error_;            // [block x hidden]
   Matrix hidden_, hidden_errors_;         // [steps·block x hidden]
-  Matrix row_losses_;                     // [1 x 2·block], fused
-  Matrix partial_;                        // [pieces x floats of both W], fused
+  Matrix row_losses_;                     // [1 x modalities·block], fused
+  Matrix partial_;                        // [pieces x floats of every W], fused
   std::optional<MrbmMatrices> gradient_;  // the optimizer's, composed
 };
 

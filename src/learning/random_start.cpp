@@ -12,7 +12,7 @@ constexpr std::uint16_t kStream = random_streams::kFirstWeights;
 
 }  // namespace
 
-Mcdbn random_start(Device& device, std::size_t track, std::size_t pose,
+Mcdbn random_start(Device& device, const std::vector<Modality>& modalities,
                    const LearningSettings& learning) {
   // Units about zero have a slope of a quarter: with this weight a unit says again what the one
   // beneath it says. So a deep stack starts as a shallow one that its upper layers merely pass on:
@@ -39,32 +39,34 @@ Mcdbn random_start(Device& device, std::size_t track, std::size_t pose,
     if (kind == VisibleKind::binary) drawn.W.diagonal().array() += kPassOn;
     return drawn;
   };
-  MrbmParameters mrbm =
-      MrbmParameters::random(learning.hidden, learning.hidden, learning.mrbm_hidden, 1.0,
-                             {learning.seed, next++, kStream, 0});
+  MrbmShape shape{modalities, learning.mrbm_hidden};
+  for (Modality& code : shape.modalities) {
+    code.visible = learning.hidden;
+    code.kind = VisibleKind::binary;
+  }
+  MrbmParameters mrbm = MrbmParameters::random(shape, 1.0, {learning.seed, next++, kStream, 0});
   const double shared = 1.0 / std::sqrt(static_cast<double>(learning.hidden));
   for (MatrixF& W : mrbm.W) W *= static_cast<float>(shared);
-  mrbm.W[0].diagonal().array() += kPassOn;
-  mrbm.W[1].diagonal().array() += kPassOnAgain;
+  const std::size_t last = modalities.size() - 1;
+  for (std::size_t m = 0; m <= last; ++m)
+    mrbm.W[m].diagonal().array() += m == last ? kPassOnAgain : kPassOn;
   // The mean field starts with all units of the absent modality at the same value: that must not
   // push the shared units anywhere.
   for (MatrixF& W : mrbm.W) W.rowwise() -= RowVectorF(W.colwise().mean());
-  Mcdbn network{{},
-                {},
-                Mrbm(device, uncentered(mrbm)),
-                learning.look_ahead,
-                learning.fine_tuning.mean_field_steps};
-  for (const Modality modality : {Modality::track, Modality::pose}) {
+  Mcdbn network{std::vector<Cdbn>(modalities.size()), Mrbm(device, uncentered(mrbm)),
+                learning.look_ahead, learning.fine_tuning.mean_field_steps};
+  for (std::size_t m = 0; m <= last; ++m) {
+    const Modality& modality = modalities[m];
     for (std::size_t i = 0; i < learning.layers; ++i) {
-      CrbmParameters drawn =
-          i == 0 ? layer(modality == Modality::track ? track : pose, VisibleKind::gaussian)
-                 : layer(learning.hidden, VisibleKind::binary);
-      // The down-pass of the lowest 3D layer sums over hidden units, not over features.
-      if (i == 0 && modality == Modality::pose)
-        drawn.W *= static_cast<float>(
-            kDown / kFromFrame *
-            std::sqrt(static_cast<double>(pose) / static_cast<double>(learning.hidden)));
-      network.cdbn(modality).layers.emplace_back(device, uncentered(drawn));
+      CrbmParameters drawn = i == 0 ? layer(modality.visible, modality.kind)
+                                    : layer(learning.hidden, VisibleKind::binary);
+      // The down-pass of the last modality's lowest layer sums over hidden units, not over
+      // features.
+      if (i == 0 && m == last)
+        drawn.W *= static_cast<float>(kDown / kFromFrame *
+                                      std::sqrt(static_cast<double>(modality.visible) /
+                                                static_cast<double>(learning.hidden)));
+      network.cdbns[m].layers.emplace_back(device, uncentered(drawn));
     }
   }
   return network;

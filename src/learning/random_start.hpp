@@ -7,7 +7,8 @@ namespace mcdbn {
 
 /// A network for the greedy stages and fine-tuning to start from: small random weights whose
 /// sizes let signals through all layers.
-Mcdbn random_start(Device& device, std::size_t track, std::size_t pose,
+/// @param modalities their names, and the units of their lowest layers
+Mcdbn random_start(Device& device, const std::vector<Modality>& modalities,
                    const LearningSettings& learning);
 
 }  // namespace mcdbn

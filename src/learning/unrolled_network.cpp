@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "device/pointwise.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -23,7 +24,7 @@ CrbmParameters shifted(CrbmParameters layer, float sign) {
 }
 
 MrbmParameters shifted(MrbmParameters mrbm, float sign) {
-  for (std::size_t m = 0; m < 2; ++m) {
+  for (std::size_t m = 0; m < mrbm.W.size(); ++m) {
     mrbm.b += sign * kCenter * mrbm.W[m].colwise().sum();
     mrbm.a[m] += sign * kCenter * mrbm.W[m].rowwise().sum().transpose();
   }
@@ -31,8 +32,8 @@ MrbmParameters shifted(MrbmParameters mrbm, float sign) {
 }
 
 /// `track.0.`
-std::string prefix_of(Modality modality, std::size_t layer) {
-  return fmt::format("{}.{}.", kModalityNames[index_of(modality)], layer);
+std::string prefix_of(const Modality& modality, std::size_t layer) {
+  return fmt::format("{}.{}.", modality.name, layer);
 }
 
 std::vector<ParameterShape> parameter_shapes(const Mcdbn& network) {
@@ -43,15 +44,14 @@ std::vector<ParameterShape> parameter_shapes(const Mcdbn& network) {
       all.push_back(std::move(shape));
     }
   };
-  for (const Modality modality : {Modality::track, Modality::pose}) {
-    const auto& layers = network.cdbn(modality).layers;
+  for (std::size_t m = 0; m < network.modality_count(); ++m) {
+    const auto& layers = network.cdbns[m].layers;
+    if (layers.front().shape().kind != VisibleKind::gaussian)
+      throw ShapeError("fine-tuning: the lowest layers are Gaussian, or are left as they are");
     for (std::size_t i = 0; i < layers.size(); ++i)
-      add(Crbm::parameter_shapes(layers[i].shape()), prefix_of(modality, i));
+      add(Crbm::parameter_shapes(layers[i].shape()), prefix_of(network.modality(m), i));
   }
-  const Mrbm& mrbm = network.mrbm;
-  add(Mrbm::parameter_shapes({mrbm.visible(Modality::track), mrbm.visible(Modality::pose)},
-                             mrbm.hidden()),
-      kMrbmPrefix);
+  add(Mrbm::parameter_shapes(network.mrbm.shape()), kMrbmPrefix);
   return all;
 }
 
@@ -82,19 +82,20 @@ UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t
       mean_field_steps_(mean_field_steps),
       parameters_(device, parameter_shapes(start)),
       optimizer_(parameters_, OptimizerKind::adam),
-      mrbm_(parameters_.part(kMrbmPrefix)),
-      mrbm_gradient_(parameters_.in(optimizer_.gradients()).part(kMrbmPrefix)),
+      layers_(start.modality_count()),
+      mrbm_(parameters_.part(kMrbmPrefix), start.mrbm.shape()),
+      mrbm_gradient_(parameters_.in(optimizer_.gradients()).part(kMrbmPrefix), start.mrbm.shape()),
       limit_(parameters_),
       averages_(Matrix::like(parameters_.all())),
       spare_(Matrix::like(parameters_.all())) {
   const Parameters gradients = parameters_.in(optimizer_.gradients());
-  for (const Modality modality : {Modality::track, Modality::pose})
-    for (const Crbm& layer : start.cdbn(modality).layers) {
-      const std::string prefix = prefix_of(modality, layers(modality).size());
+  for (std::size_t m = 0; m < layers_.size(); ++m)
+    for (const Crbm& layer : start.cdbns[m].layers) {
+      const std::string prefix = prefix_of(start.modality(m), layers_[m].size());
       const CrbmParameters own = centered(layer.to_host());
       own.write(parameters_.part(prefix));
-      layers(modality).emplace_back(parameters_.part(prefix), gradients.part(prefix), own.shape,
-                                    own.visible_mean);
+      layers_[m].emplace_back(parameters_.part(prefix), gradients.part(prefix), own.shape,
+                              own.visible_mean);
     }
   centered(start.mrbm.to_host()).write(mrbm_.parameters());
   averages_.copy_from(parameters_.all());
@@ -130,11 +131,11 @@ void UnrolledNetwork::exchange_averages() {
 
 Mcdbn UnrolledNetwork::averaged() {
   exchange_averages();
-  Mcdbn result{{}, {}, Mrbm(device(), uncentered(mrbm_.to_host())), look_ahead_, mean_field_steps_};
-  for (const Modality modality : {Modality::track, Modality::pose}) {
-    for (const Layer& layer : layers(modality))
-      result.cdbn(modality).layers.emplace_back(device(), uncentered(layer.crbm.to_host()));
-  }
+  Mcdbn result{std::vector<Cdbn>(layers_.size()), Mrbm(device(), uncentered(mrbm_.to_host())),
+               look_ahead_, mean_field_steps_};
+  for (std::size_t m = 0; m < layers_.size(); ++m)
+    for (const Layer& layer : layers_[m])
+      result.cdbns[m].layers.emplace_back(device(), uncentered(layer.crbm.to_host()));
   exchange_averages();
   result.fills_gaps = false;
   return result;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <deque>
 #include <vector>
 
@@ -22,6 +21,7 @@ MrbmParameters uncentered(MrbmParameters mrbm);
 class UnrolledNetwork {
  public:
   /// @param mean_field_steps that the result takes too, whatever `start` took
+  /// @throws ShapeError unless the lowest layers are Gaussian
   UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t mean_field_steps);
   UnrolledNetwork(const UnrolledNetwork&) = delete;
   UnrolledNetwork& operator=(const UnrolledNetwork&) = delete;
@@ -35,13 +35,14 @@ class UnrolledNetwork {
     CrbmMatrices gradient;
     Matrix A_following, B_following;  ///< transpose_lags of A and B
   };
-  std::deque<Layer>& layers(Modality modality) { return layers_[index_of(modality)]; }
+  std::deque<Layer>& layers(std::size_t modality) { return layers_[modality]; }
+  std::size_t modality_count() const { return layers_.size(); }
   Mrbm& mrbm() { return mrbm_; }
   MrbmMatrices& mrbm_gradient() { return mrbm_gradient_; }
   std::size_t mean_field_steps() const { return mean_field_steps_; }
   Device& device() const { return parameters_.device(); }
 
-  /// track.0.W, track.0.A …, pose.0.W …, mrbm.W_track … mrbm.b
+  /// With modalities track and pose: track.0.W, track.0.A …, pose.0.W …, mrbm.W_track … mrbm.b
   const Parameters& parameters() const { return parameters_; }
   void clear_gradients() { optimizer_.gradients().set_zero(); }
   /// Adam on all parameters with a gradient of at most `longest_gradient`, then the moving average
@@ -58,7 +59,7 @@ class UnrolledNetwork {
   std::size_t look_ahead_, mean_field_steps_;
   Parameters parameters_;
   Optimizer optimizer_;
-  std::array<std::deque<Layer>, 2> layers_;
+  std::vector<std::deque<Layer>> layers_;
   Mrbm mrbm_;
   MrbmMatrices mrbm_gradient_;
   GradientLimit limit_;

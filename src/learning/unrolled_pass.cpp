@@ -46,28 +46,25 @@ GemmOptions through_units(const Rows* units, float kept_share = 1.0F) {
 
 }  // namespace
 
-UnrolledPass::UnrolledPass(UnrolledNetwork& network, Modality present,
+UnrolledPass::UnrolledPass(UnrolledNetwork& network, std::size_t absent,
                            const SequenceWindows& windows)
     : network_(network),
-      present_(present),
+      absent_(absent),
       windows_(windows),
       rows_(windows.rows()),
       steps_(network.mean_field_steps()),
-      up_layers_(network.layers(present)),
-      down_layers_(network.layers(other(present))) {
-  if (windows.first < std::max(total_order(up_layers_), longest_order(down_layers_)) ||
-      windows.lead < windows.first || windows.lead >= windows.frames)
+      down_layers_(network.layers(absent)) {
+  std::size_t least = longest_order(down_layers_);
+  for (std::size_t m = 0; m < network.modality_count(); ++m) {
+    if (m == absent) continue;
+    least = std::max(least, total_order(network.layers(m)));
+    up_.push_back(make_up_pass(m));
+  }
+  if (windows.first < least || windows.lead < windows.first || windows.lead >= windows.frames)
     throw ShapeError("unrolled pass: the windows are too short for the layers' histories");
   Device& device = network.device();
-  const std::size_t code = up_layers_.back().crbm.shape().hidden,
-                    absent_code = down_layers_.back().crbm.shape().hidden,
+  const std::size_t absent_code = down_layers_.back().crbm.shape().hidden,
                     shared = network.mrbm().hidden();
-  input_ = Matrix(device, rows_, up_layers_.front().crbm.shape().visible);
-  for (const auto& layer : up_layers_) {
-    up_.emplace_back(device, rows_, layer.crbm.shape().hidden);
-    // Rows past the end stay zero: no error comes from behind a window.
-    up_errors_.emplace_back(device, rows_ + layer.crbm.shape().order, layer.crbm.shape().hidden);
-  }
   drive_ = Matrix(device, rows_, shared);
   drive_error_ = Matrix(device, rows_, shared);
   // Block 0 is the start of the mean field, zeros, which is −½ about zero.
@@ -82,15 +79,30 @@ UnrolledPass::UnrolledPass(UnrolledNetwork& network, Modality present,
     state_errors_.emplace_back(device, rows_ + layer.crbm.shape().order,
                                layer.crbm.shape().visible);
   }
-  if (code != network.mrbm().visible(present))
-    throw ShapeError("unrolled pass: the MRBM does not fit the CDBN's code");
 }
 
-void UnrolledPass::forward(const Rows& present, float kept_share, const RandomKey& key) {
+UnrolledPass::UpPass UnrolledPass::make_up_pass(std::size_t modality) {
+  Device& device = network_.device();
+  Layers& layers = network_.layers(modality);
+  UpPass up{modality, layers, Matrix(device, rows_, layers.front().crbm.shape().visible), {}, {}};
+  for (const auto& layer : layers) {
+    up.units.emplace_back(device, rows_, layer.crbm.shape().hidden);
+    // Rows past the end stay zero: no error comes from behind a window.
+    up.errors.emplace_back(device, rows_ + layer.crbm.shape().order, layer.crbm.shape().hidden);
+  }
+  if (layers.back().crbm.shape().hidden != network_.mrbm().visible(modality))
+    throw ShapeError("unrolled pass: the MRBM does not fit the CDBN's code");
+  return up;
+}
+
+void UnrolledPass::forward(std::span<const Rows> modalities, float kept_share,
+                           const RandomKey& key) {
   kept_share_ = kept_share;
   drop_out_key_ = key;
-  gather(present, input_);
-  up_pass();
+  for (UpPass& up : up_) {
+    gather(modalities[up.modality], up.input);
+    up_pass(up);
+  }
   mean_field();
   down_pass();
 }
@@ -99,13 +111,13 @@ void UnrolledPass::drop_out(const Rows& units, std::size_t alike) {
   if (kept_share_ < 1.0F) dropout(units, kept_share_, drop_out_key_, alike);
 }
 
-void UnrolledPass::up_pass() {
-  const Matrix* below = &input_;
-  for (std::size_t i = 0; i < up_layers_.size(); ++i) {
-    const Crbm& layer = up_layers_[i].crbm;
+void UnrolledPass::up_pass(UpPass& up) {
+  const Matrix* below = &up.input;
+  for (std::size_t i = 0; i < up.layers.size(); ++i) {
+    const Crbm& layer = up.layers[i].crbm;
     const std::size_t order = layer.shape().order;
     ++drop_out_key_.phase;
-    const Rows units = from(up_[i], order);
+    const Rows units = from(up.units[i], order);
     GemmOptions options;
     options.bias = &layer.b;
     options.activation = order == 0 ? Activation::centered_sigmoid : Activation::none;
@@ -115,20 +127,27 @@ void UnrolledPass::up_pass() {
       options.activation = Activation::centered_sigmoid;
       gemm(layer.history(from(*below, order)), layer.B, units, options);
     }
-    drop_out(Rows(up_[i], 0, rows_), windows_.frames);
-    below = &up_[i];
+    drop_out(Rows(up.units[i], 0, rows_), windows_.frames);
+    below = &up.units[i];
   }
 }
 
 void UnrolledPass::mean_field() {
   const Mrbm& mrbm = network_.mrbm();
-  const std::size_t p = index_of(present_), q = index_of(other(present_));
+  const std::size_t q = absent_;
+  std::vector<std::size_t> present;
+  std::vector<Rows> units(network_.modality_count(), Rows(values_));
+  for (const UpPass& up : up_) {
+    present.push_back(up.modality);
+    units[up.modality] = up.units.back();
+  }
   GemmOptions centered;
   centered.activation = Activation::centered_sigmoid;
-  drive_of(mrbm, p, up_.back(), drive_);
+  drive_of(mrbm, present, units, drive_);
   ++drop_out_key_.phase;
   for (std::size_t t = 1; t <= steps_; ++t) {
-    shared_units(mrbm, q, value(t - 1), drive_, centered, hidden(t));
+    units[q] = value(t - 1);
+    shared_units(mrbm, std::span(&q, 1), units, drive_, centered, hidden(t));
     drop_out(hidden(t), windows_.frames);  // the same units in every step
     absent_units(mrbm, q, hidden(t), centered, value(t));
   }
@@ -164,7 +183,7 @@ void UnrolledPass::down_pass() {
 void UnrolledPass::backward() {
   down_pass_backward();
   mean_field_backward();
-  up_pass_backward();
+  for (UpPass& up : up_) up_pass_backward(up);
 }
 
 void UnrolledPass::down_pass_backward() {
@@ -204,7 +223,7 @@ void UnrolledPass::down_pass_backward() {
 
 void UnrolledPass::mean_field_backward() {
   Mrbm& mrbm = network_.mrbm();
-  const std::size_t p = index_of(present_), q = index_of(other(present_));
+  const std::size_t q = absent_;
   const auto value_error = [&](std::size_t t) {
     return Rows(value_errors_, (t - 1) * rows_, rows_);
   };
@@ -221,34 +240,36 @@ void UnrolledPass::mean_field_backward() {
   gemm_transposed_a(value_errors_, hidden_, gradient.W[q], 1.0F, 1.0F);
   gemm_transposed_a(Rows(values_, 0, steps_ * rows_), hidden_errors_, gradient.W[q], 1.0F, 1.0F);
   column_sum(value_errors_, 1.0F, 1.0F, gradient.a[q]);
-  gemm_transposed_a(up_.back(), drive_error_, gradient.W[p], 1.0F, 1.0F);
   column_sum(drive_error_, 1.0F, 1.0F, gradient.b);
-  const Rows code(up_.back());
-  gemm(drive_error_, mrbm.W_transposed[p], Rows(up_errors_.back(), 0, rows_),
-       through_units(&code, kept_share_));
+  for (UpPass& up : up_) {
+    const Rows code(up.units.back());
+    gemm_transposed_a(code, drive_error_, gradient.W[up.modality], 1.0F, 1.0F);
+    gemm(drive_error_, mrbm.W_transposed[up.modality], Rows(up.errors.back(), 0, rows_),
+         through_units(&code, kept_share_));
+  }
 }
 
-void UnrolledPass::up_pass_backward() {
-  for (std::size_t i = up_layers_.size(); i-- > 0;) {
-    UnrolledNetwork::Layer& layer = up_layers_[i];
+void UnrolledPass::up_pass_backward(UpPass& up) {
+  for (std::size_t i = up.layers.size(); i-- > 0;) {
+    UnrolledNetwork::Layer& layer = up.layers[i];
     const std::size_t order = layer.crbm.shape().order;
-    const Matrix& below = i > 0 ? up_[i - 1] : input_;
-    const Rows error(up_errors_[i], order, rows_ - order);
+    const Matrix& below = i > 0 ? up.units[i - 1] : up.input;
+    const Rows error(up.errors[i], order, rows_ - order);
     gemm_transposed_a(from(below, order), error, layer.gradient.W, 1.0F, 1.0F);
     if (order > 0)
       gemm_transposed_a(layer.crbm.history(from(below, order)), error, layer.gradient.B, 1.0F,
                         1.0F);
     column_sum(error, 1.0F, 1.0F, layer.gradient.b);
     if (i == 0) break;
-    const Rows units(below), error_below(up_errors_[i - 1], 0, rows_);
+    const Rows units(below), error_below(up.errors[i - 1], 0, rows_);
     GemmOptions options = through_units(&units, kept_share_);
     if (order == 0) {
-      gemm(Rows(up_errors_[i], 0, rows_), layer.crbm.W_transposed, error_below, options);
+      gemm(Rows(up.errors[i], 0, rows_), layer.crbm.W_transposed, error_below, options);
       continue;
     }
-    gemm(Rows(up_errors_[i], 0, rows_), layer.crbm.W_transposed, error_below);
+    gemm(Rows(up.errors[i], 0, rows_), layer.crbm.W_transposed, error_below);
     options.beta = 1.0F;
-    gemm(following(up_errors_[i], 0, rows_, 1, order), layer.B_following, error_below, options);
+    gemm(following(up.errors[i], 0, rows_, 1, order), layer.B_following, error_below, options);
   }
 }
 

@@ -8,19 +8,21 @@
 namespace mcdbn {
 
 /// One direction of fine-tuning (Goodfellow et al. 2013 through a whole MCDBN): up-pass
-/// of the present modality's CDBN, mean field of the MRBM (eq 32, 33), down-pass of the absent
+/// of the present modalities' CDBNs, mean field of the MRBM (eq 32, 33), down-pass of the absent
 /// one's on its own output from the training mean (Algorithm 3), and the back-propagation of an
 /// error at that output through all of it, through time.
 class UnrolledPass {
  public:
   /// @throws ShapeError if `first` leaves less history than the layers need
-  UnrolledPass(UnrolledNetwork& network, Modality present, const SequenceWindows& windows);
+  /// @param absent the one modality that is predicted from all others
+  UnrolledPass(UnrolledNetwork& network, std::size_t absent, const SequenceWindows& windows);
 
-  /// @param present standardized rows of the windows, [windows.rows() x visible], indexed
+  /// @param modalities standardized rows of the windows, [windows.rows() x visible], indexed, of
+  ///        each modality; those of the absent one are not read
   /// @param kept_share of all hidden units but the absent code; drop-out takes the others, drawn by
   /// `key`, for a
   ///        whole window at once: units that flicker would teach the decoder to shake
-  void forward(const Rows& present, float kept_share, const RandomKey& key);
+  void forward(std::span<const Rows> modalities, float kept_share, const RandomKey& key);
   /// The absent modality, [at least windows.rows() x visible]; frames before `first` do not count.
   const Matrix& prediction() const { return states_.front(); }
   /// Where the loss writes its derivative by the prediction; zero before `lead`.
@@ -41,23 +43,29 @@ class UnrolledPass {
   }
 
   void drop_out(const Rows& units, std::size_t alike);
-  void up_pass();
+  /// What one present modality needs for its way up.
+  struct UpPass {
+    std::size_t modality;
+    Layers& layers;
+    Matrix input;
+    std::vector<Matrix> units, errors;  ///< hidden units of the layers
+  };
+  UpPass make_up_pass(std::size_t modality);
+  void up_pass(UpPass& up);
   void mean_field();
   void down_pass();
   void down_pass_backward();
   void mean_field_backward();
-  void up_pass_backward();
+  void up_pass_backward(UpPass& up);
 
   UnrolledNetwork& network_;
-  Modality present_;
+  std::size_t absent_;
   SequenceWindows windows_;
   std::size_t rows_, steps_;
-  Layers& up_layers_;
+  std::vector<UpPass> up_;
   Layers& down_layers_;
   float kept_share_ = 1.0F;
   RandomKey drop_out_key_;
-  Matrix input_;
-  std::vector<Matrix> up_, up_errors_;         ///< hidden units of the present layers
   Matrix drive_, drive_error_;                 ///< [rows x MRBM hidden]
   Matrix values_, value_errors_;               ///< steps + 1 and steps blocks of rows
   Matrix hidden_, hidden_errors_;              ///< steps blocks of rows

@@ -17,19 +17,19 @@ std::int32_t row_of(const Sequences::Clip& clip, std::int64_t frame) {
 
 }  // namespace
 
-WindowSampler::WindowSampler(const PairedClips& clips, const SequenceWindows& windows,
+WindowSampler::WindowSampler(const SynchronizedClips& clips, const SequenceWindows& windows,
                              const LearningSettings& learning)
     : windows_(windows), look_ahead_(learning.look_ahead), seed_(learning.seed) {
   const auto group = [&](std::size_t clip) {
     return clips.groups.empty() ? 0 : clips.groups[clip];
   };
   std::map<std::size_t, double> frames_of;
-  for (std::size_t i = 0; i < clips.poses.size(); ++i)
-    frames_of[group(i)] += static_cast<double>(clips.poses[i].rows());
+  for (std::size_t i = 0; i < clips.count(); ++i)
+    frames_of[group(i)] += static_cast<double>(clips.frames(i));
   std::size_t first = 0;
   double end = 0;
-  for (std::size_t i = 0; i < clips.poses.size(); ++i) {
-    const auto frames = static_cast<std::size_t>(clips.poses[i].rows());
+  for (std::size_t i = 0; i < clips.count(); ++i) {
+    const std::size_t frames = clips.frames(i);
     clips_.push_back({first, frames});
     first += frames;
     end += static_cast<double>(frames) *

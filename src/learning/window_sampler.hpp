@@ -16,11 +16,11 @@ namespace mcdbn {
 /// are many are drawn less often (FineTuningSettings::people_power).
 class WindowSampler {
  public:
-  WindowSampler(const PairedClips& clips, const SequenceWindows& windows,
+  WindowSampler(const SynchronizedClips& clips, const SequenceWindows& windows,
                 const LearningSettings& learning);
 
-  /// Windows of mini-batch `step`: rows of the 3D frames, then those of the 2D frames look_ahead
-  /// later.
+  /// Windows of mini-batch `step`: rows of their frames, then those of the frames look_ahead later,
+  /// which are the first modality's.
   std::vector<std::int32_t> rows(std::size_t step) const;
 
  private:

@@ -1,34 +1,56 @@
 #pragma once
 
+#include <span>
+
 #include "device/gemm.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 
 namespace mcdbn {
 
-/// The two halves of a mean-field step of an MRBM of which modality m is absent, as products; the
-/// fused kernels have them in one launch. What the units are (probabilities, draws, centered ones)
-/// is the options' activation and sampling.
+/// The two halves of a mean-field step of an MRBM of which some modalities are absent, as products;
+/// the fused kernels have them in one launch. What the units are (probabilities, draws, centered
+/// ones) is the options' activation and sampling. Rows are given of every modality.
 ///
-/// eq 32: the shared units from the absent modality's and from `drive`, which is b and the present
-/// modality's products. @param absent, shared [rows x units]  @param drive [rows x hidden]
-inline void shared_units(const Mrbm& mrbm, std::size_t m, const Rows& absent, const Matrix& drive,
-                         GemmOptions options, const Rows& shared) {
+/// eq 32: the shared units from those of the modalities `from` and from `drive`, which is b and the
+/// present modalities' products.
+/// @param units [rows x visible] of each modality  @param drive, shared [rows x hidden]
+inline void shared_units(const Mrbm& mrbm, std::span<const std::size_t> from,
+                         std::span<const Rows> units, const Matrix& drive, GemmOptions options,
+                         const Rows& shared) {
+  for (const std::size_t m : from.first(from.size() - 1)) {
+    GemmOptions sum;
+    sum.beta = options.beta;
+    gemm(units[m], mrbm.W[m], shared, sum);
+    options.beta = 1.0F;
+  }
   options.bias = &drive;
-  gemm(absent, mrbm.W[m], shared, options);
+  gemm(units[from.back()], mrbm.W[from.back()], shared, options);
 }
 
-/// eq 33: the absent modality's units from the shared ones.
+/// eq 33: the units of the absent modality m from the shared ones.
 inline void absent_units(const Mrbm& mrbm, std::size_t m, const Rows& shared, GemmOptions options,
                          const Rows& absent) {
   options.bias = &mrbm.a[m];
   gemm(shared, mrbm.W_transposed[m], absent, options);
 }
 
-/// b and what the present modality m gives the shared units, the same in every step.
-inline void drive_of(const Mrbm& mrbm, std::size_t m, const Rows& present, const Rows& drive) {
-  GemmOptions bias;
-  bias.bias = &mrbm.b;
-  gemm(present, mrbm.W[m], drive, bias);
+/// b and what the present modalities give the shared units, the same in every step.
+inline void drive_of(const Mrbm& mrbm, std::span<const std::size_t> present,
+                     std::span<const Rows> units, const Rows& drive) {
+  GemmOptions options;
+  options.bias = &mrbm.b;
+  for (const std::size_t m : present) {
+    gemm(units[m], mrbm.W[m], drive, options);
+    options.bias = nullptr;
+    options.beta = 1.0F;
+  }
+}
+
+/// The mean of a modality's units, as an epilogue.
+inline GemmOptions mean_of_units(VisibleKind kind) {
+  GemmOptions options;
+  if (kind == VisibleKind::binary) options.activation = Activation::sigmoid;
+  return options;
 }
 
 }  // namespace mcdbn

@@ -5,134 +5,150 @@
 #include "device/pointwise.hpp"
 #include "machines/mrbm_chain.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/machines/crbm.hpp"
 
 namespace mcdbn {
-
 namespace {
 
-std::size_t columns_of(const MatrixF& matrix) {
-  return static_cast<std::size_t>(matrix.cols());
-}
-
 /// "W_track"
-std::string name_of(const char* letter, std::size_t modality) {
-  return std::string(letter) + '_' + kModalityNames[modality];
+std::string name_of(const char* letter, const Modality& modality) {
+  return std::string(letter) + '_' + modality.name;
 }
 
-std::vector<ParameterShape> transposed_shapes(const Parameters& parameters) {
+std::vector<ParameterShape> transposed_shapes(const MrbmShape& shape) {
   std::vector<ParameterShape> shapes;
-  for (std::size_t m = 0; m < kModalityNames.size(); ++m) {
-    const ParameterShape& W = parameters.entry(name_of("W", m));
-    shapes.push_back({.name = W.name, .rows = W.columns, .columns = W.rows});
-  }
+  for (const Modality& modality : shape.modalities)
+    shapes.push_back(
+        {.name = name_of("W", modality), .rows = shape.hidden, .columns = modality.visible});
   return shapes;
 }
 
 /// The ints that mrbm_shape.clh describes.
-std::vector<std::int32_t> layout_of(const Parameters& parameters, const Parameters& transposed) {
+std::vector<std::int32_t> layout_of(const MrbmShape& shape, const Parameters& parameters,
+                                    const Parameters& transposed) {
   std::vector<std::int32_t> layout;
   std::size_t units_before = 0;
-  for (std::size_t m = 0; m < kModalityNames.size(); ++m) {
-    const Parameters::Entry& W = parameters.entry(name_of("W", m));
+  for (const Modality& modality : shape.modalities) {
+    const std::string W = name_of("W", modality);
     for (const std::size_t value :
-         {W.rows, units_before, W.first, parameters.entry(name_of("a", m)).first,
-          transposed.entry(W.name).first})
+         {modality.visible, units_before, parameters.entry(W).first,
+          parameters.entry(name_of("a", modality)).first, transposed.entry(W).first,
+          std::size_t{modality.kind == VisibleKind::gaussian ? 1U : 0U}})
       layout.push_back(static_cast<std::int32_t>(value));
-    units_before += padded(W.rows);
+    units_before += padded(modality.visible);
   }
   layout.push_back(static_cast<std::int32_t>(parameters.entry("b").first));
   return layout;
 }
 
 Parameters uploaded(Device& device, const MrbmParameters& start) {
-  Parameters parameters(device,
-                        Mrbm::parameter_shapes({columns_of(start.a[0]), columns_of(start.a[1])},
-                                               columns_of(start.b)));
+  start.shape.check();
+  Parameters parameters(device, Mrbm::parameter_shapes(start.shape));
   start.write(parameters);
   return parameters;
 }
 
 }  // namespace
 
-void MrbmParameters::write(Parameters to) const {
-  for (std::size_t m = 0; m < 2; ++m) {
-    to.upload(name_of("W", m), W[m]);
-    to.upload(name_of("a", m), a[m]);
-  }
-  to.upload("b", b);
+void MrbmShape::check() const {
+  if (modalities.size() < 2) throw ShapeError("MRBM: wants two modalities or more");
+  for (auto one = modalities.begin(); one != modalities.end(); ++one)
+    if (std::any_of(modalities.begin(), one,
+                    [&](const Modality& other) { return other.name == one->name; }))
+      throw ShapeError("MRBM: two modalities are called " + one->name);
 }
 
-MrbmParameters MrbmParameters::random(std::size_t track, std::size_t pose, std::size_t hidden,
-                                      double deviation, const RandomKey& key) {
-  MrbmParameters parameters;
-  const std::array<std::size_t, 2> visible{track, pose};
-  for (std::size_t m = 0; m < 2; ++m) {
-    RandomKey own = key;
-    own.step = static_cast<std::uint32_t>(m);
-    const CrbmShape shape{visible[m], hidden, 0, VisibleKind::binary};
-    const CrbmParameters drawn = CrbmParameters::random(shape, deviation, own);
-    parameters.W[m] = drawn.W;
-    parameters.a[m] = drawn.a;
-    parameters.b = drawn.b;
+MrbmParameters MrbmParameters::zeros(const MrbmShape& shape) {
+  const auto hidden = static_cast<Eigen::Index>(shape.hidden);
+  MrbmParameters parameters{shape, {}, {}, MatrixF::Zero(1, hidden)};
+  for (const Modality& modality : shape.modalities) {
+    const auto visible = static_cast<Eigen::Index>(modality.visible);
+    parameters.W.emplace_back(MatrixF::Zero(visible, hidden));
+    parameters.a.emplace_back(MatrixF::Zero(1, visible));
   }
   return parameters;
 }
 
-MrbmParameters MrbmParameters::read(const Parameters& from) {
-  MrbmParameters host;
-  for (std::size_t m = 0; m < 2; ++m) {
-    host.W[m] = from.to_host(name_of("W", m));
-    host.a[m] = from.to_host(name_of("a", m));
+MrbmParameters MrbmParameters::random(const MrbmShape& shape, double deviation,
+                                      const RandomKey& key) {
+  MrbmParameters parameters = zeros(shape);
+  for (std::size_t m = 0; m < shape.modalities.size(); ++m) {
+    RandomKey own = key;
+    own.step = static_cast<std::uint32_t>(m);
+    parameters.W[m] =
+        CrbmParameters::random({shape.modalities[m].visible, shape.hidden}, deviation, own).W;
   }
-  host.b = from.to_host("b");
+  return parameters;
+}
+
+MrbmParameters MrbmParameters::read(const Parameters& from, const MrbmShape& shape) {
+  MrbmParameters host{shape, {}, {}, from.to_host("b")};
+  for (const Modality& modality : shape.modalities) {
+    host.W.push_back(from.to_host(name_of("W", modality)));
+    host.a.push_back(from.to_host(name_of("a", modality)));
+  }
   return host;
 }
 
-std::vector<ParameterShape> Mrbm::parameter_shapes(const std::array<std::size_t, 2>& visible,
-                                                   std::size_t hidden) {
-  std::vector<ParameterShape> shapes;
-  for (std::size_t m = 0; m < visible.size(); ++m) {
-    shapes.push_back({.name = name_of("W", m), .rows = visible[m], .columns = hidden});
-    shapes.push_back(
-        {.name = name_of("a", m), .rows = 1, .columns = visible[m], .is_weight = false});
+void MrbmParameters::write(Parameters to) const {
+  for (std::size_t m = 0; m < shape.modalities.size(); ++m) {
+    to.upload(name_of("W", shape.modalities[m]), W[m]);
+    to.upload(name_of("a", shape.modalities[m]), a[m]);
   }
-  shapes.push_back({.name = "b", .rows = 1, .columns = hidden, .is_weight = false});
+  to.upload("b", b);
+}
+
+std::vector<ParameterShape> Mrbm::parameter_shapes(const MrbmShape& shape) {
+  std::vector<ParameterShape> shapes;
+  for (const Modality& modality : shape.modalities) {
+    shapes.push_back(
+        {.name = name_of("W", modality), .rows = modality.visible, .columns = shape.hidden});
+    shapes.push_back({.name = name_of("a", modality),
+                      .rows = 1,
+                      .columns = modality.visible,
+                      .is_weight = false});
+  }
+  shapes.push_back({.name = "b", .rows = 1, .columns = shape.hidden, .is_weight = false});
   return shapes;
 }
 
-Mrbm::Mrbm(Device& device, const MrbmParameters& start) : Mrbm(uploaded(device, start)) {}
-
-MrbmMatrices::MrbmMatrices(const Parameters& parameters) : b(parameters.matrix("b")) {
-  for (std::size_t m = 0; m < 2; ++m) {
-    W[m] = parameters.matrix(name_of("W", m));
-    a[m] = parameters.matrix(name_of("a", m));
+MrbmMatrices::MrbmMatrices(const Parameters& parameters, const MrbmShape& shape)
+    : b(parameters.matrix("b")) {
+  for (const Modality& modality : shape.modalities) {
+    W.push_back(parameters.matrix(name_of("W", modality)));
+    a.push_back(parameters.matrix(name_of("a", modality)));
   }
 }
 
-Mrbm::Mrbm(const Parameters& parameters)
-    : MrbmMatrices(parameters),
+Mrbm::Mrbm(Device& device, const MrbmParameters& start)
+    : Mrbm(uploaded(device, start), start.shape) {}
+
+Mrbm::Mrbm(const Parameters& parameters, const MrbmShape& shape)
+    : MrbmMatrices(parameters, shape),
+      shape_(shape),
       parameters_(parameters),
-      transposed_(parameters.device(), transposed_shapes(parameters)),
-      layout_(parameters.device(), layout_of(parameters_, transposed_)) {
-  for (std::size_t m = 0; m < 2; ++m) W_transposed[m] = transposed_.matrix(name_of("W", m));
+      transposed_(parameters.device(), transposed_shapes(shape)),
+      layout_(parameters.device(), layout_of(shape, parameters_, transposed_)) {
+  shape.check();
+  for (const ParameterShape& copy : transposed_.entries())
+    W_transposed.push_back(transposed_.matrix(copy.name));
   refresh_transposed();
 }
 
 MrbmParameters Mrbm::to_host() const {
-  return MrbmParameters::read(parameters_);
+  return MrbmParameters::read(parameters_, shape_);
 }
 
-void Mrbm::infer(Modality modality, const Rows& present, std::size_t steps, const Rows& absent,
-                 bool doubled) const {
+void Mrbm::infer(const std::vector<Rows>& modalities, const std::vector<bool>& present,
+                 std::size_t steps, bool doubled) const {
   MrbmChainOptions options;
   options.steps = std::max<std::size_t>(steps, 1);
   options.doubled = doubled;
-  MrbmChain(*this, modality, present.count).run(present, options, absent);
+  if (modalities.empty()) throw ShapeError("MRBM: no modalities to infer from");
+  MrbmChain(*this, present, modalities.front().count).run(modalities, options);
 }
 
 void Mrbm::refresh_transposed() {
-  for (std::size_t m = 0; m < 2; ++m) transpose(W[m], W_transposed[m]);
+  for (std::size_t m = 0; m < W.size(); ++m) transpose(W[m], W_transposed[m]);
 }
 
 }  // namespace mcdbn

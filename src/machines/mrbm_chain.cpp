@@ -13,23 +13,46 @@
 namespace mcdbn {
 namespace {
 
-/// A block's local memory holds its hidden units and those of either modality. Clips are of any
-/// length: rounded up, they share a few tiles, and a tile that is new costs a compilation.
-std::optional<RowTile> choose_tile(const Mrbm& mrbm, std::size_t rows) {
-  constexpr std::size_t kManyRows = 1024;  // so many keep every compute unit busy in any case
-  const std::size_t track = mrbm.visible(Modality::track), pose = mrbm.visible(Modality::pose);
-  return choose_row_tile(
-      mrbm.device(), padded(std::max(track, pose)) + padded(mrbm.hidden()),
-      std::min<std::size_t>(std::bit_ceil(rows), kManyRows),
-      fmt::format("clamped chain of {} + {} visible, {} hidden units", track, pose, mrbm.hidden()));
+std::size_t largest_modality(const Mrbm& mrbm) {
+  std::size_t units = 0;
+  for (const Modality& modality : mrbm.shape().modalities)
+    units = std::max(units, modality.visible);
+  return units;
 }
 
-/// The epilogue of a pass: probabilities, and with a temperature their draws in their place.
-GemmOptions units_options(const Rows& units, const MrbmChainOptions& options, std::size_t pass) {
+bool is_binary(const Modality& modality) {
+  return modality.kind == VisibleKind::binary;
+}
+
+/// A block's local memory holds its hidden units and those of either modality. Clips are of any
+/// length: rounded up, they share a few tiles, and a tile that is new costs a compilation.
+std::optional<RowTile> choose_tile(const Mrbm& mrbm, const std::vector<bool>& present,
+                                   std::size_t rows) {
+  constexpr std::size_t kManyRows = 1024;  // so many keep every compute unit busy in any case
+  const auto& modalities = mrbm.shape().modalities;
+  if (present.size() != 2 || present[0] == present[1] ||
+      !std::all_of(modalities.begin(), modalities.end(), is_binary))
+    return std::nullopt;
+  return choose_row_tile(mrbm.device(), padded(largest_modality(mrbm)) + padded(mrbm.hidden()),
+                         std::min<std::size_t>(std::bit_ceil(rows), kManyRows),
+                         fmt::format("clamped chain of {} + {} visible, {} hidden units",
+                                     mrbm.visible(0), mrbm.visible(1), mrbm.hidden()));
+}
+
+std::vector<std::size_t> indices_where(const std::vector<bool>& flags, bool value) {
+  std::vector<std::size_t> indices;
+  for (std::size_t m = 0; m < flags.size(); ++m)
+    if (flags[m] == value) indices.push_back(m);
+  return indices;
+}
+
+/// The epilogue of a pass: means, and with a temperature their draws in their place.
+GemmOptions units_options(VisibleKind kind, const Rows& units, const MrbmChainOptions& options,
+                          std::size_t pass) {
   GemmOptions epilogue;
-  epilogue.activation = Activation::sigmoid;
+  if (kind == VisibleKind::binary) epilogue.activation = Activation::sigmoid;
   if (options.temperature == 0.0F) return epilogue;
-  epilogue.sampling = options.sampling;
+  epilogue.sampling = kind == VisibleKind::binary ? options.sampling : Sampling::gaussian;
   epilogue.sample = &units;
   epilogue.temperature = options.temperature;
   epilogue.random = options.random;
@@ -39,44 +62,58 @@ GemmOptions units_options(const Rows& units, const MrbmChainOptions& options, st
 
 }  // namespace
 
-MrbmChain::MrbmChain(const Mrbm& mrbm, Modality present, std::size_t largest_rows)
-    : MrbmChain(mrbm, present, largest_rows, choose_tile(mrbm, largest_rows)) {}
+MrbmChain::MrbmChain(const Mrbm& mrbm, const std::vector<bool>& present, std::size_t largest_rows)
+    : MrbmChain(mrbm, present, largest_rows, choose_tile(mrbm, present, largest_rows)) {}
 
-MrbmChain::MrbmChain(const Mrbm& mrbm, Modality present, std::size_t largest_rows,
+MrbmChain::MrbmChain(const Mrbm& mrbm, const std::vector<bool>& present, std::size_t largest_rows,
                      std::optional<RowTile> tile)
     : mrbm_(mrbm),
-      present_(index_of(present)),
-      absent_(index_of(other(present))),
+      present_(indices_where(present, true)),
+      absent_(indices_where(present, false)),
       largest_rows_(largest_rows),
       tile_(tile),
       drive_(mrbm.device(), whole_blocks(largest_rows, tile), mrbm.hidden()) {
+  require(present.size() == mrbm.modality_count() && !absent_.empty(),
+          "MRBM chain: wants to know of every modality whether it is there, and one that is not");
+  require(!tile_ || (present_.size() == 1 && absent_.size() == 1),
+          "MRBM chain: only two modalities are fused");
   if (!tile_) hidden_ = Matrix::like(drive_);
 }
 
-void MrbmChain::run(const Rows& present, const MrbmChainOptions& options, const Rows& absent) {
-  require(present.columns == mrbm_.W[present_].rows() && absent.columns == mrbm_.W[absent_].rows(),
-          "MRBM chain: the modalities do not fit the MRBM");
-  require(present.count == absent.count, "MRBM chain: the modalities differ in rows");
-  require(absent.index == nullptr, "MRBM chain: the result may not be indexed");
-  require(present.count <= largest_rows_, "MRBM chain: more rows than it was made for");
+void MrbmChain::check(const std::vector<Rows>& modalities, const MrbmChainOptions& options) const {
+  require(modalities.size() == mrbm_.modality_count(), "MRBM chain: wants every modality");
+  for (std::size_t m = 0; m < modalities.size(); ++m) {
+    require(modalities[m].columns == mrbm_.visible(m),
+            "MRBM chain: the modalities do not fit the MRBM");
+    require(modalities[m].count == modalities[0].count,
+            "MRBM chain: the modalities differ in rows");
+  }
+  for (const std::size_t m : absent_)
+    require(modalities[m].index == nullptr, "MRBM chain: the result may not be indexed");
+  require(modalities[0].count <= largest_rows_, "MRBM chain: more rows than it was made for");
   require(options.steps > 0, "MRBM chain: wants at least one step");
   require(options.sampling == Sampling::bernoulli || options.sampling == Sampling::concrete,
-          "MRBM chain: its units are binary");
-  if (present.count == 0) return;
+          "MRBM chain: its binary units are drawn as such");
+}
+
+void MrbmChain::run(const std::vector<Rows>& modalities, const MrbmChainOptions& options) {
+  check(modalities, options);
+  if (modalities[0].count == 0) return;
   if (tile_)
-    fused(present, options, absent);
+    fused(modalities[present_[0]], options, modalities[absent_[0]]);
   else
-    composed(present, options, absent);
+    composed(modalities, options);
 }
 
 Defines shape_defines(const Mrbm& mrbm) {
-  const std::array<int, 2> visible{to_int(mrbm.visible(Modality::track)),
-                                   to_int(mrbm.visible(Modality::pose))};
-  Defines defines{{"MODALITIES", to_int(visible.size())},
-                  {"LARGEST", *std::max_element(visible.begin(), visible.end())},
-                  {"HIDDEN", to_int(mrbm.hidden())}};
-  if (std::equal(visible.begin() + 1, visible.end(), visible.begin()))
-    defines["VISIBLE"] = visible.front();
+  const auto& modalities = mrbm.shape().modalities;
+  Defines defines{{"MODALITIES", to_int(modalities.size())},
+                  {"LARGEST", to_int(largest_modality(mrbm))},
+                  {"HIDDEN", to_int(mrbm.hidden())},
+                  {"BINARY", std::all_of(modalities.begin(), modalities.end(), is_binary) ? 1 : 0}};
+  if (std::all_of(modalities.begin(), modalities.end(),
+                  [&](const Modality& m) { return m.visible == modalities[0].visible; }))
+    defines["VISIBLE"] = to_int(modalities[0].visible);
   return defines;
 }
 
@@ -94,31 +131,49 @@ void MrbmChain::fused(const Rows& present, const MrbmChainOptions& options, cons
   launch(device, kernel, {{blocks * group, 1}, {group, 1}}, present.matrix->buffer(),
          present.offset(), present.stride(), index, present.index ? 1 : 0,
          to_int(present.index_first), present.shift, to_int(present.count), mrbm_.layout().buffer(),
-         to_int(present_), to_int(absent_), mrbm_.parameters().all().buffer(),
+         to_int(present_[0]), to_int(absent_[0]), mrbm_.parameters().all().buffer(),
          mrbm_.transposed().all().buffer(), drive_.buffer(), absent.matrix->buffer(),
          absent.offset(), absent.stride(), to_int(options.steps), options.doubled ? 1 : 0,
          options.temperature, random_argument(options.random));
 }
 
-void MrbmChain::composed(const Rows& present, const MrbmChainOptions& options, const Rows& absent) {
-  const Rows drive(drive_, 0, present.count), hidden(hidden_, 0, present.count);
-  drive_of(mrbm_, present_, present, drive);
+/// Absent modalities are zeros: what the present ones give, or twice that.
+void MrbmChain::first_hidden(const std::vector<Rows>& modalities, const MrbmChainOptions& options,
+                             const GemmOptions& up, const Rows& hidden) {
+  if (options.doubled && !present_.empty()) {
+    shared_units(mrbm_, present_, modalities, drive_, up, hidden);
+    return;
+  }
+  hidden_.copy_rows_from(drive_, 0, hidden.count, 0);
+  apply_epilogue(hidden, up);
+}
+
+void MrbmChain::composed(const std::vector<Rows>& modalities, const MrbmChainOptions& options) {
+  const std::size_t count = modalities[0].count, passes = 1 + absent_.size();
+  const Rows drive(drive_, 0, count), hidden(hidden_, 0, count);
+  if (present_.empty()) {
+    GemmOptions alone;
+    alone.bias = &mrbm_.b;
+    drive_.set_zero();
+    apply_epilogue(drive, alone);
+  } else {
+    drive_of(mrbm_, present_, modalities, drive);
+  }
   for (std::size_t step = 0; step < options.steps; ++step) {
-    const GemmOptions up = units_options(hidden, options, 2 * step);
-    if (step > 0) {
-      shared_units(mrbm_, absent_, absent, drive_, up, hidden);
-    } else if (options.doubled) {
-      shared_units(mrbm_, present_, present, drive_, up, hidden);
-    } else {
-      hidden_.copy_rows_from(drive_, 0, present.count, 0);
-      apply_epilogue(hidden, up);
+    std::size_t pass = step * passes;
+    const GemmOptions up = units_options(VisibleKind::binary, hidden, options, pass);
+    if (step > 0)
+      shared_units(mrbm_, absent_, modalities, drive_, up, hidden);
+    else
+      first_hidden(modalities, options, up, hidden);
+    for (const std::size_t m : absent_) {
+      GemmOptions down = units_options(mrbm_.kind(m), modalities[m], options, ++pass);
+      if (step + 1 == options.steps) {
+        down.sampling = Sampling::none;
+        down.sample = nullptr;
+      }
+      absent_units(mrbm_, m, hidden, down, modalities[m]);
     }
-    GemmOptions down = units_options(absent, options, 2 * step + 1);
-    if (step + 1 == options.steps) {
-      down.sampling = Sampling::none;
-      down.sample = nullptr;
-    }
-    absent_units(mrbm_, absent_, hidden, down, absent);
   }
 }
 

@@ -16,48 +16,53 @@ struct MrbmChainOptions {
   /// The first pass counts the present modality twice in place of the absent one's zeros (Sohn et
   /// al.).
   bool doubled = false;
-  Sampling sampling = Sampling::bernoulli;  ///< or concrete
-  /// The draws are those of row r of the chain, with phase 2 · step for the hidden units and
-  /// 2 · step + 1 for the absent ones.
+  Sampling sampling = Sampling::bernoulli;  ///< or concrete; Gaussian units draw as such
+  /// The draws are those of row r of the chain. Each step has a phase for the hidden units, then
+  /// one for each absent modality.
   RandomKey random = {};
 };
 
 /// What mrbm_shape.clh wants but for STEPS.
 Defines shape_defines(const Mrbm& mrbm);
 
-/// The MRBM's chain with one modality clamped to what is present (Algorithm 5's inference): `steps`
-/// times the shared hidden units from both modalities, then the absent modality from them. The
-/// absent modality starts from zeros; what comes out is p(absent | hidden) of the last step, not
-/// drawn.
+/// The MRBM's chain with some modalities clamped to what is present (Algorithm 5's inference):
+/// `steps` times the shared hidden units from all modalities, then the absent ones from them.
+/// Absent modalities start from zeros; what comes out is their mean given the hidden units of the
+/// last step, not drawn.
 ///
-/// A chain is one launch (mrbm_inference.cl) where a row's state fits the device's local memory,
-/// else two products a step. Both give the same bits, unless CLBlast multiplies.
+/// A chain is one launch (mrbm_inference.cl) where one binary modality is given another and a row's
+/// state fits the device's local memory, else some products a step. Both give the same bits, unless
+/// CLBlast multiplies.
 class MrbmChain {
  public:
-  /// @param present the modality that is clamped  @param largest_rows of one run
-  MrbmChain(const Mrbm& mrbm, Modality present, std::size_t largest_rows);
+  /// @param present of each modality, whether it is clamped; one at least is not
+  /// @param largest_rows of one run  @throws ShapeError
+  MrbmChain(const Mrbm& mrbm, const std::vector<bool>& present, std::size_t largest_rows);
   /// With a tile of the caller's, or without the fused kernel.
-  MrbmChain(const Mrbm& mrbm, Modality present, std::size_t largest_rows,
+  MrbmChain(const Mrbm& mrbm, const std::vector<bool>& present, std::size_t largest_rows,
             std::optional<RowTile> tile);
 
   /// Enqueues and returns.
-  /// @param present [rows x visible(present)], possibly indexed
-  /// @param absent [rows x visible(other)], not indexed, no rows of `present`: the result
+  /// @param modalities [rows x visible] of each: the present ones, possibly indexed, are read; the
+  ///        absent ones, not indexed and other rows than any present one, are the result
   /// @throws ShapeError, also for more rows than it was made for, or no steps
-  void run(const Rows& present, const MrbmChainOptions& options, const Rows& absent);
+  void run(const std::vector<Rows>& modalities, const MrbmChainOptions& options);
 
   /// Unset where chains are composed.
   const std::optional<RowTile>& tile() const { return tile_; }
 
  private:
+  void check(const std::vector<Rows>& modalities, const MrbmChainOptions& options) const;
   void fused(const Rows& present, const MrbmChainOptions& options, const Rows& absent);
-  void composed(const Rows& present, const MrbmChainOptions& options, const Rows& absent);
+  void composed(const std::vector<Rows>& modalities, const MrbmChainOptions& options);
+  void first_hidden(const std::vector<Rows>& modalities, const MrbmChainOptions& options,
+                    const GemmOptions& up, const Rows& hidden);
 
   const Mrbm& mrbm_;
-  std::size_t present_, absent_;  ///< indices of the modalities
+  std::vector<std::size_t> present_, absent_;  ///< indices of the modalities
   std::size_t largest_rows_;
   std::optional<RowTile> tile_;
-  Matrix drive_;   ///< what the present modality says to the hidden units [rows x hidden]
+  Matrix drive_;   ///< what the present modalities give the hidden units, and b [rows x hidden]
   Matrix hidden_;  ///< [rows x hidden], composed
 };
 

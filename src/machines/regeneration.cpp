@@ -1,28 +1,30 @@
 #include "mcdbn/machines/regeneration.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/missing_values.hpp"
 #include "base/random_streams.hpp"
 #include "device/gemm.hpp"
 #include "machines/cdbn_decoder.hpp"
 #include "machines/mrbm_chain.hpp"
-#include "machines/track_completion.hpp"
+#include "machines/sequence_completion.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
 
-/// `lead` copies of the first row, the track, then its end carried on up to `frames` rows: turned
-/// about the last row, point by point, so that what the look-ahead sees there moves on as it did.
-MatrixF extended(const MatrixF& track, Eigen::Index lead, Eigen::Index frames) {
-  MatrixF result(frames, track.cols());
-  const Eigen::Index last = track.rows() - 1;
-  result.topRows(lead) = track.row(0).replicate(lead, 1);
-  result.middleRows(lead, track.rows()) = track;
+/// `lead` copies of the first row, the sequence, then its end carried on up to `frames` rows:
+/// turned about the last row, point by point, so that what the look-ahead sees there moves on as it
+/// did.
+MatrixF extended(const MatrixF& sequence, Eigen::Index lead, Eigen::Index frames) {
+  MatrixF result(frames, sequence.cols());
+  const Eigen::Index last = sequence.rows() - 1;
+  result.topRows(lead) = sequence.row(0).replicate(lead, 1);
+  result.middleRows(lead, sequence.rows()) = sequence;
   for (Eigen::Index i = 1; lead + last + i < frames; ++i)
     result.row(lead + last + i) =
-        2.0F * track.row(last) - track.row(std::max<Eigen::Index>(last - i, 0));
+        2.0F * sequence.row(last) - sequence.row(std::max<Eigen::Index>(last - i, 0));
   return result;
 }
 
@@ -36,88 +38,193 @@ Matrix repeated(const Matrix& code, std::size_t sequences, std::size_t copies) {
   return result;
 }
 
-/// The 3D code of every frame from the 2D code `look_ahead` frames later, once for each sample: its
-/// own sampled chain (eq 21 to 23), or the one mean field again (eq 32, 33).
-/// @param track_code sequences of one length  @return [sequences·samples·frames x dimension]
-Matrix infer_pose_code(const Mcdbn& network, const Sequences& track_code,
-                       const RegenerationOptions& options) {
-  const std::size_t tracks = track_code.clips.size();
-  const std::size_t frames = track_code.values.rows() / tracks, first = track_code.valid_from,
-                    end = frames - network.look_ahead;
-  const bool sampled = options.drawn_share() > 0.0 && options.sampling.mrbm_gibbs_steps > 0;
-  const std::size_t chains = sampled ? options.samples : 1, rows = tracks * chains;
-  Device& device = track_code.values.device();
-  Matrix code(device, rows * frames, network.pose.code_dimension());
-  if (!sampled) {
-    const std::size_t count = end - first;
-    for (std::size_t i = 0; i < tracks; ++i)
-      network.mrbm.infer(Modality::track,
-                         Rows(track_code.values, i * frames + first + network.look_ahead, count),
-                         network.mean_field_steps, Rows(code, i * frames + first, count));
-    return repeated(code, tracks, options.samples);
+/// Which frames are inferred and decoded. Frame t of the network is that of all modalities without
+/// a look-ahead; a sequence of `longest` frames begins at `lead`.
+struct Frames {
+  std::size_t first = 0;  ///< of the network: every present modality has a code from here on
+  std::size_t start = 0;  ///< of the wanted modality: decoded from here on
+  std::size_t lead = 0, longest = 0;
+  std::size_t end = 0;    ///< of the network, behind the last
+  std::size_t total = 0;  ///< that the present modalities must show
+};
+
+Frames frames_of(const Mcdbn& network, const std::vector<std::vector<MatrixF>>& present,
+                 std::size_t wanted, std::size_t run_in) {
+  Frames frames;
+  std::size_t latest = network.ahead(wanted);
+  for (std::size_t m = 0; m < present.size(); ++m) {
+    if (present[m].empty()) continue;
+    frames.first = std::max(frames.first, network.cdbns[m].total_order());
+    latest = std::max(latest, network.ahead(m));
+    for (const MatrixF& sequence : present[m])
+      frames.longest = std::max(frames.longest, static_cast<std::size_t>(sequence.rows()));
   }
+  frames.start = frames.first + network.ahead(wanted);
+  for (const Crbm& layer : network.cdbns[wanted].layers)
+    frames.start = std::max(frames.start, layer.shape().order);
+  frames.lead = frames.start + run_in;
+  frames.end = frames.lead + frames.longest - network.ahead(wanted);
+  frames.total = frames.end + latest;
+  return frames;
+}
+
+/// The present modalities' codes and, where the wanted one's go, its rows of the network's frames.
+struct Codes {
+  std::vector<std::optional<Sequences>> present;  ///< all of one length
+  Matrix wanted;                                  ///< [sequences·samples·frames x dimension]
+  std::vector<Matrix> others;  ///< what is inferred of modalities that nobody asked for
+};
+
+/// What the MRBM is told: rows of each modality's code.
+std::vector<bool> present_flags(const Codes& codes) {
+  std::vector<bool> flags;
+  for (const auto& code : codes.present) flags.push_back(code.has_value());
+  return flags;
+}
+
+/// The one mean field for all samples (eq 32, 33), of every sequence.
+void infer_means(const Mcdbn& network, const Frames& frames, std::size_t wanted,
+                 std::size_t sequences, Codes& codes) {
+  const std::size_t count = frames.end - frames.first;
+  for (std::size_t i = 0; i < sequences; ++i) {
+    std::vector<Rows> rows;
+    for (std::size_t m = 0; m < network.modality_count(); ++m) {
+      const std::size_t at = i * frames.total + frames.first + network.ahead(m);
+      if (codes.present[m])
+        rows.emplace_back(codes.present[m]->values, at, count);
+      else if (m == wanted)
+        rows.emplace_back(codes.wanted, at, count);
+      else
+        rows.emplace_back(codes.others[m], 0, count);
+    }
+    network.mrbm.infer(rows, present_flags(codes), network.mean_field_steps);
+  }
+}
+
+/// A sampled chain of its own for every sample (eq 21 to 23). A frame of all samples at a time: a
+/// sample is the same row in every frame, and so are its draws.
+void infer_samples(const Mcdbn& network, const Frames& frames, std::size_t wanted,
+                   std::size_t sequences, const RegenerationOptions& options, Codes& codes) {
   MrbmChainOptions chain;
   chain.steps = options.sampling.mrbm_gibbs_steps;
   chain.temperature = static_cast<float>(options.drawn_share());
   if (options.sampling.steady) chain.sampling = Sampling::concrete;
-  // A frame of all samples at a time: a sample is the same row in every frame, and so are its
-  // draws.
+  const std::size_t count = sequences * options.samples;
   std::vector<std::int32_t> start;
-  for (std::size_t i = 0; i < rows; ++i)
-    start.push_back(static_cast<std::int32_t>(i / chains * frames));
-  const IndexBuffer index(device, start);
-  MrbmChain inference(network.mrbm, Modality::track, rows);
-  for (std::size_t frame = first; frame < end; ++frame) {
+  for (std::size_t i = 0; i < count; ++i)
+    start.push_back(static_cast<std::int32_t>(i / options.samples * frames.total));
+  const IndexBuffer index(network.mrbm.device(), start);
+  MrbmChain inference(network.mrbm, present_flags(codes), count);
+  for (std::size_t frame = frames.first; frame < frames.end; ++frame) {
     const auto step = options.sampling.steady ? 0U : static_cast<std::uint32_t>(frame);
     chain.random = {options.seed, step, random_streams::kMrbmChain, 0};
-    inference.run(Rows::indexed(track_code.values, index, 0, rows,
-                                static_cast<int>(frame + network.look_ahead)),
-                  chain, Rows::strided(code, frame, rows, frames));
+    std::vector<Rows> rows;
+    for (std::size_t m = 0; m < network.modality_count(); ++m) {
+      const std::size_t at = frame + network.ahead(m);
+      if (codes.present[m])
+        rows.push_back(
+            Rows::indexed(codes.present[m]->values, index, 0, count, static_cast<int>(at)));
+      else if (m == wanted)
+        rows.push_back(Rows::strided(codes.wanted, at, count, frames.total));
+      else
+        rows.emplace_back(codes.others[m], 0, count);
+    }
+    inference.run(rows, chain);
   }
-  return code;
+}
+
+/// @return [sequences·samples·frames.total x dimension]
+Matrix infer_code(const Mcdbn& network, const Frames& frames, std::size_t wanted,
+                  std::vector<std::optional<Sequences>> present, std::size_t sequences,
+                  const RegenerationOptions& options) {
+  const bool sampled = options.drawn_share() > 0.0 && options.sampling.mrbm_gibbs_steps > 0;
+  const std::size_t count = sampled ? sequences * options.samples : sequences;
+  Device& device = network.mrbm.device();
+  Codes codes{std::move(present),
+              Matrix(device, count * frames.total, network.mrbm.visible(wanted)),
+              std::vector<Matrix>(network.modality_count())};
+  for (std::size_t m = 0; m < network.modality_count(); ++m)
+    if (!codes.present[m] && m != wanted)
+      codes.others[m] = Matrix(device, std::max(count, frames.total), network.mrbm.visible(m));
+  if (sampled) {
+    infer_samples(network, frames, wanted, sequences, options, codes);
+    return std::move(codes.wanted);
+  }
+  infer_means(network, frames, wanted, sequences, codes);
+  return repeated(codes.wanted, sequences, options.samples);
+}
+
+/// How many sequences there are. @throws ShapeError
+std::size_t sequence_count(const Mcdbn& network, const std::vector<std::vector<MatrixF>>& present,
+                           std::size_t wanted) {
+  if (present.size() != network.modality_count() || wanted >= present.size() ||
+      !present[wanted].empty())
+    throw ShapeError("regenerate: wants sequences of every modality but the one asked for");
+  std::size_t count = 0;
+  const std::vector<MatrixF>* first = nullptr;
+  for (const auto& sequences : present) {
+    if (sequences.empty()) continue;
+    if (!first) first = &sequences;
+    count = sequences.size();
+    if (count != first->size()) throw ShapeError("regenerate: the modalities differ in sequences");
+    for (std::size_t i = 0; i < count; ++i) {
+      if (sequences[i].rows() == 0) throw ShapeError("regenerate: a sequence without frames");
+      if (sequences[i].rows() != (*first)[i].rows())
+        throw ShapeError("regenerate: the modalities differ in frames");
+    }
+  }
+  return count;
+}
+
+Sequences code_of(const Mcdbn& network, std::size_t modality, const std::vector<MatrixF>& present,
+                  const Frames& frames) {
+  const Cdbn& cdbn = network.cdbns[modality];
+  std::vector<MatrixF> sequences;
+  sequences.reserve(present.size());
+  for (const MatrixF& sequence : present)
+    sequences.push_back(extended(
+        network.fills_gaps ? complete_sequence(cdbn, sequence) : at_mean_where_unknown(sequence),
+        static_cast<Eigen::Index>(frames.lead), static_cast<Eigen::Index>(frames.total)));
+  return cdbn.up_pass(Sequences::from_host(network.mrbm.device(), sequences));
 }
 
 }  // namespace
 
-std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>& tracks,
-                                const RegenerationOptions& options) {
-  if (tracks.empty() || options.samples == 0) return {};
-  std::size_t pose_order = 0;
-  for (const Crbm& layer : network.pose.layers)
-    pose_order = std::max(pose_order, layer.shape().order);
-  // Before the clip: what the up-pass needs, then the run-in, both of the first frame repeated.
-  const std::size_t start = std::max(network.track.total_order(), pose_order);
-  const std::size_t lead = start + options.run_in;
-  std::size_t longest = 0;
-  for (const MatrixF& track : tracks) {
-    if (track.rows() == 0) throw ShapeError("regenerate: a track without frames");
-    longest = std::max(longest, static_cast<std::size_t>(track.rows()));
+std::vector<MatrixF> regenerate(const Mcdbn& network,
+                                const std::vector<std::vector<MatrixF>>& present,
+                                std::size_t wanted, const RegenerationOptions& options) {
+  const std::size_t sequences = sequence_count(network, present, wanted);
+  if (sequences == 0 || options.samples == 0) return {};
+  const Frames frames = frames_of(network, present, wanted, options.run_in);
+  std::vector<std::optional<Sequences>> present_codes(present.size());
+  const std::vector<MatrixF>* shown = nullptr;
+  for (std::size_t m = 0; m < present.size(); ++m) {
+    if (present[m].empty()) continue;
+    present_codes[m] = code_of(network, m, present[m], frames);
+    shown = &present[m];
   }
-  const std::size_t frames = lead + longest + network.look_ahead;
-
-  std::vector<MatrixF> sequences;
-  sequences.reserve(tracks.size());
-  for (const MatrixF& track : tracks)
-    sequences.push_back(extended(
-        network.fills_gaps ? complete_track(network.track, track) : at_mean_where_unknown(track),
-        static_cast<Eigen::Index>(lead), static_cast<Eigen::Index>(frames)));
-  Device& device = network.mrbm.device();
-  const Sequences track_code = network.track.up_pass(Sequences::from_host(device, sequences));
-  const std::size_t decoded = sequences.size() * options.samples;
-  const Matrix code = infer_pose_code(network, track_code, options);
-  CdbnDecoder decoder(network.pose, code, decoded);
-  decoder.decode(start, frames - network.look_ahead, options);
+  const std::size_t decoded = sequences * options.samples;
+  const Matrix code =
+      infer_code(network, frames, wanted, std::move(present_codes), sequences, options);
+  CdbnDecoder decoder(network.cdbns[wanted], code, decoded);
+  decoder.decode(frames.start, frames.lead + frames.longest, options);
 
   const MatrixF visible = decoder.visible().to_host();
   std::vector<MatrixF> result;
   for (std::size_t i = 0; i < decoded; ++i)
-    result.emplace_back(visible.middleRows(static_cast<Eigen::Index>(i * frames + lead),
-                                           tracks[i / options.samples].rows()));
+    result.emplace_back(
+        visible.middleRows(static_cast<Eigen::Index>(i * frames.total + frames.lead),
+                           (*shown)[i / options.samples].rows()));
   return result;
 }
 
-MatrixF single_answer(const Mcdbn& network, const MatrixF& track) {
-  return regenerate(network, {track}).front();
+std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>& first,
+                                const RegenerationOptions& options) {
+  return regenerate(network, {first, {}}, 1, options);
+}
+
+MatrixF single_answer(const Mcdbn& network, const MatrixF& first) {
+  return regenerate(network, std::vector<MatrixF>{first}).front();
 }
 
 }  // namespace mcdbn

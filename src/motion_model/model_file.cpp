@@ -5,6 +5,7 @@
 #include "base/safetensors.hpp"
 #include "base/setting_values.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion_model/training_sources.hpp"
 #include "motion_model/modalities_json.hpp"
 
 namespace mcdbn {
@@ -70,10 +71,10 @@ Cdbn get_cdbn(Device& device, const Safetensors& file, const std::string& path,
 constexpr const char* kMrbmPrefix = "mrbm.";
 
 Mrbm get_mrbm(Device& device, const Safetensors& file, const std::string& path,
-              const std::array<std::size_t, 2>& visible, std::size_t hidden) {
-  const Parameters parameters(device, Mrbm::parameter_shapes(visible, hidden));
+              const MrbmShape& shape) {
+  const Parameters parameters(device, Mrbm::parameter_shapes(shape));
   get(file, path, kMrbmPrefix, parameters);
-  return Mrbm(parameters);
+  return {parameters, shape};
 }
 
 json sampling_json(const SamplingRule& rule) {
@@ -114,11 +115,14 @@ auto reading_description(const std::filesystem::path& path, Read&& read) {
 
 Model model_from(Device& device, const Safetensors& file, const std::string& path) {
   const json about = parsed_description(file, path);
-  Cdbn track = get_cdbn(device, file, path, "track", about.at("track"));
-  Cdbn pose = get_cdbn(device, file, path, "pose", about.at("pose"));
-  Mrbm mrbm = get_mrbm(device, file, path, {track.code_dimension(), pose.code_dimension()},
-                       about.at("mrbm_hidden"));
-  Model model{{std::move(track), std::move(pose), std::move(mrbm), about.at("look_ahead"),
+  std::vector<Cdbn> cdbns;
+  MrbmShape shape{{}, about.at("mrbm_hidden")};
+  for (const char* name : kModalityNames) {
+    cdbns.push_back(get_cdbn(device, file, path, name, about.at(name)));
+    shape.modalities.push_back({name, cdbns.back().code_dimension()});
+  }
+  Mrbm mrbm = get_mrbm(device, file, path, shape);
+  Model model{{std::move(cdbns), std::move(mrbm), about.at("look_ahead"),
                about.at("mean_field_steps"), sampling_from(about), about.value("fills_gaps", true)},
               modalities_from(about.at("modalities")),
               {},
@@ -139,8 +143,10 @@ void save_model(const std::filesystem::path& path, const Model& model) {
   Safetensors file;
   json about;
   about["format_version"] = kFormatVersion;
-  about["track"] = put_cdbn(file, "track", model.network.track);
-  about["pose"] = put_cdbn(file, "pose", model.network.pose);
+  for (std::size_t m = 0; m < model.network.modality_count(); ++m) {
+    const std::string& name = model.network.modality(m).name;
+    about[name] = put_cdbn(file, name, model.network.cdbns[m]);
+  }
   put(file, kMrbmPrefix, model.network.mrbm.parameters());
   about["mrbm_hidden"] = model.network.mrbm.hidden();
   about["look_ahead"] = model.network.look_ahead;

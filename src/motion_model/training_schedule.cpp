@@ -61,8 +61,10 @@ TrainedNetwork train_network(Device& device, const TrainingSet& data, std::vecto
   if (config.fine_tuning.steps == 0)
     return {train_greedy(device, ClipSource(data), config, observer), {}};
   const ViewSource views(std::move(clips), data.modalities, config);
-  Mcdbn start = random_start(device, static_cast<std::size_t>(data.tracks.front().cols()),
-                             static_cast<std::size_t>(data.poses.front().cols()), config);
+  std::vector<Modality> modalities;
+  for (const ModalityClips& modality : ClipSource(data).sequences().modalities)
+    modalities.push_back({modality.name, modality.dimension(), modality.kind});
+  Mcdbn start = random_start(device, modalities, config);
   double done = 0.0;
   if (config.fine_tuning.from_greedy) {
     done = kGreedyShare;

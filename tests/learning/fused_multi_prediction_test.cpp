@@ -21,7 +21,9 @@ const std::vector<Case> kCases = {{33, 17, 21, 11, 10}, {9, 5, 7, 229, 9}};
 const Case kOddCase{17, 33, 19, 29, 3};
 
 struct Problem {
-  explicit Problem(const Case& test) : test(test) {
+  explicit Problem(const Case& test)
+      : test(test),
+        start(MrbmParameters::zeros(two_modalities(test.track, test.pose, test.hidden))) {
     const std::array<std::size_t, 2> visible{test.track, test.pose};
     for (std::size_t m = 0; m < 2; ++m) {
       const auto seed = static_cast<unsigned>(10 * m);
@@ -76,11 +78,11 @@ Step run_step(Device& device, const Problem& problem, const std::optional<RowTil
   LossAccumulator losses(device, 2, batch);
   const Rows track_rows = Rows::indexed(track, index, 0, batch, Problem::kShift);
   const Rows pose_rows = Rows::indexed(pose, index, 0, batch);
-  gradient.step(track_rows, pose_rows, rule, losses);
+  gradient.step({track_rows, pose_rows}, rule, losses);
   CHECK(same_bits(still.to_host(), problem.start));
   losses.read_and_reset();
   const auto before = device.launch_count();
-  for (int i = 0; i < count; ++i) multi_prediction.step(track_rows, pose_rows, rule, losses);
+  for (int i = 0; i < count; ++i) multi_prediction.step({track_rows, pose_rows}, rule, losses);
   Step step{gradient.gradients(), mrbm.to_host(), losses.read_and_reset(),
             device.launch_count() - before};
   for (std::size_t m = 0; m < 2; ++m) {
@@ -157,7 +159,7 @@ TEST_CASE("multi-prediction refuses what it cannot do") {
     MultiPrediction multi_prediction(mrbm, 5, {.mean_field_steps = 2});
     LossAccumulator losses(device, 2, 8);
     const auto step = [&](const Rows& x, const Rows& y) {
-      multi_prediction.step(x, y, UpdateRule::adam(), losses);
+      multi_prediction.step({x, y}, UpdateRule::adam(), losses);
     };
     const Rows five = Rows::indexed(track, index, 0, 5), six = Rows::indexed(pose, index, 0, 6);
     CHECK_THROWS_AS(step(five, six), ShapeError);

@@ -153,12 +153,12 @@ TEST_CASE("an MRBM whose loss grows is stopped and says what to lower") {
   settings.mrbm.weight_decay = 0;
   settings.mrbm.epochs = 3;
   settings.least_batches = 1;  // one mini-batch an epoch: the first epoch's loss is still small
-  const MrbmParameters initial = MrbmParameters::random(4, 4, 6, 0.4, {.seed = 3});
+  const MrbmParameters initial = MrbmParameters::random(two_modalities(4, 4, 6), 0.4, {.seed = 3});
   const MatrixF codes = waves(settings.batch + settings.look_ahead, 4).cwiseAbs() / 2;
   on_every_device([&](Device& device) {
-    const Sequences sequences = Sequences::from_host(device, {codes});
+    const std::vector<Sequences> sequences(2, Sequences::from_host(device, {codes}));
     const Divergence divergence = divergence_of([&](const EpochObserver& observer) {
-      train_mrbm(device, sequences, sequences, initial, settings, 128, observer);
+      train_mrbm(device, sequences, initial, settings, 128, observer);
     });
     check_growth(divergence);
     CHECK(contains(divergence.message, "in stage mrbm at epoch 2: the loss is "));

@@ -153,12 +153,12 @@ TEST_CASE("greedy reports: health is that of the stage's own layer on its own in
     const std::size_t frames = static_cast<std::size_t>(scene.plan.order) + kFreeRunFrames;
     std::array<reference::GreedyCode, 2> codes{
         {{in_double(scene.tracks), 0}, {in_double(scene.poses), 0}}};
-    for (const Modality modality : {Modality::track, Modality::pose}) {
-      reference::GreedyCode& code = codes[index_of(modality)];
-      const Cdbn& cdbn = watched.model.cdbn(modality);
+    for (const std::size_t modality : {modality::track, modality::pose}) {
+      reference::GreedyCode& code = codes[modality];
+      const Cdbn& cdbn = watched.model.cdbns[modality];
       for (std::size_t layer = 0; layer < cdbn.layers.size(); ++layer) {
         const std::string stage =
-            (modality == Modality::track ? "track." : "pose.") + std::to_string(layer);
+            (modality == modality::track ? "track." : "pose.") + std::to_string(layer);
         INFO(stage);
         const CrbmParameters parameters = cdbn.layers[layer].to_host();
         const LayerHealth want =
@@ -170,7 +170,7 @@ TEST_CASE("greedy reports: health is that of the stage's own layer on its own in
     }
     const auto [track, pose] = pairs_of(codes[0], codes[1], scene.plan.look_ahead);
     check_health(last_health(watched.reports, "mrbm"),
-                 mrbm_health(watched.model.mrbm.to_host(), track, pose));
+                 mrbm_health(watched.model.mrbm.to_host(), {track, pose}));
   });
 }
 
@@ -203,18 +203,19 @@ TEST_CASE("greedy reports: the MRBM's health is of a hundred pairs evenly over a
     some_track.row(static_cast<Eigen::Index>(i)) = track.row(at + kLookAhead);
     some_pose.row(static_cast<Eigen::Index>(i)) = pose.row(at);
   }
-  MrbmParameters initial = MrbmParameters::random(4, 5, 6, 2.0, {.seed = 3});
+  const MrbmParameters initial = MrbmParameters::random(two_modalities(4, 5, 6), 2.0, {.seed = 3});
   on_every_device([&](Device& device) {
     std::vector<EpochReport> reports;
-    const Mrbm mrbm = train_mrbm(device, Sequences::from_host(device, {track}),
-                                 Sequences::from_host(device, {pose}), initial, settings, 5,
+    const std::vector<Sequences> codes{Sequences::from_host(device, {track}),
+                                       Sequences::from_host(device, {pose})};
+    const Mrbm mrbm = train_mrbm(device, codes, initial, settings, 5,
                                  [&](const EpochReport& report) { reports.push_back(report); });
     REQUIRE(reports.size() == 1);
     CHECK(reports.front().stage == "mrbm");
     REQUIRE(reports.front().health.has_value());
-    check_health(*reports.front().health, mrbm_health(mrbm.to_host(), some_track, some_pose));
+    check_health(*reports.front().health, mrbm_health(mrbm.to_host(), {some_track, some_pose}));
     CHECK(reports.front().health->hidden_activity !=
-          doctest::Approx(mrbm_health(mrbm.to_host(), track.topRows(kPairs), pose.topRows(kPairs))
+          doctest::Approx(mrbm_health(mrbm.to_host(), {track.topRows(kPairs), pose.topRows(kPairs)})
                               .hidden_activity)
               .epsilon(1e-4));
   });

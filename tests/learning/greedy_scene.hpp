@@ -136,8 +136,8 @@ inline LearningSettings settings_of(const reference::GreedyPlan& plan) {
 
 inline Mcdbn train_on_device(Device& device, const GreedyScene& scene,
                              const EpochObserver& observer = {}, const Mcdbn* start = nullptr) {
-  return train_greedy(device, MatrixSource(scene.tracks, scene.poses), settings_of(scene.plan),
-                      observer, start);
+  const MatrixSource source({{"track", scene.tracks}, {"pose", scene.poses}});
+  return train_greedy(device, source, settings_of(scene.plan), observer, start);
 }
 
 inline std::vector<MatrixD> in_double(const std::vector<MatrixF>& clips) {
@@ -162,8 +162,8 @@ inline reference::GreedyMachine machine_in_double(const Mcdbn& model) {
     }
     return layers;
   };
-  machine.track = layers_of(model.track);
-  machine.pose = layers_of(model.pose);
+  machine.track = layers_of(model.cdbns[0]);
+  machine.pose = layers_of(model.cdbns[1]);
   machine.mrbm = in_double(model.mrbm.to_host());
   return machine;
 }

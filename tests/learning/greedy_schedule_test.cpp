@@ -36,9 +36,9 @@ Mcdbn made_up_machine(Device& device, const GreedyScene& scene) {
   };
   Cdbn track = cdbn(scene.tracks.front().cols()), pose = cdbn(scene.poses.front().cols());
   MrbmParameters p =
-      MrbmParameters::random(settings.hidden, settings.hidden, settings.mrbm_hidden, 1.0, {});
+      MrbmParameters::zeros(two_modalities(settings.hidden, settings.hidden, settings.mrbm_hidden));
   for (MatrixF* matrix : {&p.W[0], &p.W[1], &p.a[0], &p.a[1], &p.b}) fill(*matrix, 0.5F);
-  return {std::move(track), std::move(pose), Mrbm(device, p)};
+  return {{std::move(track), std::move(pose)}, Mrbm(device, p)};
 }
 
 void check_layers(const Cdbn& cdbn, Eigen::Index dimension, const reference::GreedyPlan& plan) {
@@ -58,8 +58,8 @@ void check_training(const GreedyScene& scene) {
   REQUIRE(want.closest_draw > kClosestDraw);
   on_every_device([&](Device& device) {
     const Mcdbn got = train_on_device(device, scene);
-    check_layers(got.pose, scene.poses.front().cols(), scene.plan);
-    check_layers(got.track, scene.tracks.front().cols(), scene.plan);
+    check_layers(got.cdbns[1], scene.poses.front().cols(), scene.plan);
+    check_layers(got.cdbns[0], scene.tracks.front().cols(), scene.plan);
     CHECK(got.look_ahead == static_cast<std::size_t>(scene.plan.look_ahead));
     CHECK(got.mean_field_steps == static_cast<std::size_t>(scene.plan.mrbm.mean_field_steps));
     CHECK(got.fills_gaps);

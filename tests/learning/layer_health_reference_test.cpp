@@ -125,11 +125,10 @@ TEST_CASE("layer health is of sixteen windows and ten free frames") {
 }
 
 TEST_CASE("saturation counts probabilities below 0.01 and above 0.99, no others") {
-  MrbmParameters p;
-  p.W = {MatrixF::Zero(1, 6), MatrixF::Zero(1, 6)};
-  p.b.resize(1, 6);  // σ: 0.0089, 0.0110, 0.5, 0.9890, 0.9911, 0.9999
+  MrbmParameters p = MrbmParameters::zeros(two_modalities(1, 1, 6));
+  // σ: 0.0089, 0.0110, 0.5, 0.9890, 0.9911, 0.9999
   p.b << -4.7F, -4.5F, 0, 4.5F, 4.7F, 9.2F;
-  const LayerHealth health = mrbm_health(p, MatrixF::Zero(2, 1), MatrixF::Zero(2, 1));
+  const LayerHealth health = mrbm_health(p, {MatrixF::Zero(2, 1), MatrixF::Zero(2, 1)});
   CHECK(health.saturation == doctest::Approx(3.0 / 6));
   CHECK(!health.weight_norm_A);
   CHECK(!health.weight_norm_B);

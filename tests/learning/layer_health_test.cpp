@@ -71,15 +71,14 @@ TEST_CASE("crbm_health: binary units, and no window at all") {
 }
 
 TEST_CASE("mrbm_health sees both modalities") {
-  MrbmParameters parameters;
+  MrbmParameters parameters = MrbmParameters::zeros({{{"track", 2}, {"pose", 1}}, 1});
   parameters.W = {MatrixF::Constant(2, 1, 1), MatrixF::Constant(1, 1, -2)};
-  parameters.b = MatrixF::Zero(1, 1);
   const MatrixF track = MatrixF::Ones(3, 2), pose = MatrixF::Ones(3, 1);
-  CHECK(mrbm_health(parameters, track, pose).hidden_activity == doctest::Approx(0.5));
-  CHECK(mrbm_health(parameters, track, 0 * pose).hidden_activity ==
+  CHECK(mrbm_health(parameters, {track, pose}).hidden_activity == doctest::Approx(0.5));
+  CHECK(mrbm_health(parameters, {track, 0 * pose}).hidden_activity ==
         doctest::Approx(1 / (1 + std::exp(-2.0))));
-  CHECK(mrbm_health(parameters, track, pose).weight_norm == doctest::Approx(std::sqrt(6.0)));
-  CHECK(!mrbm_health(parameters, track, pose).free_run_error);
+  CHECK(mrbm_health(parameters, {track, pose}).weight_norm == doctest::Approx(std::sqrt(6.0)));
+  CHECK(!mrbm_health(parameters, {track, pose}).free_run_error);
 }
 
 }  // namespace mcdbn

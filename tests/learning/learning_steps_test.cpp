@@ -158,13 +158,13 @@ struct MrbmScene {
   MrbmScene(std::size_t track, std::size_t pose, std::size_t hidden) {
     codes = {((random_matrix(kFrames, track, 1).array() + 1) / 2).matrix(),
              ((random_matrix(kFrames, pose, 2).array() + 1) / 2).matrix()};
-    start.W = {random_matrix(track, hidden, 3), random_matrix(pose, hidden, 4)};
-    start.a = {random_matrix(1, track, 5), random_matrix(1, pose, 6)};
-    start.b = random_matrix(1, hidden, 7);
+    start = mrbm_of({random_matrix(track, hidden, 3), random_matrix(pose, hidden, 4)},
+                    {random_matrix(1, track, 5), random_matrix(1, pose, 6)},
+                    random_matrix(1, hidden, 7));
   }
 
-  std::array<MatrixD, 2> batch(std::size_t step) const {
-    std::array<MatrixD, 2> result;
+  std::vector<MatrixD> batch(std::size_t step) const {
+    std::vector<MatrixD> result(2);
     for (std::size_t m = 0; m < 2; ++m) {
       result[m].resize(kBatch, codes[m].cols());
       for (std::size_t r = 0; r < kBatch; ++r)
@@ -196,7 +196,8 @@ MrbmWanted wanted(const MrbmScene& scene) {
     const auto batch = scene.batch(step);
     std::array<double, 2> losses{};
     for (int present = 0; present < 2; ++present) {
-      const auto trace = reference::mean_field(want.model, present, batch[present], options);
+      const auto trace =
+          reference::mean_field(want.model, static_cast<std::size_t>(1 - present), batch, options);
       losses[1 - present] =
           reference::cross_entropy_of_sigmoid(batch[1 - present], trace.missing_input) /
           static_cast<double>(batch[1 - present].size());
@@ -223,8 +224,9 @@ void check_multi_prediction(const MrbmScene& scene, const MrbmWanted& want, Mrbm
   const IndexBuffer index(device, scene.rows);
   LossAccumulator losses(device, 2, kBatch);
   for (std::size_t step = 0; step < kSteps; ++step) {
-    trainer.step(Rows::indexed(track, index, step * kBatch, kBatch, kLookAhead),
-                 Rows::indexed(pose, index, step * kBatch, kBatch), adam_rule(step), losses);
+    trainer.step({Rows::indexed(track, index, step * kBatch, kBatch, kLookAhead),
+                  Rows::indexed(pose, index, step * kBatch, kBatch)},
+                 adam_rule(step), losses);
     const auto got = losses.read_and_reset();
     for (std::size_t direction = 0; direction < 2; ++direction)
       CHECK(std::abs(got.at(direction) - want.losses[step][direction]) <= 10 * kTolerance);

@@ -23,10 +23,10 @@ class Scene {
  public:
   explicit Scene(const MrbmCase& shape) : shape_(shape) {
     const float scale = 1.0F / std::sqrt(static_cast<float>(shape.hidden));
-    parameters.W = {random_matrix(shape.track, shape.hidden, 1, scale),
-                    random_matrix(shape.pose, shape.hidden, 2, scale)};
-    parameters.a = {random_matrix(1, shape.track, 3), random_matrix(1, shape.pose, 4)};
-    parameters.b = random_matrix(1, shape.hidden, 5);
+    parameters = mrbm_of({random_matrix(shape.track, shape.hidden, 1, scale),
+                          random_matrix(shape.pose, shape.hidden, 2, scale)},
+                         {random_matrix(1, shape.track, 3), random_matrix(1, shape.pose, 4)},
+                         random_matrix(1, shape.hidden, 5));
     for (std::size_t m = 0; m < 2; ++m)
       codes[m] = (random_matrix(shape.batch, m == 0 ? shape.track : shape.pose,
                                 6 + static_cast<unsigned>(m))
@@ -40,9 +40,7 @@ class Scene {
     return reference::bounded_multi_prediction(reference::BoundedMrbm::exact(model()), batch(),
                                                shape_.steps);
   }
-  std::array<MatrixD, 2> batch() const {
-    return {codes[0].cast<double>(), codes[1].cast<double>()};
-  }
+  std::vector<MatrixD> batch() const { return {codes[0].cast<double>(), codes[1].cast<double>()}; }
   reference::MeanFieldOptions options() const { return {shape_.steps, false}; }
 
   struct Trained {
@@ -65,10 +63,10 @@ class Scene {
     Mrbm still(device, parameters);
     MultiPrediction gradient(still, shape_.batch, settings, OptimizerKind::none);
     LossAccumulator losses(device, 2, shape_.batch);
-    gradient.step(every_row(track), every_row(pose), rule, losses);
+    gradient.step({every_row(track), every_row(pose)}, rule, losses);
     losses.read_and_reset();
     MultiPrediction trainer(mrbm, shape_.batch, settings);
-    for (int i = 0; i < steps; ++i) trainer.step(every_row(track), every_row(pose), rule, losses);
+    for (int i = 0; i < steps; ++i) trainer.step({every_row(track), every_row(pose)}, rule, losses);
     return {gradient.gradients(), mrbm.to_host(), losses.read_and_reset()};
   }
 
@@ -166,7 +164,8 @@ TEST_CASE("small: multi-prediction wants mini-batches of the size that it was ma
     LossAccumulator losses(device, 2, 4);
     const Matrix track = Matrix::from_host(device, scene.codes[0]);
     const Matrix pose = Matrix::from_host(device, scene.codes[1]);
-    CHECK_THROWS_AS(trainer.step(track, pose, UpdateRule::adam(), losses), ShapeError);
-    CHECK_THROWS_AS(trainer.step(track, Rows(pose, 0, 2), UpdateRule::adam(), losses), ShapeError);
+    CHECK_THROWS_AS(trainer.step({track, pose}, UpdateRule::adam(), losses), ShapeError);
+    CHECK_THROWS_AS(trainer.step({track, Rows(pose, 0, 2)}, UpdateRule::adam(), losses),
+                    ShapeError);
   });
 }

@@ -13,6 +13,8 @@ using namespace mcdbn::test;
 namespace {
 
 constexpr std::size_t kTrack = 7, kPose = 9;
+const std::vector<Modality> kModalities{{"track", kTrack, VisibleKind::gaussian},
+                                        {"pose", kPose, VisibleKind::gaussian}};
 
 LearningSettings settings() {
   LearningSettings config;
@@ -54,7 +56,7 @@ double largest(const MatrixD& difference) {
 TEST_CASE("the start of fine-tuning: every matrix drawn on its own, at the size that was meant") {
   const LearningSettings config = settings();
   on_every_device([&](Device& device) {
-    const Mcdbn start = random_start(device, kTrack, kPose, config);
+    const Mcdbn start = random_start(device, kModalities, config);
     CHECK(start.look_ahead == 4);
     CHECK(start.mean_field_steps == 3);
     const reference::UnrolledModel own = in_double(on_host(start)),
@@ -69,7 +71,7 @@ TEST_CASE("the start of fine-tuning: every matrix drawn on its own, at the size 
         const reference::Crbm& got = middle.stacks[m][i];
         CAPTURE(m);
         CAPTURE(i);
-        CHECK(start.cdbn(m == 0 ? Modality::track : Modality::pose).layers[i].shape().kind ==
+        CHECK(start.cdbns[m].layers[i].shape().kind ==
               (i == 0 ? VisibleKind::gaussian : VisibleKind::binary));
         CHECK(largest(got.weights - want.weights) < 1e-6);
         CHECK(largest(got.visible_history - want.visible_history) < 1e-6);
@@ -79,8 +81,9 @@ TEST_CASE("the start of fine-tuning: every matrix drawn on its own, at the size 
         CHECK(largest(got.hidden_bias) < 1e-5);
       }
     }
-    const MrbmParameters drawn = MrbmParameters::random(
-        config.hidden, config.hidden, config.mrbm_hidden, 1.0, {config.seed, 0, 195, 0});
+    const MrbmParameters drawn =
+        MrbmParameters::random(two_modalities(config.hidden, config.hidden, config.mrbm_hidden),
+                               1.0, {config.seed, 0, 195, 0});
     const double shared = 1.0 / std::sqrt(static_cast<double>(config.hidden));
     for (const std::size_t m : {0, 1}) {
       MatrixD want = shared * drawn.W[m].cast<double>();
@@ -96,12 +99,12 @@ TEST_CASE("the start of fine-tuning: every matrix drawn on its own, at the size 
 TEST_CASE("another seed, another start") {
   const LearningSettings config = settings();
   on_every_device([&](Device& device) {
-    const Mcdbn first = random_start(device, kTrack, kPose, config);
+    const Mcdbn first = random_start(device, kModalities, config);
     LearningSettings other = config;
     other.seed = 78;
-    const Mcdbn second = random_start(device, kTrack, kPose, other);
-    CHECK(first.pose.layers[1].W.to_host() != second.pose.layers[1].W.to_host());
+    const Mcdbn second = random_start(device, kModalities, other);
+    CHECK(first.cdbns[1].layers[1].W.to_host() != second.cdbns[1].layers[1].W.to_host());
     CHECK(first.mrbm.W[0].to_host() != second.mrbm.W[0].to_host());
-    CHECK(first.track.layers[0].W.to_host() != second.track.layers[0].W.to_host());
+    CHECK(first.cdbns[0].layers[0].W.to_host() != second.cdbns[0].layers[0].W.to_host());
   });
 }

@@ -38,6 +38,7 @@ inline NetworkParameters random_network(const std::array<std::size_t, 2>& visibl
                                         const std::array<std::vector<LayerSize>, 2>& sizes,
                                         std::size_t shared, unsigned seed) {
   NetworkParameters network;
+  network.mrbm.shape = two_modalities(sizes[0].back().hidden, sizes[1].back().hidden, shared);
   for (std::size_t m = 0; m < 2; ++m) {
     std::size_t below = visible[m];
     for (const LayerSize& size : sizes[m]) {
@@ -47,8 +48,8 @@ inline NetworkParameters random_network(const std::array<std::size_t, 2>& visibl
           seed += 10));
       below = size.hidden;
     }
-    network.mrbm.W[m] = random_matrix(below, shared, seed += 10, 0.8F);
-    network.mrbm.a[m] = random_matrix(1, below, seed += 10, 0.5F);
+    network.mrbm.W.push_back(random_matrix(below, shared, seed += 10, 0.8F));
+    network.mrbm.a.push_back(random_matrix(1, below, seed += 10, 0.5F));
   }
   network.mrbm.b = random_matrix(1, shared, seed += 10, 0.5F);
   return network;
@@ -56,24 +57,26 @@ inline NetworkParameters random_network(const std::array<std::size_t, 2>& visibl
 
 inline Mcdbn on_device(Device& device, const NetworkParameters& parameters, std::size_t look_ahead,
                        std::size_t mean_field_steps) {
-  Mcdbn network{{}, {}, Mrbm(device, parameters.mrbm), look_ahead, mean_field_steps};
-  for (const Modality modality : {Modality::track, Modality::pose})
-    for (const CrbmParameters& layer : parameters.stacks[index_of(modality)])
-      network.cdbn(modality).layers.emplace_back(device, layer);
+  Mcdbn network{std::vector<Cdbn>(2), Mrbm(device, parameters.mrbm), look_ahead, mean_field_steps};
+  for (const std::size_t modality : {modality::track, modality::pose})
+    for (const CrbmParameters& layer : parameters.stacks[modality])
+      network.cdbns[modality].layers.emplace_back(device, layer);
   return network;
 }
 
 inline NetworkParameters on_host(const Mcdbn& network) {
   NetworkParameters parameters;
-  for (const Modality modality : {Modality::track, Modality::pose})
-    for (const Crbm& layer : network.cdbn(modality).layers)
-      parameters.stacks[index_of(modality)].push_back(layer.to_host());
+  for (const std::size_t modality : {modality::track, modality::pose})
+    for (const Crbm& layer : network.cdbns[modality].layers)
+      parameters.stacks[modality].push_back(layer.to_host());
   parameters.mrbm = network.mrbm.to_host();
   return parameters;
 }
 
 inline reference::UnrolledModel in_double(const NetworkParameters& parameters) {
   reference::UnrolledModel model;
+  model.stacks.resize(2);
+  model.start.resize(2);
   for (std::size_t m = 0; m < 2; ++m) {
     for (const CrbmParameters& own : parameters.stacks[m]) {
       model.stacks[m].push_back(in_double(own));

@@ -33,7 +33,8 @@ std::vector<std::int32_t> rows_of(const Clips& clips, const LearningSettings& co
                                   std::size_t step) {
   std::vector<MatrixF> frames;
   for (const Eigen::Index count : clips.frames) frames.push_back(MatrixF::Zero(count, 1));
-  return WindowSampler({frames, frames, clips.people}, kWindows, config).rows(step);
+  return WindowSampler({{{"one", frames}, {"other", frames}}, clips.people}, kWindows, config)
+      .rows(step);
 }
 
 /// The same by the reference: clips whose only value is the number of their row.

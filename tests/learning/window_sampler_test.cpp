@@ -10,13 +10,13 @@ using namespace mcdbn;
 namespace {
 
 /// Three clips, the first two of one person: 60 + 40 frames against 20.
-PairedClips three_clips() {
+SynchronizedClips three_clips() {
   static const std::vector<MatrixF> tracks = {MatrixF::Zero(60, 4), MatrixF::Zero(40, 4),
                                               MatrixF::Zero(20, 4)};
   static const std::vector<MatrixF> poses = {MatrixF::Zero(60, 6), MatrixF::Zero(40, 6),
                                              MatrixF::Zero(20, 6)};
   static const std::vector<std::size_t> people = {0, 0, 1};
-  return {tracks, poses, people};
+  return {{{"track", tracks}, {"pose", poses}}, people};
 }
 
 constexpr SequenceWindows kWindows{.count = 50, .frames = 12, .first = 4, .lead = 6};

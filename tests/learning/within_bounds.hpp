@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "machines/two_modalities.hpp"
 #include "mcdbn/machines/crbm.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 #include "reference/crbm_error_bound.hpp"
@@ -23,9 +24,14 @@ inline reference::Crbm in_double(const CrbmParameters& p) {
 }
 
 inline reference::Mrbm in_double(const MrbmParameters& p) {
-  return {{p.W[0].cast<double>(), p.W[1].cast<double>()},
-          {p.a[0].cast<double>(), p.a[1].cast<double>()},
-          p.b.cast<double>()};
+  reference::Mrbm mrbm;
+  for (std::size_t m = 0; m < p.W.size(); ++m) {
+    mrbm.weights.push_back(p.W[m].cast<double>());
+    mrbm.visible_bias.push_back(p.a[m].cast<double>());
+    mrbm.gaussian.push_back(p.shape.modalities[m].kind == VisibleKind::gaussian);
+  }
+  mrbm.hidden_bias = p.b.cast<double>();
+  return mrbm;
 }
 
 inline void check_within(const char* name, const MatrixF& got, const reference::Bounded& want) {
@@ -46,10 +52,11 @@ inline void check_within(const CrbmParameters& got, const reference::BoundedCrbm
 }
 
 inline void check_within(const MrbmParameters& got, const reference::BoundedMrbm& want) {
-  check_within("W of the track", got.W[0], want.weights[0]);
-  check_within("W of the pose", got.W[1], want.weights[1]);
-  check_within("a of the track", got.a[0], want.visible_bias[0]);
-  check_within("a of the pose", got.a[1], want.visible_bias[1]);
+  REQUIRE(got.W.size() == want.weights.size());
+  for (std::size_t m = 0; m < got.W.size(); ++m) {
+    check_within(("W of modality " + std::to_string(m)).c_str(), got.W[m], want.weights[m]);
+    check_within(("a of modality " + std::to_string(m)).c_str(), got.a[m], want.visible_bias[m]);
+  }
   check_within("b", got.b, want.hidden_bias);
 }
 

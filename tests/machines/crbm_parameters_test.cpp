@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
+#include "machines/two_modalities.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/crbm.hpp"
 #include "mcdbn/machines/mrbm.hpp"
@@ -177,12 +178,12 @@ TEST_CASE("small: an MRBM's parameters come back from the device, each modality 
   on_every_device([](Device& device) {
     for (const auto& [track, pose, hidden] :
          std::vector<std::array<std::size_t, 3>>{{5, 5, 5}, {16, 16, 16}, {3, 7, 19}, {9, 1, 2}}) {
-      const MrbmParameters want{{random_matrix(track, hidden, 1), random_matrix(pose, hidden, 2)},
-                                {random_matrix(1, track, 3), random_matrix(1, pose, 4)},
-                                random_matrix(1, hidden, 5)};
+      const MrbmParameters want = mrbm_of(
+          {random_matrix(track, hidden, 1), random_matrix(pose, hidden, 2)},
+          {random_matrix(1, track, 3), random_matrix(1, pose, 4)}, random_matrix(1, hidden, 5));
       const Mrbm mrbm(device, want);
-      CHECK(mrbm.visible(Modality::track) == track);
-      CHECK(mrbm.visible(Modality::pose) == pose);
+      CHECK(mrbm.visible(modality::track) == track);
+      CHECK(mrbm.visible(modality::pose) == pose);
       CHECK(mrbm.hidden() == hidden);
       const MrbmParameters got = mrbm.to_host();
       for (std::size_t m = 0; m < 2; ++m) {
@@ -197,7 +198,7 @@ TEST_CASE("small: an MRBM's parameters come back from the device, each modality 
 
 TEST_CASE("small: an MRBM's parameters that do not fit together are refused") {
   on_every_device([](Device& device) {
-    const MrbmParameters whole = MrbmParameters::random(4, 6, 5, 1.0, {});
+    const MrbmParameters whole = MrbmParameters::random(two_modalities(4, 6, 5), 1.0, {});
     MrbmParameters turned = whole;
     std::swap(turned.a[0], turned.a[1]);
     CHECK_THROWS_AS(Mrbm(device, turned), ShapeError);
@@ -211,7 +212,7 @@ TEST_CASE("small: an MRBM's parameters that do not fit together are refused") {
 }
 
 TEST_CASE("random MRBM weights: each modality has draws of its own") {
-  const MrbmParameters p = MrbmParameters::random(4, 4, 3, 0.5, {8, 6, 2, 5});
+  const MrbmParameters p = MrbmParameters::random(two_modalities(4, 4, 3), 0.5, {8, 6, 2, 5});
   for (std::uint32_t m = 0; m < 2; ++m) {
     CHECK((p.a[m] == MatrixF::Zero(1, 4)));
     const RandomKey own{8, m, 2, 1};  // the step is the modality
@@ -225,13 +226,13 @@ TEST_CASE("random MRBM weights: each modality has draws of its own") {
 TEST_CASE("small: inference of the MRBM is so many steps from the modality that is present") {
   on_every_device([](Device& device) {
     // Alike in size, so that a modality in the other's place would fit.
-    const MrbmParameters p{{random_matrix(5, 4, 1, 2.0F), random_matrix(5, 4, 2, 2.0F)},
-                           {random_matrix(1, 5, 3), random_matrix(1, 5, 4)},
-                           random_matrix(1, 4, 5)};
+    const MrbmParameters p =
+        mrbm_of({random_matrix(5, 4, 1, 2.0F), random_matrix(5, 4, 2, 2.0F)},
+                {random_matrix(1, 5, 3), random_matrix(1, 5, 4)}, random_matrix(1, 4, 5));
     const Mrbm mrbm(device, p);
     const MatrixF codes = (0.5F * (random_matrix(6, 5, 6).array() + 1.0F)).matrix();
     const Matrix present = Matrix::from_host(device, codes), absent(device, 6, 5);
-    for (const Modality modality : {Modality::track, Modality::pose})
+    for (const std::size_t modality : {modality::track, modality::pose})
       for (const std::size_t steps : {0U, 1U, 2U, 7U})
         for (const bool doubled : {false, true}) {
           const reference::ClampedChain mean_field{std::max(static_cast<int>(steps), 1), 0.0,
@@ -240,8 +241,8 @@ TEST_CASE("small: inference of the MRBM is so many steps from the modality that 
               {{p.W[0].cast<double>(), p.W[1].cast<double>()},
                {p.a[0].cast<double>(), p.a[1].cast<double>()},
                p.b.cast<double>()},
-              static_cast<int>(index_of(modality)), codes.cast<double>(), mean_field, {});
-          mrbm.infer(modality, present, steps, absent, doubled);
+              static_cast<int>(modality), codes.cast<double>(), mean_field, {});
+          mrbm.infer(in_order(modality, present, absent), only(modality), steps, doubled);
           CHECK(misfit(absent.to_host(), want.value, want.bound) == "");
         }
   });

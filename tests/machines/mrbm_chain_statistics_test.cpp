@@ -4,6 +4,7 @@
 
 #include "device/every_device.hpp"
 #include "machines/mrbm_chain.hpp"
+#include "machines/two_modalities.hpp"
 #include "reference/mrbm_chain_reference.hpp"
 
 using namespace mcdbn;
@@ -15,10 +16,9 @@ constexpr std::size_t kTrack = 3, kPose = 4, kHidden = 3, kRows = 40'000;
 
 const MrbmParameters& parameters() {
   // Weights so large that the first step's distribution is not the stationary one.
-  static const MrbmParameters drawn{
+  static const MrbmParameters drawn = mrbm_of(
       {random_matrix(kTrack, kHidden, 1, 2.0F), random_matrix(kPose, kHidden, 2, 3.0F)},
-      {random_matrix(1, kTrack, 3), random_matrix(1, kPose, 4)},
-      random_matrix(1, kHidden, 5)};
+      {random_matrix(1, kTrack, 3), random_matrix(1, kPose, 4)}, random_matrix(1, kHidden, 5));
   return drawn;
 }
 
@@ -75,24 +75,25 @@ TEST_CASE("enumeration: p(h | present) is what the clamped chain leaves as it is
 }
 
 TEST_CASE("the sampled clamped chain's states are distributed as enumeration says") {
-  for (const Modality present : {Modality::track, Modality::pose}) {
-    const std::size_t units = present == Modality::track ? kTrack : kPose;
+  for (const std::size_t present : {modality::track, modality::pose}) {
+    const std::size_t units = present == modality::track ? kTrack : kPose;
     const MatrixF row = (0.5F * (random_matrix(1, units, 6).array() + 1.0F)).matrix();
-    const auto states = reference::enumerate_hidden(model(), static_cast<int>(index_of(present)),
-                                                    row.cast<double>());
+    const auto states =
+        reference::enumerate_hidden(model(), static_cast<int>(present), row.cast<double>());
     const double bound = share_bound(states.start.size());
     REQUIRE(distance(states.start, states.stationary) > 4.0 * bound);  // else k would not matter
     on_every_device([&](Device& device) {
       const Mrbm mrbm(device, parameters());
       const Matrix codes = Matrix::filled_with_row(Matrix::from_host(device, row), kRows);
       const Matrix absent(device, kRows, mrbm.visible(other(present)));
-      MrbmChain chain(mrbm, present, kRows);
+      MrbmChain chain(mrbm, only(present), kRows);
       RowVectorD want = states.start;
       for (std::size_t steps = 1; steps <= 40; ++steps, want = want * states.transition) {
         if (steps > 2 && steps < 40) continue;
         CAPTURE(steps);
         const RandomKey key{11, static_cast<std::uint32_t>(steps), 1, 0};
-        chain.run(codes, {.steps = steps, .temperature = 1.0F, .random = key}, absent);
+        chain.run(in_order(present, codes, absent),
+                  {.steps = steps, .temperature = 1.0F, .random = key});
         const MatrixF got = absent.to_host();
         const RowVectorD shares = hidden_shares(got, states);
         CHECK(distance(shares, want) < bound);

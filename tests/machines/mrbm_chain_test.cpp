@@ -8,6 +8,7 @@
 
 #include "device/every_device.hpp"
 #include "device/gemm.hpp"
+#include "machines/two_modalities.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
 #include "reference/mrbm_chain_reference.hpp"
@@ -26,12 +27,14 @@ struct Case {
 const std::vector<Case> kSmallCases = {{1, 1, 1, 1, 1}, {4, 3, 7, 3, 5}, {17, 13, 1, 13, 3}};
 const std::vector<Case> kCases = {{33, 17, 257, 29, 3}, {300, 300, 150, 103, 3}};
 const Case kOddCase{17, 33, 19, 29, 3};
-constexpr std::array<Modality, 2> kModalities{Modality::track, Modality::pose};
+constexpr std::array<std::size_t, 2> kModalities{modality::track, modality::pose};
 constexpr std::uint64_t kSeed = 0x123456789ABCDEFULL;
 
 /// An MRBM and codes to clamp, the same every time.
 struct Problem {
-  explicit Problem(const Case& test) : test(test) {
+  explicit Problem(const Case& test)
+      : test(test),
+        parameters(MrbmParameters::zeros(two_modalities(test.track, test.pose, test.hidden))) {
     const float scale = 1.0F / std::sqrt(static_cast<float>(test.hidden));
     const std::array<std::size_t, 2> visible{test.track, test.pose};
     for (std::size_t m = 0; m < 2; ++m) {
@@ -53,14 +56,13 @@ struct Problem {
     return {test.steps, temperature, doubled, Sampling::bernoulli, {kSeed, 7, 3, 0}};
   }
 
-  Bounded want(Modality present, const MrbmChainOptions& options) const {
-    const MatrixD values = codes[index_of(present)].cast<double>();
+  Bounded want(std::size_t present, const MrbmChainOptions& options) const {
+    const MatrixD values = codes[present].cast<double>();
     const reference::ClampedChain chain{static_cast<int>(options.steps),
                                         static_cast<double>(options.temperature), options.doubled,
                                         options.sampling == Sampling::concrete};
     return reference::bounded_clamped_chain(
-        model(), static_cast<int>(index_of(present)), values, chain,
-        [&](int pass, Eigen::Index units) {
+        model(), static_cast<int>(present), values, chain, [&](int pass, Eigen::Index units) {
           RandomKey key = options.random;
           key.phase = static_cast<std::uint16_t>(pass);
           MatrixD u(values.rows(), units);
@@ -78,18 +80,19 @@ struct Problem {
 };
 
 std::optional<RowTile> chosen_tile(Device& device, const Problem& problem) {
-  return MrbmChain(Mrbm(device, problem.parameters), Modality::track, problem.test.rows).tile();
+  return MrbmChain(Mrbm(device, problem.parameters), only(modality::track), problem.test.rows)
+      .tile();
 }
 
 /// Into rows between guards; nothing around them may change.
-MatrixF run(Device& device, const Problem& problem, Modality present,
+MatrixF run(Device& device, const Problem& problem, std::size_t present,
             const MrbmChainOptions& options, const std::optional<RowTile>& tile) {
   const Mrbm mrbm(device, problem.parameters);
-  const Matrix codes = Matrix::from_host(device, problem.codes[index_of(present)]);
-  MrbmChain chain(mrbm, present, problem.test.rows, tile);
+  const Matrix codes = Matrix::from_host(device, problem.codes[present]);
+  MrbmChain chain(mrbm, only(present), problem.test.rows, tile);
   const GuardedBlock absent(device, problem.test.rows, mrbm.visible(other(present)));
   const auto before = device.launch_count();
-  chain.run(codes, options, absent.rows());
+  chain.run(in_order(present, codes, absent.rows()), options);
   if (tile) CHECK(device.launch_count() - before == 1);
   CHECK(absent.intact());
   return absent.values();
@@ -112,10 +115,10 @@ double check_rows(const MatrixF& got, const Bounded& want) {
 void check_against_reference(Device& device, const std::vector<Case>& cases, float temperature,
                              bool doubled = false, Sampling sampling = Sampling::bernoulli) {
   for (const Case& test : cases)
-    for (const Modality present : kModalities) {
+    for (const std::size_t present : kModalities) {
       const Problem problem(test);
       INFO(test.track, " + ", test.pose, " / ", test.hidden, ", rows ", test.rows, ", present ",
-           index_of(present), ", temperature ", temperature);
+           present, ", temperature ", temperature);
       MrbmChainOptions options = problem.options(temperature, doubled);
       options.sampling = sampling;
       const Bounded want = problem.want(present, options);
@@ -167,10 +170,10 @@ TEST_CASE("every tile of the clamped chain gives the same bits") {
   on_every_device([](Device& device) {
     const Problem problem(kOddCase);
     const MrbmChainOptions options = problem.options(0.5F);
-    const MatrixF want = run(device, problem, Modality::pose, options, RowTile{});
-    CHECK(check_rows(want, problem.want(Modality::pose, options)) >= 0.5);
+    const MatrixF want = run(device, problem, modality::pose, options, RowTile{});
+    CHECK(check_rows(want, problem.want(modality::pose, options)) >= 0.5);
     const auto check = [&](const std::optional<RowTile>& tile) {
-      CHECK(run(device, problem, Modality::pose, options, tile) == want);
+      CHECK(run(device, problem, modality::pose, options, tile) == want);
     };
     for (const RowTile& tile : {RowTile{16, 7, 2, 1, 8}, RowTile{8, 14, 1, 1, 4},
                                 RowTile{4, 4, 1, 32, 4}, RowTile{1, 3, 1, 64, 16}}) {
@@ -202,17 +205,17 @@ TEST_CASE("small: rows by index, by step, fewer than the chain was made for") {
     const Matrix all = Matrix::from_host(device, spread);
     const IndexBuffer index(device, {99, 1, 4, 7});
     for (const auto& tile : {chosen_tile(device, problem), std::optional<RowTile>()}) {
-      const MatrixF want = run(device, problem, Modality::track, options, tile);
-      MrbmChain chain(mrbm, Modality::track, 11, tile);
+      const MatrixF want = run(device, problem, modality::track, options, tile);
+      MrbmChain chain(mrbm, {true, false}, 11, tile);
       Matrix absent(device, 9, 3);
-      chain.run(Rows::indexed(all, index, 1, 3, 1), options, Rows::strided(absent, 1, 3, 3));
+      chain.run({Rows::indexed(all, index, 1, 3, 1), Rows::strided(absent, 1, 3, 3)}, options);
       MatrixF got = absent.to_host();
       for (const Eigen::Index r : {0, 1, 2}) {
         CHECK(got.row(1 + 3 * r) == want.row(r));
         got.row(1 + 3 * r).setZero();
       }
       CHECK(got == MatrixF::Zero(9, 3));
-      chain.run(Rows::strided(all, 2, 3, 3), options, Rows(absent, 6, 3));
+      chain.run({Rows::strided(all, 2, 3, 3), Rows(absent, 6, 3)}, options);
       CHECK(absent.to_host().bottomRows(3) == want);
     }
   });
@@ -225,7 +228,7 @@ TEST_CASE("small: same seed, same bits; another seed, others; no temperature, no
       const auto sample = [&](float temperature, std::uint64_t seed) {
         MrbmChainOptions options = problem.options(temperature);
         options.random.seed = seed;
-        return run(device, problem, Modality::pose, options, tile);
+        return run(device, problem, modality::pose, options, tile);
       };
       CHECK(sample(1.0F, 1) == sample(1.0F, 1));
       CHECK(sample(1.0F, 1) != sample(1.0F, 2));
@@ -241,14 +244,14 @@ TEST_CASE("MRBM inference is the chain's mean field") {
     const Matrix codes = Matrix::from_host(device, problem.codes[0]);
     const Matrix pose(device, problem.test.rows, problem.test.pose);
     for (const bool doubled : {false, true}) {
-      mrbm.infer(Modality::track, codes, problem.test.steps, pose, doubled);
+      mrbm.infer({codes, pose}, {true, false}, problem.test.steps, doubled);
       const auto tile = chosen_tile(device, problem);
       CHECK(pose.to_host() ==
-            run(device, problem, Modality::track, problem.options(0.0F, doubled), tile));
+            run(device, problem, modality::track, problem.options(0.0F, doubled), tile));
     }
-    mrbm.infer(Modality::track, codes, 0, pose);  // as one step
+    mrbm.infer({codes, pose}, {true, false}, 0);  // as one step
     const MatrixF none = pose.to_host();
-    mrbm.infer(Modality::track, codes, 1, pose);
+    mrbm.infer({codes, pose}, {true, false}, 1);
     CHECK(none == pose.to_host());
   });
 }
@@ -264,13 +267,13 @@ TEST_CASE("where a row does not fit local memory the clamped chain is composed")
     spdlog::set_default_logger(logger);
     const Problem problem(test);
     const Mrbm mrbm(device, problem.parameters);
-    MrbmChain chain(mrbm, Modality::track, test.rows);
+    MrbmChain chain(mrbm, {true, false}, test.rows);
     spdlog::set_default_logger(usual);
     CHECK(messages.str().find("composed kernels instead") != std::string::npos);
     CHECK_FALSE(chain.tile());
     const Matrix codes = Matrix::from_host(device, problem.codes[0]);
     const Matrix pose(device, test.rows, test.pose);
-    chain.run(codes, problem.options(1.0F), pose);
+    chain.run({codes, pose}, problem.options(1.0F));
     CHECK(pose.to_host().allFinite());
   });
 }
@@ -279,11 +282,11 @@ TEST_CASE("small: the clamped chain refuses what it cannot do") {
   on_every_device([](Device& device) {
     const Problem problem(kSmallCases[1]);  // 4 + 3 / 7
     const Mrbm mrbm(device, problem.parameters);
-    MrbmChain chain(mrbm, Modality::track, 5);
+    MrbmChain chain(mrbm, {true, false}, 5);
     const Matrix track(device, 8, 4), pose(device, 8, 3);
     const IndexBuffer index(device, {0, 1, 2});
     const auto check = [&](const Rows& present, const Rows& absent, std::size_t steps = 1) {
-      CHECK_THROWS_AS(chain.run(present, {.steps = steps, .temperature = 1.0F}, absent),
+      CHECK_THROWS_AS(chain.run({present, absent}, {.steps = steps, .temperature = 1.0F}),
                       ShapeError);
     };
     check(Rows(pose, 0, 3), Rows(track, 0, 3));
@@ -293,7 +296,7 @@ TEST_CASE("small: the clamped chain refuses what it cannot do") {
     check(Rows(track, 0, 3), Rows::indexed(pose, index, 0, 3));
     check(Rows(track, 0, 3), Rows(pose, 0, 3), 0);
     const auto before = device.launch_count();
-    chain.run(Rows(track, 0, 0), {}, Rows(pose, 0, 0));
+    chain.run({Rows(track, 0, 0), Rows(pose, 0, 0)}, {});
     CHECK(device.launch_count() == before);
   });
 }

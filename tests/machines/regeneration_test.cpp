@@ -4,6 +4,7 @@
 
 #include "device/every_device.hpp"
 #include "machines/regeneration_reference.hpp"
+#include "machines/two_modalities.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
 
@@ -34,9 +35,9 @@ struct NetworkParameters : reference::Network {
              layer(kHidden, kTop, VisibleKind::binary, 20)};
     pose = {layer(kPose, kHidden, VisibleKind::gaussian, 30),
             layer(kHidden, kTop, VisibleKind::binary, 40)};
-    mrbm = {{random_matrix(kTop, kShared, 50, 2.0F), random_matrix(kTop, kShared, 51, 2.0F)},
-            {random_matrix(1, kTop, 52), random_matrix(1, kTop, 53)},
-            random_matrix(1, kShared, 54)};
+    mrbm = mrbm_of({random_matrix(kTop, kShared, 50, 2.0F), random_matrix(kTop, kShared, 51, 2.0F)},
+                   {random_matrix(1, kTop, 52), random_matrix(1, kTop, 53)},
+                   random_matrix(1, kShared, 54));
     look_ahead = 1;
     mean_field_steps = 3;
   }
@@ -45,7 +46,9 @@ struct NetworkParameters : reference::Network {
     Cdbn track_cdbn, pose_cdbn;
     for (const auto& p : track) track_cdbn.layers.emplace_back(device, p);
     for (const auto& p : pose) pose_cdbn.layers.emplace_back(device, p);
-    return {std::move(track_cdbn), std::move(pose_cdbn), Mrbm(device, mrbm), look_ahead,
+    return {{std::move(track_cdbn), std::move(pose_cdbn)},
+            Mrbm(device, mrbm),
+            look_ahead,
             mean_field_steps};
   }
 };
@@ -190,5 +193,64 @@ TEST_CASE("regenerate: nothing from nothing, and a track without frames is refus
     CHECK(regenerate(network, {}).empty());
     CHECK_THROWS_AS(regenerate(network, {MatrixF(0, kTrack)}), ShapeError);
     CHECK_THROWS_AS(regenerate(network, {random_matrix(3, kTrack + 1, 1)}), ShapeError);
+  });
+}
+
+TEST_CASE(
+    "the reverse direction is the forward one of the network turned round, and look-ahead late") {
+  constexpr std::size_t kLookAhead = 3;
+  NetworkParameters parameters;
+  parameters.look_ahead = kLookAhead;
+  NetworkParameters turned;
+  std::swap(turned.track, turned.pose);
+  std::swap(turned.mrbm.W[0], turned.mrbm.W[1]);
+  std::swap(turned.mrbm.a[0], turned.mrbm.a[1]);
+  turned.look_ahead = 0;
+  const MatrixF pose = random_matrix(13, kPose, 8, 1.3F);
+  MatrixF late(pose.rows() + static_cast<Eigen::Index>(kLookAhead), pose.cols());
+  late << pose.row(0).replicate(kLookAhead, 1), pose;
+  on_every_device([&](Device& device) {
+    const Mcdbn network = parameters.on(device), reversed = turned.on(device);
+    for (const double temperature : {0.0, 1.0}) {
+      RegenerationOptions options = options_with_run_in(5);
+      options.samples = 2;
+      options.temperature = temperature;
+      const auto got = regenerate(network, {{}, {pose}}, 0, options);
+      REQUIRE(got.size() == 2);
+      REQUIRE(got[0].rows() == pose.rows());
+      REQUIRE(got[0].cols() == static_cast<Eigen::Index>(kTrack));
+      if (temperature > 0.0) {
+        CHECK(got[0] != got[1]);
+        continue;
+      }
+      const auto want = regenerate(reversed, std::vector<MatrixF>{late}, options);
+      for (std::size_t i = 0; i < 2; ++i)
+        CHECK((got[i] - want[i].topRows(pose.rows())).cwiseAbs().maxCoeff() < 1e-5F);
+    }
+  });
+}
+
+TEST_CASE("a third modality whose weights are zero tells nothing; what nobody has is refused") {
+  const NetworkParameters parameters;
+  const MatrixF track = random_matrix(11, kTrack, 7), third = random_matrix(11, 4, 9);
+  MrbmParameters three = parameters.mrbm;
+  three.shape.modalities.push_back({"third", kTop});
+  three.W.emplace_back(MatrixF::Zero(kTop, kShared));
+  three.a.emplace_back(random_matrix(1, kTop, 10));
+  const CrbmParameters own = layer(4, kTop, VisibleKind::gaussian, 60);
+  on_every_device([&](Device& device) {
+    const Mcdbn two = parameters.on(device);
+    Mcdbn network = parameters.on(device);
+    network.mrbm = Mrbm(device, three);
+    network.cdbns.emplace_back().layers.emplace_back(device, own);
+    const MatrixF want = single_answer(two, track);
+    for (const auto& given : {std::vector<MatrixF>{}, std::vector<MatrixF>{third}}) {
+      const MatrixF got = regenerate(network, {{track}, {}, given}, 1).front();
+      CHECK((got - want).cwiseAbs().maxCoeff() < 1e-5F);
+    }
+    CHECK_THROWS_AS(regenerate(network, {{track}, {track}, {}}, 1), ShapeError);
+    CHECK_THROWS_AS(regenerate(network, {{track}, {}}, 1), ShapeError);
+    CHECK_THROWS_AS(regenerate(network, {{track}, {}, {third.topRows(5)}}, 1), ShapeError);
+    CHECK_THROWS_AS(regenerate(network, {{track, track}, {}, {third}}, 1), ShapeError);
   });
 }

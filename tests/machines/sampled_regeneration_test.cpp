@@ -4,6 +4,7 @@
 
 #include "device/every_device.hpp"
 #include "machines/regeneration_reference.hpp"
+#include "machines/two_modalities.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 #include "reference/error_bounds.hpp"
@@ -28,9 +29,9 @@ CrbmParameters layer(std::size_t visible, std::size_t hidden, std::size_t order,
 }
 
 MrbmParameters mrbm(std::size_t track, std::size_t pose, std::size_t hidden) {
-  return {{random_matrix(track, hidden, 50, 2.0F), random_matrix(pose, hidden, 51, 2.0F)},
-          {random_matrix(1, track, 52), random_matrix(1, pose, 53)},
-          random_matrix(1, hidden, 54)};
+  return mrbm_of({random_matrix(track, hidden, 50, 2.0F), random_matrix(pose, hidden, 51, 2.0F)},
+                 {random_matrix(1, track, 52), random_matrix(1, pose, 53)},
+                 random_matrix(1, hidden, 54));
 }
 
 constexpr VisibleKind kGaussian = VisibleKind::gaussian, kBinary = VisibleKind::binary;
@@ -54,7 +55,9 @@ Mcdbn on(Device& device, const reference::Network& network) {
   Cdbn track, pose;
   for (const auto& p : network.track) track.layers.emplace_back(device, p);
   for (const auto& p : network.pose) pose.layers.emplace_back(device, p);
-  return {std::move(track), std::move(pose), Mrbm(device, network.mrbm), network.look_ahead,
+  return {{std::move(track), std::move(pose)},
+          Mrbm(device, network.mrbm),
+          network.look_ahead,
           network.mean_field_steps};
 }
 

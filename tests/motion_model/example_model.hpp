@@ -2,6 +2,7 @@
 
 #include "device/every_device.hpp"
 #include "features/small_figure.hpp"
+#include "machines/two_modalities.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
 
 namespace mcdbn::test {
@@ -24,15 +25,15 @@ struct ExampleModel {
     pose = {layer(9, 8, 3, VisibleKind::gaussian), layer(8, 3, 2, VisibleKind::binary),
             layer(3, 6, 1, VisibleKind::binary)};
     const std::size_t hidden = n ? n : 11;
-    mrbm = {{next(track.back().shape.hidden, hidden), next(pose.back().shape.hidden, hidden)},
-            {next(1, track.back().shape.hidden), next(1, pose.back().shape.hidden)},
-            next(1, hidden)};
+    const std::size_t codes[] = {track.back().shape.hidden, pose.back().shape.hidden};
+    mrbm = mrbm_of({next(codes[0], hidden), next(codes[1], hidden)},
+                   {next(1, codes[0]), next(1, codes[1])}, next(1, hidden));
   }
 
   Model on(Device& device) const {
-    Mcdbn network{{}, {}, Mrbm(device, mrbm), 4, 6};
-    for (const CrbmParameters& p : track) network.track.layers.emplace_back(device, p);
-    for (const CrbmParameters& p : pose) network.pose.layers.emplace_back(device, p);
+    Mcdbn network{std::vector<Cdbn>(2), Mrbm(device, mrbm), 4, 6};
+    for (const CrbmParameters& p : track) network.cdbns[0].layers.emplace_back(device, p);
+    for (const CrbmParameters& p : pose) network.cdbns[1].layers.emplace_back(device, p);
     network.sampling = {.gibbs_steps = 5, .mrbm_gibbs_steps = 3, .steady = true, .scale = 0.7};
     network.fills_gaps = false;
     return {std::move(network),

@@ -114,10 +114,10 @@ TEST_CASE("fine-tuning is the reference's schedule: nothing dropped, decayed, av
   on_every_device([&](Device& device) {
     // Without the other direction nothing is learnt by what it alone has.
     const TrainedNetwork trained = small.train(device);
-    CHECK(trained.network.pose.layers[0].B.to_host() ==
-          small.start(device).pose.layers[0].B.to_host());
-    CHECK(trained.network.track.layers[0].A.to_host() ==
-          small.start(device).track.layers[0].A.to_host());
+    CHECK(trained.network.cdbns[1].layers[0].B.to_host() ==
+          small.start(device).cdbns[1].layers[0].B.to_host());
+    CHECK(trained.network.cdbns[0].layers[0].A.to_host() ==
+          small.start(device).cdbns[0].layers[0].A.to_host());
   });
 }
 

@@ -45,8 +45,10 @@ class SmallRun {
   }
 
   Mcdbn start(Device& device) const {
-    return random_start(device, static_cast<std::size_t>(data->tracks.front().cols()),
-                        static_cast<std::size_t>(data->poses.front().cols()), config);
+    return random_start(device,
+                        {{"track", static_cast<std::size_t>(data->tracks.front().cols()), VisibleKind::gaussian},
+                         {"pose", static_cast<std::size_t>(data->poses.front().cols()), VisibleKind::gaussian}},
+                        config);
   }
 
   ScratchFolder folder;
@@ -67,9 +69,9 @@ class SmallRun {
 
 bool same_bits(const Mcdbn& x, const Mcdbn& y) {
   bool same = x.mrbm.W[0].to_host() == y.mrbm.W[0].to_host();
-  for (std::size_t i = 0; i < x.pose.layers.size(); ++i)
-    same = same && x.pose.layers[i].A.to_host() == y.pose.layers[i].A.to_host() &&
-           x.track.layers[i].B.to_host() == y.track.layers[i].B.to_host();
+  for (std::size_t i = 0; i < x.cdbns[1].layers.size(); ++i)
+    same = same && x.cdbns[1].layers[i].A.to_host() == y.cdbns[1].layers[i].A.to_host() &&
+           x.cdbns[0].layers[i].B.to_host() == y.cdbns[0].layers[i].B.to_host();
   return same;
 }
 
@@ -162,8 +164,8 @@ TEST_CASE("an observer stops fine-tuning, and windows need their histories") {
     const auto stop = [](const EpochReport&) { throw InputError("enough"); };
     CHECK_THROWS_AS(fine_tune(device, start, views, run.config, stop), InputError);
     UnrolledNetwork network(device, start, run.config.fine_tuning.mean_field_steps);
-    CHECK_THROWS_AS(UnrolledPass(network, Modality::track, {4, 10, 3, 5}), ShapeError);
-    CHECK_THROWS_AS(UnrolledPass(network, Modality::track, {4, 10, 4, 10}), ShapeError);
+    CHECK_THROWS_AS(UnrolledPass(network, 1, {4, 10, 3, 5}), ShapeError);
+    CHECK_THROWS_AS(UnrolledPass(network, 1, {4, 10, 4, 10}), ShapeError);
   });
 }
 
@@ -180,9 +182,9 @@ TEST_CASE("greedy stages before fine-tuning go on from its own starting weights"
     const auto difference = [](const Matrix& a, const Matrix& b) {
       return (a.to_host() - b.to_host()).cwiseAbs().maxCoeff();
     };
-    for (const Modality modality : {Modality::track, Modality::pose}) {
+    for (const std::size_t modality : {0, 1}) {
       for (std::size_t i = 0; i < run.config.layers; ++i) {
-        const Crbm &from = start.cdbn(modality).layers[i], &to = still.cdbn(modality).layers[i];
+        const Crbm &from = start.cdbns[modality].layers[i], &to = still.cdbns[modality].layers[i];
         CHECK(difference(from.W, to.W) < 1e-5);
         CHECK(difference(from.B, to.B) < 1e-5);
         CHECK(difference(from.a, to.a) < 1e-5);
@@ -191,6 +193,6 @@ TEST_CASE("greedy stages before fine-tuning go on from its own starting weights"
     CHECK(difference(start.mrbm.W[0], still.mrbm.W[0]) < 1e-5);
     CHECK(difference(start.mrbm.a[1], still.mrbm.a[1]) < 1e-5);
     const Mcdbn alone = train_greedy(device, ClipSource(views), run.config);
-    CHECK(difference(start.pose.layers[0].W, alone.pose.layers[0].W) > 0.1);
+    CHECK(difference(start.cdbns[1].layers[0].W, alone.cdbns[1].layers[0].W) > 0.1);
   });
 }

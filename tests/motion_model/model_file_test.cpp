@@ -5,6 +5,7 @@
 #include "base/scratch_folder.hpp"
 #include "device/every_device.hpp"
 #include "features/small_figure.hpp"
+#include "machines/two_modalities.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -19,10 +20,10 @@ TEST_CASE("a model comes back from its file as it was saved") {
     };
     const CrbmParameters track = layer(5, VisibleKind::gaussian, 1),
                          pose = layer(figure.dimension(), VisibleKind::gaussian, 2);
-    const MrbmParameters mrbm = MrbmParameters::random(7, 7, 3, 0.5, {3, 0, 1, 0});
-    Mcdbn network{{}, {}, Mrbm(device, mrbm), 4, 6};
-    network.track.layers.emplace_back(device, track);
-    network.pose.layers.emplace_back(device, pose);
+    const MrbmParameters mrbm = MrbmParameters::random(two_modalities(7, 7, 3), 0.5, {3, 0, 1, 0});
+    Mcdbn network{std::vector<Cdbn>(2), Mrbm(device, mrbm), 4, 6};
+    network.cdbns[0].layers.emplace_back(device, track);
+    network.cdbns[1].layers.emplace_back(device, pose);
     network.sampling = {.gibbs_steps = 0, .mrbm_gibbs_steps = 3, .steady = true, .scale = 0.75};
     network.fills_gaps = false;
     save_model(path, {std::move(network),
@@ -32,8 +33,8 @@ TEST_CASE("a model comes back from its file as it was saved") {
                       EarlyStopping{{"b.bvh", "c.bvh"}, 75, 0.25}});
 
     const Model model = load_model(device, path);
-    CHECK(model.network.track.layers[0].to_host().A == track.A);
-    CHECK(model.network.pose.layers[0].to_host().B == pose.B);
+    CHECK(model.network.cdbns[0].layers[0].to_host().A == track.A);
+    CHECK(model.network.cdbns[1].layers[0].to_host().B == pose.B);
     CHECK(model.network.mrbm.to_host().W[1] == mrbm.W[1]);
     CHECK(model.network.look_ahead == 4);
     CHECK(model.network.mean_field_steps == 6);

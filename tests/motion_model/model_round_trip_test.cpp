@@ -64,8 +64,8 @@ void check_modalities(const Modalities& got, const Modalities& want) {
 }
 
 void check_same(const Model& got, const Model& want, const ExampleModel& example) {
-  check_layers(got.network.track.layers, example.track);
-  check_layers(got.network.pose.layers, example.pose);
+  check_layers(got.network.cdbns[0].layers, example.track);
+  check_layers(got.network.cdbns[1].layers, example.pose);
   check_mrbm(got.network.mrbm.to_host(), example.mrbm);
   CHECK(got.network.look_ahead == want.network.look_ahead);
   CHECK(got.network.mean_field_steps == want.network.mean_field_steps);

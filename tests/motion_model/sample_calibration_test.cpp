@@ -30,9 +30,13 @@ struct CalibrationScene {
     }
   }
   Mcdbn network(Device& device) const {
-    return random_start(
-        device, static_cast<std::size_t>(figure.modalities().track_scale.output_dimension()),
-        static_cast<std::size_t>(figure.modalities().pose_scale.output_dimension()), config);
+    const auto columns = [](const Standardizer& scale) {
+      return static_cast<std::size_t>(scale.output_dimension());
+    };
+    return random_start(device,
+                        {{"track", columns(figure.modalities().track_scale), VisibleKind::gaussian},
+                         {"pose", columns(figure.modalities().pose_scale), VisibleKind::gaussian}},
+                        config);
   }
 
   SmallFigure figure;

@@ -43,9 +43,9 @@ struct SmallNetwork {
                      layer(6, 7, VisibleKind::binary, 20)};
     parameters[1] = {layer(pose, 5, VisibleKind::gaussian, 30),
                      layer(5, 4, VisibleKind::binary, 40)};
-    mrbm.W = {random_matrix(7, 3, 50, 0.8F), random_matrix(4, 3, 51, 0.8F)};
-    mrbm.a = {random_matrix(1, 7, 52, 0.5F), random_matrix(1, 4, 53, 0.5F)};
-    mrbm.b = random_matrix(1, 3, 54, 0.5F);
+    mrbm = mrbm_of({random_matrix(7, 3, 50, 0.8F), random_matrix(4, 3, 51, 0.8F)},
+                   {random_matrix(1, 7, 52, 0.5F), random_matrix(1, 4, 53, 0.5F)},
+                   random_matrix(1, 3, 54, 0.5F));
   }
 
   Mcdbn on(Device& device) const { return on_device(device, {parameters, mrbm}, 0, kSteps); }
@@ -150,18 +150,18 @@ struct Windows {
 };
 
 struct Variant {
-  Modality present;
+  std::size_t present;
   float kept_share;
 };
-constexpr Variant kVariants[] = {{Modality::track, 1.0F},
-                                 {Modality::pose, 1.0F},
-                                 {Modality::track, 0.75F},
-                                 {Modality::pose, 0.75F}};
+constexpr Variant kVariants[] = {{modality::track, 1.0F},
+                                 {modality::pose, 1.0F},
+                                 {modality::track, 0.75F},
+                                 {modality::pose, 0.75F}};
 constexpr RandomKey kKey{77, 3, 9, 0};
 
 /// What the pass draws for window `i`, from the host's own Philox: layers in the order of the pass,
 /// one phase each.
-reference::DropOut drawn_for(const SmallNetwork& small, Modality present, std::size_t i,
+reference::DropOut drawn_for(const SmallNetwork& small, std::size_t present, std::size_t i,
                              float kept_share) {
   if (kept_share == 1.0F) return {};
   RandomKey key = kKey;
@@ -175,8 +175,8 @@ reference::DropOut drawn_for(const SmallNetwork& small, Modality present, std::s
     }
     return factors;
   };
-  const auto& up = small.parameters[index_of(present)];
-  const auto& down = small.parameters[index_of(other(present))];
+  const auto& up = small.parameters[present];
+  const auto& down = small.parameters[other(present)];
   reference::DropOut factors;
   for (const CrbmParameters& layer : up) factors.up.push_back(draw(layer.shape.hidden));
   factors.shared = draw(static_cast<std::size_t>(small.mrbm.b.cols()));
@@ -207,14 +207,15 @@ TEST_CASE("the unrolled pass predicts what the reference does, frame by frame") 
     UnrolledNetwork network(device, small.on(device), kSteps);
     const IndexBuffer index(device, windows.rows);
     for (const auto& [present, kept] : kVariants) {
-      const MatrixF& frames = present == Modality::track ? windows.track : windows.pose;
+      const MatrixF& frames = present == modality::track ? windows.track : windows.pose;
       const Matrix values = Matrix::from_host(device, frames);
-      UnrolledPass pass(network, present, kWindows);
-      pass.forward(Rows::indexed(values, index, 0, kWindows.rows()), kept, kKey);
+      UnrolledPass pass(network, other(present), kWindows);
+      const Rows rows = Rows::indexed(values, index, 0, kWindows.rows());
+      pass.forward(std::vector<Rows>{rows, rows}, kept, kKey);
       const MatrixD got = pass.prediction().to_host().cast<double>();
       for (std::size_t i = 0; i < kWindows.count; ++i) {
         const MatrixD want = reference::joint_prediction(
-            model, static_cast<int>(index_of(present)), windows.window(frames, i),
+            model, static_cast<int>(present), windows.window(frames, i),
             static_cast<int>(kWindows.first), kSteps, drawn_for(small, present, i, kept));
         const MatrixD part = got.middleRows(static_cast<Eigen::Index>(i * kWindows.frames),
                                             static_cast<Eigen::Index>(kWindows.frames));
@@ -243,10 +244,10 @@ TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
   REQUIRE((planted > 0 && planted + 1 < static_cast<int>(kWindows.frames - kWindows.lead)));
   for (const auto& [present, kept] : kVariants) {
     CAPTURE(kept);
-    const auto p = static_cast<int>(index_of(present));
+    const auto p = static_cast<int>(present);
     CAPTURE(p);
-    const MatrixF& inputs = present == Modality::track ? windows.track : windows.pose;
-    const MatrixF& targets = present == Modality::track ? windows.pose : windows.track;
+    const MatrixF& inputs = present == modality::track ? windows.track : windows.pose;
+    const MatrixF& targets = present == modality::track ? windows.pose : windows.track;
     const auto loss = [&, modality = present, share = kept](const Eigen::VectorXd& flat) {
       const reference::UnrolledModel moved = model.with_parameters(flat);
       double sum = 0;
@@ -271,24 +272,24 @@ TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
                    all = Matrix::from_host(device, targets);
       Matrix target(device, kWindows.rows(), all.columns());
       gather(Rows::indexed(all, index, 0, kWindows.rows()), target);
-      UnrolledPass pass(network, present, kWindows);
+      UnrolledPass pass(network, other(present), kWindows);
       PoseLoss pose_loss(device, figure.modalities(), kWindows, weights);
       SquaredLoss track_loss(device, kWindows, weights.features);
       for (int round = 0; round < 2; ++round) {  // the second shows that nothing is left behind
         network.clear_gradients();
-        pass.forward(Rows::indexed(input, index, 0, kWindows.rows()), kept, kKey);
-        if (present == Modality::track)
+        const Rows rows = Rows::indexed(input, index, 0, kWindows.rows());
+        pass.forward(std::vector<Rows>{rows, rows}, kept, kKey);
+        if (present == modality::track)
           pose_loss.differentiate(pass.prediction(), target, pass.prediction_error());
         else
           track_loss.differentiate(pass.prediction(), target, pass.prediction_error());
         pass.backward();
       }
-      for (const Modality modality : {Modality::track, Modality::pose}) {
-        const std::size_t m = index_of(modality);
-        for (std::size_t i = 0; i < network.layers(modality).size(); ++i) {
+      for (std::size_t m = 0; m < network.modality_count(); ++m) {
+        for (std::size_t i = 0; i < network.layers(m).size(); ++i) {
           CAPTURE(m);
           CAPTURE(i);
-          UnrolledNetwork::Layer& got = network.layers(modality)[i];
+          UnrolledNetwork::Layer& got = network.layers(m)[i];
           check_near(got.gradient.W, want.stacks[m][i].weights, "W");
           check_near(got.gradient.A, want.stacks[m][i].visible_history, "A");
           check_near(got.gradient.B, want.stacks[m][i].hidden_history, "B");
@@ -299,7 +300,7 @@ TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
         check_near(network.mrbm_gradient().a[m], want.mrbm.visible_bias[m], "MRBM a");
       }
       check_near(network.mrbm_gradient().b, want.mrbm.hidden_bias, "MRBM b");
-      const double reported = present == Modality::track
+      const double reported = present == modality::track
                                   ? pose_loss.read_and_reset()
                                   : weights.features * track_loss.read_and_reset();
       CHECK(reported == doctest::Approx(loss(model.flattened())).epsilon(1e-5));

@@ -129,9 +129,9 @@ RowVectorD logit(const RowVectorD& p) {
 Mrbm small_weights(const GreedyPlan& plan, const GreedyCode& track, const GreedyCode& pose) {
   Mrbm mrbm;
   for (int m = 0; m < 2; ++m) {
-    mrbm.weights[m] = normal_draws(plan.hidden, plan.mrbm_hidden, plan.mrbm.initial_deviation,
-                                   random_key(plan, kMrbmStream, m, kWeightsW));
-    mrbm.visible_bias[m] = logit(mean_of(m == 0 ? track : pose));
+    mrbm.weights.push_back(normal_draws(plan.hidden, plan.mrbm_hidden, plan.mrbm.initial_deviation,
+                                        random_key(plan, kMrbmStream, m, kWeightsW)));
+    mrbm.visible_bias.push_back(logit(mean_of(m == 0 ? track : pose)));
   }
   mrbm.hidden_bias = RowVectorD::Zero(plan.mrbm_hidden);
   return mrbm;
@@ -140,11 +140,12 @@ Mrbm small_weights(const GreedyPlan& plan, const GreedyCode& track, const Greedy
 GreedyStage train_mrbm(const GreedyPlan& plan, const GreedyCode& track, const GreedyCode& pose,
                        Mrbm& mrbm) {
   const MeanFieldOptions options{plan.mrbm.mean_field_steps, false};
-  const auto losses_of = [&](const std::array<MatrixD, 2>& batch) {
+  const auto losses_of = [&](const std::vector<MatrixD>& batch) {
     double sum = 0;
     for (int present = 0; present < 2; ++present) {
       const MatrixD& target = batch[1 - present];
-      const MeanFieldTrace trace = mean_field(mrbm, present, batch[present], options);
+      const MeanFieldTrace trace =
+          mean_field(mrbm, static_cast<std::size_t>(1 - present), batch, options);
       sum += cross_entropy_of_sigmoid(target, trace.missing_input) /
              static_cast<double>(target.size());
     }
@@ -164,8 +165,8 @@ GreedyStage train_mrbm(const GreedyPlan& plan, const GreedyCode& track, const Gr
     double loss = 0;
     for (int number = 0; number < batches.count(); ++number, ++step) {
       const auto windows = batches.batch(number);
-      const std::array<MatrixD, 2> batch{rows_of(track, windows, plan.look_ahead),
-                                         rows_of(pose, windows, 0)};
+      const std::vector<MatrixD> batch{rows_of(track, windows, plan.look_ahead),
+                                       rows_of(pose, windows, 0)};
       loss += losses_of(batch) / batches.count();
       const Eigen::VectorXd gradient = multi_prediction(mrbm, batch, options).gradient.flattened();
       // Flat in the first half, then in a line to a fiftieth.

@@ -16,6 +16,12 @@ Bounded drawn(const Bounded& probability, const ClampedChain& chain, const PassD
   return !relaxed && temperature == 1.0 ? draw : tempered(probability, draw, temperature);
 }
 
+Bounded drawn_normal(const Bounded& mean, const ClampedChain& chain, const PassDraws& draws,
+                     int pass) {
+  if (chain.temperature == 0.0) return mean;
+  return tempered(mean, gaussian(mean, draws(pass, mean.value.cols())), chain.temperature);
+}
+
 /// All 2^units states of that many binary units, one a row.
 MatrixD all_states(Eigen::Index units) {
   return MatrixD::NullaryExpr(
@@ -37,25 +43,48 @@ MatrixD state_probabilities(const MatrixD& on) {
 
 }  // namespace
 
-Bounded bounded_clamped_chain(const Mrbm& model, int present, const MatrixD& values,
-                              const ClampedChain& chain, const PassDraws& draws) {
-  const int absent = 1 - present;
-  const Bounded W = Bounded::exact(model.weights[absent]);
-  const Bounded given = Bounded::exact(values), V = Bounded::exact(model.weights[present]);
-  const Sum drive = Sum().add_product(given, V).add_row(Bounded::exact(model.hidden_bias));
-  Bounded units, probability;
+std::vector<Bounded> bounded_chain(const Mrbm& model, const std::vector<bool>& present,
+                                   const std::vector<MatrixD>& values, const ClampedChain& chain,
+                                   const PassDraws& uniform, const PassDraws& normal) {
+  const std::size_t modalities = present.size();
+  Sum from_present;  // where nothing is present, b alone
+  for (std::size_t m = 0; m < modalities; ++m)
+    from_present.add_product(Bounded::exact(present[m] ? values[m] : MatrixD(0.0 * values[m])),
+                             Bounded::exact(model.weights[m]));
+  Sum drive = from_present;
+  drive.add_row(Bounded::exact(model.hidden_bias));
+  std::vector<Bounded> units(modalities), means(modalities);
+  int pass = 0;
   for (int step = 0; step < chain.steps; ++step) {
     Sum input = drive;
-    if (step > 0) input.add_product(units, W);
-    if (step == 0 && chain.double_first_pass) input.add_product(given, V);
-    const Bounded hidden = drawn(sigmoid(input.result()), chain, draws, 2 * step);
-    probability = sigmoid(Sum()
-                              .add_product(hidden, W.transposed())
-                              .add_row(Bounded::exact(model.visible_bias[absent]))
-                              .result());
-    units = drawn(probability, chain, draws, 2 * step + 1);
+    for (std::size_t m = 0; m < modalities; ++m) {
+      if (!present[m] && step > 0) input.add_product(units[m], Bounded::exact(model.weights[m]));
+      if (present[m] && step == 0 && chain.double_first_pass)
+        input.add_product(Bounded::exact(values[m]), Bounded::exact(model.weights[m]));
+    }
+    const Bounded hidden = drawn(sigmoid(input.result()), chain, uniform, pass++);
+    for (std::size_t m = 0; m < modalities; ++m) {
+      if (present[m]) continue;
+      means[m] = Sum()
+                     .add_product(hidden, Bounded::exact(model.weights[m]).transposed())
+                     .add_row(Bounded::exact(model.visible_bias[m]))
+                     .result();
+      if (!model.is_gaussian(m)) means[m] = sigmoid(means[m]);
+      units[m] = model.is_gaussian(m) ? drawn_normal(means[m], chain, normal, pass)
+                                      : drawn(means[m], chain, uniform, pass);
+      ++pass;
+    }
   }
-  return probability;
+  return means;
+}
+
+Bounded bounded_clamped_chain(const Mrbm& model, int present, const MatrixD& values,
+                              const ClampedChain& chain, const PassDraws& draws) {
+  std::vector<MatrixD> both(2, values);
+  both[static_cast<std::size_t>(1 - present)] =
+      MatrixD::Zero(values.rows(), model.weights[static_cast<std::size_t>(1 - present)].rows());
+  return bounded_chain(model, {present == 0, present == 1}, both, chain, draws,
+                       {})[static_cast<std::size_t>(1 - present)];
 }
 
 HiddenStates enumerate_hidden(const Mrbm& model, int present, const RowVectorD& values) {

@@ -14,13 +14,21 @@ struct ClampedChain {
   bool concrete = false;  ///< draws are σ(logit p + logit u)
 };
 
-/// Uniform numbers for the draws of pass 0, 1, …: hidden units in even passes, the absent
-/// modality's in odd ones. @return [rows x units]
+/// Numbers for the draws of pass 0, 1, …: of each step the hidden units, then every absent
+/// modality. Uniform ones, for Gaussian units of variance 1 and mean 0. @return [rows x units]
 using PassDraws = std::function<MatrixD(int pass, Eigen::Index units)>;
 
-/// The MRBM's chain with modality `present` (0 or 1) clamped, started from zeros (eq 21 to 23 and
-/// 32, 33), in double with a bound on what single precision makes of it. Where rounding may decide
-/// a draw, the bound of its row is that of not knowing it.
+/// The MRBM's chain with the modalities that are `present` clamped, the others started from zeros
+/// (eq 21 to 23 and 32, 33), in double with a bound on what single precision makes of it. Where
+/// rounding may decide a draw, the bound of its row is that of not knowing it.
+/// @param values of each modality [rows x D_m]; those of the absent ones are not read
+/// @param normal draws of Gaussian units
+/// @return the means of every absent modality in the last step, nothing for the present ones
+std::vector<Bounded> bounded_chain(const Mrbm& model, const std::vector<bool>& present,
+                                   const std::vector<MatrixD>& values, const ClampedChain& chain,
+                                   const PassDraws& uniform, const PassDraws& normal);
+
+/// The same of two binary modalities, of which `present` (0 or 1) is clamped.
 /// @param values the present modality [rows x D_present]
 /// @return p(absent | hidden) of the last step [rows x D_absent]
 Bounded bounded_clamped_chain(const Mrbm& model, int present, const MatrixD& values,

@@ -10,30 +10,49 @@ namespace {
 struct Direction {
   Bounded by_hidden, by_values;  ///< of the absent modality's weights: the errors with the hidden
                                  ///< units, the values with the hidden units' errors
-  Bounded present_weights;
-  Bounded visible_bias;  ///< the absent modality's
-  Bounded drive_error;   ///< at the input of the hidden units, Σ over the passes
+  Bounded visible_bias;          ///< the absent modality's
+  Bounded drive_error;           ///< at the input of the hidden units, Σ over the passes
   Bounded loss;
 };
 
+bool is_gaussian(const BoundedMrbm& model, std::size_t m) {
+  return m < model.gaussian.size() && model.gaussian[m];
+}
+
+/// What the present modalities give the hidden units. Stored, as it does not change; the absent
+/// modality's products go on from there.
+Bounded drive_of(const BoundedMrbm& model, std::size_t missing, const std::vector<MatrixD>& batch) {
+  Sum drive;
+  for (std::size_t m = 0; m < batch.size(); ++m)
+    if (m != missing) drive.add_product(Bounded::exact(batch[m]), model.weights[m]);
+  return drive.add_row(model.hidden_bias).result();
+}
+
+Bounded half_squares(const Bounded& target, const Bounded& prediction) {
+  const Bounded error = target - prediction;
+  Bounded squares = times(error, error);
+  squares.value *= 0.5;
+  squares.bound *= 0.5;
+  return Sum().add_column_sum(Sum().add_column_sum(squares).result().transposed()).result();
+}
+
 /// Back-propagated through every pass of eq 32 and 33.
-Direction direction(const BoundedMrbm& model, std::size_t present,
-                    const std::array<MatrixD, 2>& batch, int steps) {
-  const std::size_t missing = 1 - present;
+Direction direction(const BoundedMrbm& model, std::size_t missing,
+                    const std::vector<MatrixD>& batch, int steps) {
+  const bool gaussian = is_gaussian(model, missing);
   const Bounded& W = model.weights[missing];
-  const Bounded target = Bounded::exact(batch[missing]), values = Bounded::exact(batch[present]);
-  // Stored, as it does not change; the absent modality's products go on from there.
-  const Bounded drive =
-      Sum().add_product(values, model.weights[present]).add_row(model.hidden_bias).result();
+  const Bounded target = Bounded::exact(batch[missing]);
+  const Bounded drive = drive_of(model, missing, batch);
   std::vector<Bounded> hidden;
   std::vector<Bounded> visible{
       Bounded::exact(MatrixD::Zero(target.value.rows(), target.value.cols()))};
   for (int pass = 0; pass < steps; ++pass) {
     hidden.push_back(sigmoid(Sum().add(drive).add_product(visible.back(), W).result()));
-    visible.push_back(sigmoid(Sum()
-                                  .add_product(hidden.back(), W.transposed())
-                                  .add_row(model.visible_bias[missing])
-                                  .result()));
+    const Bounded input = Sum()
+                              .add_product(hidden.back(), W.transposed())
+                              .add_row(model.visible_bias[missing])
+                              .result();
+    visible.push_back(gaussian ? input : sigmoid(input));
   }
 
   Sum by_hidden, by_values, visible_bias, drive_error;
@@ -45,52 +64,58 @@ Direction direction(const BoundedMrbm& model, std::size_t present,
     by_values.add_product(visible[pass].transposed(), hidden_error);
     visible_bias.add_column_sum(visible_error);
     drive_error.add(hidden_error);
-    visible_error = times(product(hidden_error, W.transposed()), sigmoid_gradient(visible[pass]));
+    visible_error = product(hidden_error, W.transposed());
+    if (!gaussian) visible_error = times(visible_error, sigmoid_gradient(visible[pass]));
   }
-  return {by_hidden.result(),
-          by_values.result(),
-          product(values.transposed(), drive_error.result()),
-          visible_bias.result(),
-          drive_error.result(),
-          divided(cross_entropy(target, visible.back()), static_cast<double>(target.value.size()))};
+  const Bounded loss =
+      gaussian ? half_squares(target, visible.back()) : cross_entropy(target, visible.back());
+  return {by_hidden.result(), by_values.result(), visible_bias.result(), drive_error.result(),
+          divided(loss, static_cast<double>(target.value.size()))};
 }
 
 }  // namespace
 
 BoundedMrbm BoundedMrbm::exact(const Mrbm& model) {
-  return {{Bounded::exact(model.weights[0]), Bounded::exact(model.weights[1])},
-          {Bounded::exact(model.visible_bias[0]), Bounded::exact(model.visible_bias[1])},
-          Bounded::exact(model.hidden_bias)};
+  BoundedMrbm result{{}, {}, Bounded::exact(model.hidden_bias), model.gaussian};
+  for (const MatrixD& weights : model.weights) result.weights.push_back(Bounded::exact(weights));
+  for (const RowVectorD& bias : model.visible_bias)
+    result.visible_bias.push_back(Bounded::exact(bias));
+  return result;
 }
 
 BoundedMrbm BoundedMrbm::zeros_like(const BoundedMrbm& model) {
-  const auto zeros = [](const Bounded& x) {
-    return Bounded::exact(MatrixD::Zero(x.value.rows(), x.value.cols()));
+  BoundedMrbm result = model;
+  const auto clear = [](Bounded& x) {
+    x = Bounded::exact(MatrixD::Zero(x.value.rows(), x.value.cols()));
   };
-  return {{zeros(model.weights[0]), zeros(model.weights[1])},
-          {zeros(model.visible_bias[0]), zeros(model.visible_bias[1])},
-          zeros(model.hidden_bias)};
+  for (Bounded& weights : result.weights) clear(weights);
+  for (Bounded& bias : result.visible_bias) clear(bias);
+  clear(result.hidden_bias);
+  return result;
 }
 
 BoundedMultiPrediction bounded_multi_prediction(const BoundedMrbm& model,
-                                                const std::array<MatrixD, 2>& batch, int steps) {
+                                                const std::vector<MatrixD>& batch, int steps) {
   // Direction m is the one in which modality m is absent.
-  const std::array<Direction, 2> directions{direction(model, 1, batch, steps),
-                                            direction(model, 0, batch, steps)};
+  std::vector<Direction> directions;
+  Sum hidden_bias;
   BoundedMultiPrediction result;
-  for (std::size_t m = 0; m < 2; ++m) {
-    result.gradient.weights[m] = Sum()
-                                     .add(directions[m].by_hidden)
-                                     .add(directions[m].by_values)
-                                     .add(directions[1 - m].present_weights)
-                                     .result();
-    result.gradient.visible_bias[m] = directions[m].visible_bias;
-    result.losses[m] = directions[m].loss;
+  for (std::size_t m = 0; m < batch.size(); ++m) {
+    directions.push_back(direction(model, m, batch, steps));
+    hidden_bias.add_column_sum(directions[m].drive_error);
+    result.gradient.visible_bias.push_back(directions[m].visible_bias);
+    result.losses.push_back(directions[m].loss);
   }
-  result.gradient.hidden_bias = Sum()
-                                    .add_column_sum(directions[0].drive_error)
-                                    .add_column_sum(directions[1].drive_error)
-                                    .result();
+  for (std::size_t m = 0; m < batch.size(); ++m) {
+    Sum weights;
+    weights.add(directions[m].by_hidden).add(directions[m].by_values);
+    for (std::size_t other = 0; other < batch.size(); ++other)
+      if (other != m)
+        weights.add(product(Bounded::exact(batch[m]).transposed(), directions[other].drive_error));
+    result.gradient.weights.push_back(weights.result());
+  }
+  result.gradient.hidden_bias = hidden_bias.result();
+  result.gradient.gaussian = model.gaussian;
   return result;
 }
 
@@ -98,7 +123,7 @@ void bounded_adam_update(BoundedMrbm& model, BoundedMrbm& mean, BoundedMrbm& squ
                          const BoundedMrbm& gradient, const UpdateRule& rule, int step) {
   UpdateRule biases = rule;
   biases.weight_decay = 0.0F;
-  for (std::size_t m = 0; m < 2; ++m) {
+  for (std::size_t m = 0; m < model.weights.size(); ++m) {
     bounded_adam_update(model.weights[m], mean.weights[m], square.weights[m], gradient.weights[m],
                         rule, step);
     bounded_adam_update(model.visible_bias[m], mean.visible_bias[m], square.visible_bias[m],

@@ -8,8 +8,9 @@ namespace mcdbn::reference {
 
 /// An MRBM's parameters, their gradients or Adam's moments, with error bounds.
 struct BoundedMrbm {
-  std::array<Bounded, 2> weights, visible_bias;
+  std::vector<Bounded> weights, visible_bias;
   Bounded hidden_bias;
+  std::vector<bool> gaussian = {};  ///< as Mrbm::gaussian
 
   /// Parameters that the device was given exactly.
   static BoundedMrbm exact(const Mrbm& model);
@@ -19,12 +20,12 @@ struct BoundedMrbm {
 
 struct BoundedMultiPrediction {
   BoundedMrbm gradient;
-  std::array<Bounded, 2> losses;  ///< of modality m from the other: mean of a unit [1 x 1]
+  std::vector<Bounded> losses;  ///< of modality m from the others: mean of a unit [1 x 1]
 };
 
 /// multi_prediction() with a bound on what single precision makes of it.
 BoundedMultiPrediction bounded_multi_prediction(const BoundedMrbm& model,
-                                                const std::array<MatrixD, 2>& batch, int steps);
+                                                const std::vector<MatrixD>& batch, int steps);
 
 /// Adam's update of every parameter, biases without decay.
 void bounded_adam_update(BoundedMrbm& model, BoundedMrbm& mean, BoundedMrbm& square,

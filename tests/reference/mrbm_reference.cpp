@@ -15,15 +15,20 @@ MatrixD sigmoid_gradient(const MatrixD& y) {
   return y.array() * (1.0 - y.array());
 }
 
-/// Adds one direction's loss and gradient, both summed over the batch.
-void add_direction(const Mrbm& model, int present, const std::array<MatrixD, 2>& batch,
-                   const MeanFieldOptions& options, MultiPrediction& sum) {
-  const int missing = 1 - present;
-  const MatrixD& target = batch[missing];
-  const MeanFieldTrace trace = mean_field(model, present, batch[present], options);
-  sum.loss += cross_entropy_of_sigmoid(target, trace.missing_input);
+/// What an error behind the units of modality m is before them.
+MatrixD through_units(const Mrbm& model, std::size_t m, const MatrixD& error,
+                      const MatrixD& units) {
+  return model.is_gaussian(m) ? error : MatrixD(error.cwiseProduct(sigmoid_gradient(units)));
+}
 
-  MatrixD visible_delta = trace.missing.back() - target;  // at the input of eq 33's sigmoid
+/// Adds one direction's loss and gradient, both summed over the batch.
+void add_direction(const Mrbm& model, std::size_t missing, const std::vector<MatrixD>& batch,
+                   const MeanFieldOptions& options, MultiPrediction& sum) {
+  const MatrixD& target = batch[missing];
+  const MeanFieldTrace trace = mean_field(model, missing, batch, options);
+  sum.loss += prediction_loss(model, missing, target, trace.missing_input);
+
+  MatrixD visible_delta = trace.missing.back() - target;  // before eq 33's units, of either kind
   for (int pass = options.steps - 1; pass >= 0; --pass) {
     const MatrixD& hidden = trace.hidden[pass];
     const MatrixD& before = trace.missing[pass];
@@ -31,22 +36,32 @@ void add_direction(const Mrbm& model, int present, const std::array<MatrixD, 2>&
         (visible_delta * model.weights[missing]).cwiseProduct(sigmoid_gradient(hidden));
     sum.gradient.weights[missing] +=
         visible_delta.transpose() * hidden + before.transpose() * hidden_delta;
-    sum.gradient.weights[present] +=
-        present_weight(options, pass) * batch[present].transpose() * hidden_delta;
+    for (std::size_t m = 0; m < batch.size(); ++m)
+      if (m != missing)
+        sum.gradient.weights[m] +=
+            present_weight(options, pass) * batch[m].transpose() * hidden_delta;
     sum.gradient.visible_bias[missing] += visible_delta.colwise().sum();
     sum.gradient.hidden_bias += hidden_delta.colwise().sum();
     visible_delta =
-        (hidden_delta * model.weights[missing].transpose()).cwiseProduct(sigmoid_gradient(before));
+        through_units(model, missing, hidden_delta * model.weights[missing].transpose(), before);
   }
 }
 
 }  // namespace
 
 Eigen::VectorXd Mrbm::flattened() const {
-  Eigen::VectorXd flat(weights[0].size() + weights[1].size() + visible_bias[0].size() +
-                       visible_bias[1].size() + hidden_bias.size());
-  flat << weights[0].reshaped<Eigen::RowMajor>(), weights[1].reshaped<Eigen::RowMajor>(),
-      visible_bias[0].transpose(), visible_bias[1].transpose(), hidden_bias.transpose();
+  Eigen::Index size = hidden_bias.size();
+  for (std::size_t m = 0; m < weights.size(); ++m)
+    size += weights[m].size() + visible_bias[m].size();
+  Eigen::VectorXd flat(size);
+  Eigen::Index at = 0;
+  const auto put = [&](const auto& parameter) {
+    std::copy_n(parameter.data(), parameter.size(), flat.data() + at);
+    at += parameter.size();
+  };
+  for (const MatrixD& matrix : weights) put(matrix);
+  for (const RowVectorD& row : visible_bias) put(row);
+  put(hidden_bias);
   return flat;
 }
 
@@ -57,20 +72,20 @@ Mrbm Mrbm::with_parameters(const Eigen::VectorXd& flat) const {
     std::copy_n(flat.data() + at, parameter.size(), parameter.data());
     at += parameter.size();
   };
-  take(result.weights[0]);
-  take(result.weights[1]);
-  take(result.visible_bias[0]);
-  take(result.visible_bias[1]);
+  for (MatrixD& matrix : result.weights) take(matrix);
+  for (RowVectorD& row : result.visible_bias) take(row);
   take(result.hidden_bias);
   return result;
 }
 
-MeanFieldTrace mean_field(const Mrbm& model, int present, const MatrixD& values,
+MeanFieldTrace mean_field(const Mrbm& model, std::size_t missing, const std::vector<MatrixD>& batch,
                           const MeanFieldOptions& options) {
-  const int missing = 1 - present;
-  const MatrixD from_present = values * model.weights[present];
+  const Eigen::Index rows = batch[missing == 0 ? 1 : 0].rows();
+  MatrixD from_present = MatrixD::Zero(rows, model.hidden_bias.size());
+  for (std::size_t m = 0; m < batch.size(); ++m)
+    if (m != missing) from_present += batch[m] * model.weights[m];
   MeanFieldTrace trace;
-  trace.missing.push_back(MatrixD::Zero(values.rows(), model.weights[missing].rows()));
+  trace.missing.push_back(MatrixD::Zero(rows, model.weights[missing].rows()));
   for (int pass = 0; pass < options.steps; ++pass) {
     const MatrixD hidden_input = plus_row(present_weight(options, pass) * from_present +
                                               trace.missing.back() * model.weights[missing],
@@ -78,17 +93,23 @@ MeanFieldTrace mean_field(const Mrbm& model, int present, const MatrixD& values,
     trace.hidden.push_back(sigmoid(hidden_input));
     trace.missing_input = plus_row(trace.hidden.back() * model.weights[missing].transpose(),
                                    model.visible_bias[missing]);
-    trace.missing.push_back(sigmoid(trace.missing_input));
+    trace.missing.push_back(model.is_gaussian(missing) ? trace.missing_input
+                                                       : sigmoid(trace.missing_input));
   }
   return trace;
 }
 
-MultiPrediction multi_prediction(const Mrbm& model, const std::array<MatrixD, 2>& batch,
+double prediction_loss(const Mrbm& model, std::size_t missing, const MatrixD& target,
+                       const MatrixD& input) {
+  return model.is_gaussian(missing) ? 0.5 * (input - target).squaredNorm()
+                                    : cross_entropy_of_sigmoid(target, input);
+}
+
+MultiPrediction multi_prediction(const Mrbm& model, const std::vector<MatrixD>& batch,
                                  const MeanFieldOptions& options) {
   MultiPrediction sum;
   sum.gradient = model.with_parameters(Eigen::VectorXd::Zero(model.flattened().size()));
-  add_direction(model, 0, batch, options, sum);
-  add_direction(model, 1, batch, options, sum);
+  for (std::size_t m = 0; m < batch.size(); ++m) add_direction(model, m, batch, options, sum);
   const double scale = 1.0 / static_cast<double>(batch[0].rows());
   sum.loss *= scale;
   sum.gradient = model.with_parameters(scale * sum.gradient.flattened());

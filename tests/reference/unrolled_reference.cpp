@@ -38,15 +38,13 @@ MatrixD up(const Crbm& layer, const MatrixD& visible, Eigen::Index first,
   return hidden;
 }
 
-/// Eq 32 and 33 for one frame.
-RowVectorD missing_code(const Mrbm& model, std::size_t p, const RowVectorD& code, int steps,
+/// Eq 32 and 33 for one frame. @param drive b and what the present modalities give
+RowVectorD missing_code(const Mrbm& model, std::size_t q, const RowVectorD& drive, int steps,
                         const RowVectorD& factors) {
-  const std::size_t q = 1 - p;
   RowVectorD missing = RowVectorD::Zero(model.weights[q].rows());
   for (int step = 0; step < steps; ++step) {
-    const RowVectorD hidden = dropped(
-        sigmoid(MatrixD(model.hidden_bias + code * model.weights[p] + missing * model.weights[q])),
-        factors);
+    const RowVectorD hidden =
+        dropped(sigmoid(MatrixD(drive + missing * model.weights[q])), factors);
     missing = sigmoid(MatrixD(model.visible_bias[q] + hidden * model.weights[q].transpose()));
   }
   return missing;
@@ -94,21 +92,34 @@ UnrolledModel UnrolledModel::with_parameters(const Eigen::VectorXd& flat) const 
   return result;
 }
 
-MatrixD joint_prediction(const UnrolledModel& model, int present, const MatrixD& values, int first,
-                         int mean_field_steps, const DropOut& drop_out) {
-  const auto p = static_cast<std::size_t>(present), q = 1 - p;
-  MatrixD code = values;
-  Eigen::Index valid = 0;
-  for (std::size_t i = 0; i < model.stacks[p].size(); ++i) {
-    valid += order_of(model.stacks[p][i]);
-    code = up(model.stacks[p][i], code, valid, factors_of(drop_out.up, i));
+MatrixD joint_prediction(const UnrolledModel& model, std::size_t q,
+                         const std::vector<MatrixD>& values, int first, int mean_field_steps,
+                         const DropOut& drop_out) {
+  MatrixD drive;
+  std::size_t number = 0;
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    if (p == q) continue;
+    MatrixD code = values[p];
+    Eigen::Index valid = 0;
+    for (const Crbm& layer : model.stacks[p]) {
+      valid += order_of(layer);
+      code = up(layer, code, valid, factors_of(drop_out.up, number++));
+    }
+    if (drive.size() == 0) drive = model.mrbm.hidden_bias.replicate(code.rows(), 1);
+    drive += code * model.mrbm.weights[p];
   }
-  MatrixD state(code.rows(), model.mrbm.weights[q].rows());
-  for (Eigen::Index t = 0; t < code.rows(); ++t)
-    state.row(t) = missing_code(model.mrbm, p, code.row(t), mean_field_steps, drop_out.shared);
+  MatrixD state(drive.rows(), model.mrbm.weights[q].rows());
+  for (Eigen::Index t = 0; t < drive.rows(); ++t)
+    state.row(t) = missing_code(model.mrbm, q, drive.row(t), mean_field_steps, drop_out.shared);
   for (std::size_t i = model.stacks[q].size(); i-- > 0;)
     state = down(model.stacks[q][i], state, model.start[q][i], first, factors_of(drop_out.down, i));
   return state;
+}
+
+MatrixD joint_prediction(const UnrolledModel& model, int present, const MatrixD& values, int first,
+                         int mean_field_steps, const DropOut& drop_out) {
+  return joint_prediction(model, static_cast<std::size_t>(1 - present),
+                          std::vector<MatrixD>{values, values}, first, mean_field_steps, drop_out);
 }
 
 }  // namespace mcdbn::reference

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "reference/crbm_reference.hpp"
@@ -8,14 +7,14 @@
 
 namespace mcdbn::reference {
 
-/// A whole MCDBN: modality 0 is 2D, modality 1 is 3D.
+/// A whole MCDBN: of two modalities 0 is 2D and 1 is 3D.
 struct UnrolledModel {
-  std::array<std::vector<Crbm>, 2> stacks;
-  std::array<std::vector<RowVectorD>, 2> start;  ///< of each layer, the history before a free run
+  std::vector<std::vector<Crbm>> stacks;
+  std::vector<std::vector<RowVectorD>> start;  ///< of each layer, the history before a free run
   Mrbm mrbm;
 
-  /// All parameters (not `start`) behind one another, for finite differences: the layers of 2D, of
-  /// 3D, then the MRBM.
+  /// All parameters (not `start`) behind one another, for finite differences: the layers of each
+  /// modality, then the MRBM.
   Eigen::VectorXd flattened() const;
   UnrolledModel with_parameters(const Eigen::VectorXd& flat) const;
 };
@@ -23,13 +22,18 @@ struct UnrolledModel {
 /// What drop-out does to the hidden units of one window: a unit u becomes ½ + f·(u − ½) with its f
 /// of 0 or 1 / kept share, so that a dropped one stands at ½. Empty rows leave all as they are.
 struct DropOut {
-  std::vector<RowVectorD> up;    ///< of each layer of the present modality, its hidden units
+  std::vector<RowVectorD> up;    ///< of each layer of every present modality, its hidden units
   RowVectorD shared;             ///< of the MRBM, in every step
   std::vector<RowVectorD> down;  ///< of each layer of the absent modality, its visible units
 };
 
-/// Algorithm 3 on one window, frame by frame: up-pass of modality `present`, mean field, down-pass
-/// of the other on its own output from frame `first` on.
+/// Algorithm 3 on one window, frame by frame: up-pass of the modalities but `missing`, mean field,
+/// down-pass of that one on its own output from frame `first` on.
+/// @param values of each modality [frames x D]  @return [frames x D'], `start` before `first`
+MatrixD joint_prediction(const UnrolledModel& model, std::size_t missing,
+                         const std::vector<MatrixD>& values, int first, int mean_field_steps,
+                         const DropOut& drop_out = {});
+/// The same of two modalities, of which one is present.
 /// @param values the present modality [frames x D]  @return [frames x D'], `start` before `first`
 MatrixD joint_prediction(const UnrolledModel& model, int present, const MatrixD& values, int first,
                          int mean_field_steps, const DropOut& drop_out = {});

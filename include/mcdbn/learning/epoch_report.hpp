@@ -11,7 +11,7 @@ namespace mcdbn {
 
 /// What an observer learns of each epoch.
 struct EpochReport {
-  std::string stage;  ///< pose.0, pose.1, track.0, track.1, mrbm, fine-tuning
+  std::string stage;  ///< a modality and its layer (pose.0), mrbm, fine-tuning
   std::size_t epoch = 0, epochs = 0;
   double loss = 0;  ///< mean squared reconstruction error of a unit, or cross-entropy of a unit
   double windows_per_s = 0;

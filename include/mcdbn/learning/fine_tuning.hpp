@@ -24,13 +24,13 @@ struct FineTuned {
 };
 
 /// The stage that the paper leaves out and its reference [19] has: MinVI back-propagated through
-/// the whole network (unrolled_pass.hpp) on windows that run freely, as regeneration does. 3D from
-/// 2D weighs most; the other direction stays trained. The result is the moving average of the
-/// parameters: the last one or, where clips are held out, the last one before those fared worse.
-/// The observer may throw to stop.
+/// the whole network (unrolled_pass.hpp) on windows that run freely, as regeneration does. The last
+/// modality from the others (3D from 2D) weighs most; the other directions stay trained. The result
+/// is the moving average of the parameters: the last one or, where clips are held out, the last one
+/// before those fared worse. The observer may throw to stop.
 /// @param held_out sequences that are not learnt from and say when to stop, or none
-/// @param make_loss of the 3D modality
-/// @throws DivergenceError saying what to lower
+/// @param make_loss of the last modality
+/// @throws DivergenceError saying what to lower, ShapeError unless the lowest layers are Gaussian
 FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& source,
                     const SequenceSource* held_out, const LearningSettings& settings,
                     const SequenceLossMaker& make_loss, const EpochObserver& observer = {});

@@ -3,6 +3,7 @@
 // learning rule: a class beside ContrastiveDivergence, its kernels named after it.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "mcdbn/learning/epoch_report.hpp"
@@ -12,7 +13,8 @@
 
 namespace mcdbn {
 
-/// Algorithm 1: the 3D CDBN layer by layer, the 2D CDBN, then the MRBM on their codes.
+/// Algorithm 1: the last modality's CDBN layer by layer (3D), those before it, then the MRBM on
+/// their codes. Two modalities or more.
 /// The observer may throw to stop.
 /// @param start weights to start from; nothing: small random ones, as the settings' deviations say
 /// @throws DivergenceError saying what to lower
@@ -26,9 +28,10 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
                 const CdSettings& settings, const LearningSettings& learning, std::uint16_t stream,
                 const EpochObserver& observer = {}, const std::string& stage = "crbm");
 
-/// The MRBM by multi-prediction on codes whose rows belong to the same frames.
-Mrbm train_mrbm(Device& device, const Sequences& track, const Sequences& pose,
-                const MrbmParameters& initial, const LearningSettings& learning,
-                std::uint16_t stream, const EpochObserver& observer = {});
+/// The MRBM by multi-prediction on codes of each modality whose rows belong to the same frames, the
+/// first modality's look_ahead frames later.
+Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
+                const LearningSettings& learning, std::uint16_t stream,
+                const EpochObserver& observer = {});
 
 }  // namespace mcdbn

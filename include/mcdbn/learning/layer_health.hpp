@@ -13,7 +13,7 @@ namespace mcdbn {
 struct LayerHealth {
   double hidden_activity = 0;  ///< mean hidden probability
   double saturation = 0;       ///< fraction of hidden probabilities below 0.01 or above 0.99
-  double weight_norm = 0;      ///< Frobenius norm of W (of both W of an MRBM)
+  double weight_norm = 0;      ///< Frobenius norm of W (of all W of an MRBM)
   std::optional<double> weight_norm_A, weight_norm_B;  ///< of a CRBM
   /// Mean squared error of a unit when the CRBM goes on by itself, mean field, for kFreeRunFrames
   /// after a true history. Unset if no clip is long enough, and for an MRBM.
@@ -29,8 +29,7 @@ std::vector<MatrixF> health_windows(const Sequences& sequences, std::size_t fram
 /// @param windows of order + kFreeRunFrames frames [frames x visible]
 LayerHealth crbm_health(const CrbmParameters& parameters, const std::vector<MatrixF>& windows);
 
-/// @param track, pose codes of the same frames [rows x visible of the modality]
-LayerHealth mrbm_health(const MrbmParameters& parameters, const MatrixF& track,
-                        const MatrixF& pose);
+/// @param codes of the same frames [rows x visible of the modality]
+LayerHealth mrbm_health(const MrbmParameters& parameters, const std::vector<MatrixF>& codes);
 
 }  // namespace mcdbn

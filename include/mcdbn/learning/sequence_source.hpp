@@ -2,18 +2,37 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "mcdbn/base/matrices.hpp"
+#include "mcdbn/machines/crbm.hpp"
 
 namespace mcdbn {
 
-/// Synchronized sequences of both modalities, standardized: clip i of each is [frames x dimension],
-/// as many frames in both. Holds references only.
-struct PairedClips {
-  std::span<const MatrixF> tracks, poses;
+/// The sequences of one modality: clip i is [frames x dimension], standardized where its units are
+/// Gaussian, within 0 … 1 where they are binary. Holds references only.
+struct ModalityClips {
+  std::string name;  ///< in names of stages and tensors
+  std::span<const MatrixF> clips;
+  VisibleKind kind = VisibleKind::gaussian;
+
+  std::size_t dimension() const {
+    return clips.empty() ? 0 : static_cast<std::size_t>(clips.front().cols());
+  }
+};
+
+/// Synchronized sequences of all modalities: clip i has as many frames in each.
+struct SynchronizedClips {
+  std::vector<ModalityClips> modalities;
   /// Which clips belong together (of one person, say), counted from 0; empty: all alike.
   std::span<const std::size_t> groups;
+
+  std::size_t count() const { return modalities.front().clips.size(); }
+  std::size_t frames(std::size_t clip) const {
+    return static_cast<std::size_t>(modalities.front().clips[clip].rows());
+  }
+  /// @throws ShapeError without modalities or clips, or where they differ in clips or frames
+  void check() const;
 };
 
 /// Where the sequences of a training come from. Here matrices in memory; clips of motion and
@@ -22,19 +41,26 @@ class SequenceSource {
  public:
   virtual ~SequenceSource() = default;
   /// All of them; they live as long as the source. May take a while the first time.
-  virtual PairedClips sequences() const = 0;
+  virtual SynchronizedClips sequences() const = 0;
+};
+
+/// Sequences of one modality that the source keeps.
+struct ModalityMatrices {
+  std::string name;
+  std::vector<MatrixF> clips;
+  VisibleKind kind = VisibleKind::gaussian;
 };
 
 class MatrixSource : public SequenceSource {
  public:
   /// @param groups of the clips, or none
-  MatrixSource(std::vector<MatrixF> tracks, std::vector<MatrixF> poses,
-               std::vector<std::size_t> groups = {})
-      : tracks_(std::move(tracks)), poses_(std::move(poses)), groups_(std::move(groups)) {}
-  PairedClips sequences() const override { return {tracks_, poses_, groups_}; }
+  explicit MatrixSource(std::vector<ModalityMatrices> modalities,
+                        std::vector<std::size_t> groups = {})
+      : modalities_(std::move(modalities)), groups_(std::move(groups)) {}
+  SynchronizedClips sequences() const override;
 
  private:
-  std::vector<MatrixF> tracks_, poses_;
+  std::vector<ModalityMatrices> modalities_;
   std::vector<std::size_t> groups_;
 };
 

@@ -28,18 +28,20 @@ struct SamplingRule {
 /// The multimodal conditional deep belief network (section IV.A, Fig. 6): a CDBN for each modality
 /// and an MRBM over their codes.
 struct Mcdbn {
-  Cdbn track;  ///< 2D
-  Cdbn pose;   ///< 3D
+  std::vector<Cdbn> cdbns;  ///< of each modality of the MRBM, in its order
   Mrbm mrbm;
-  std::size_t look_ahead = 0;  ///< the 2D code of frame t + look_ahead stands for the 3D code of t
+  /// The first modality's code of frame t + look_ahead belongs to the others' of frame t.
+  std::size_t look_ahead = 0;
   std::size_t mean_field_steps = 10;
   SamplingRule sampling = {};
-  /// The 2D CDBN itself fills in missing 2D joints. Else they are left at their mean, as a network
-  /// that was trained as a whole has learnt to see them.
+  /// The CDBN itself fills in missing values of what is present. Else they are left at their mean,
+  /// as a network that was trained as a whole has learnt to see them.
   bool fills_gaps = true;
 
-  Cdbn& cdbn(Modality modality) { return modality == Modality::track ? track : pose; }
-  const Cdbn& cdbn(Modality modality) const { return modality == Modality::track ? track : pose; }
+  std::size_t modality_count() const { return cdbns.size(); }
+  const Modality& modality(std::size_t m) const { return mrbm.shape().modalities[m]; }
+  /// How many frames later than the others the codes of modality m are that belong to them.
+  std::size_t ahead(std::size_t m) const { return m == 0 ? look_ahead : 0; }
 };
 
 }  // namespace mcdbn

@@ -1,56 +1,68 @@
 #pragma once
 
-#include <array>
+#include <string>
+#include <vector>
 
-#include "mcdbn/base/random.hpp"
-#include "mcdbn/device/parameters.hpp"
+#include "mcdbn/machines/crbm.hpp"
 
 namespace mcdbn {
 
-/// The two modalities of the MRBM, in the order in which its arrays hold them.
-enum class Modality : std::size_t { track = 0, pose = 1 };  // 2D, 3D
-constexpr std::size_t index_of(Modality modality) {
-  return static_cast<std::size_t>(modality);
-}
-/// In names of tensors.
-constexpr std::array<const char*, 2> kModalityNames{"track", "pose"};
-constexpr Modality other(Modality modality) {
-  return modality == Modality::track ? Modality::pose : Modality::track;
-}
+/// One kind of data that an MRBM joins with others.
+struct Modality {
+  std::string name;         ///< in names of tensors
+  std::size_t visible = 0;  ///< units
+  VisibleKind kind = VisibleKind::binary;
+  bool operator==(const Modality&) const = default;
+};
 
+struct MrbmShape {
+  std::vector<Modality> modalities;  ///< two or more
+  std::size_t hidden = 0;            ///< units that all of them share
+  bool operator==(const MrbmShape&) const = default;
+
+  /// @throws ShapeError for fewer than two modalities, or a name that comes twice
+  void check() const;
+};
+
+/// An MRBM's parameters on the host, with the paper's letters; entry m is modality m's.
 struct MrbmParameters {
-  std::array<MatrixF, 2> W;  ///< [visible of the modality x hidden]
-  std::array<MatrixF, 2> a;  ///< [1 x visible of the modality]
-  MatrixF b;                 ///< [1 x hidden]
+  MrbmShape shape;
+  std::vector<MatrixF> W;  ///< [visible of the modality x hidden]
+  std::vector<MatrixF> a;  ///< [1 x visible of the modality]
+  MatrixF b;               ///< [1 x hidden]
 
-  static MrbmParameters random(std::size_t track, std::size_t pose, std::size_t hidden,
-                               double deviation, const RandomKey& key);
+  static MrbmParameters zeros(const MrbmShape& shape);
+  /// Every W drawn from N(0, deviation²), biases zero.
+  static MrbmParameters random(const MrbmShape& shape, double deviation, const RandomKey& key);
   /// What stands in a machine's buffer (Mrbm::parameter_shapes), or in one of gradients.
-  static MrbmParameters read(const Parameters& from);
+  static MrbmParameters read(const Parameters& from, const MrbmShape& shape);
   /// @throws ShapeError
   void write(Parameters to) const;
 };
 
 /// The paper's letters in place among parameters of Mrbm::parameter_shapes, or among gradients.
 struct MrbmMatrices {
-  explicit MrbmMatrices(const Parameters& parameters);
-  std::array<Matrix, 2> W, a;
+  MrbmMatrices(const Parameters& parameters, const MrbmShape& shape);
+  std::vector<Matrix> W, a;
   Matrix b;
 };
 
-/// Two binary RBMs that share their hidden layer (eq 18 to 23).
+/// RBMs, one for each modality, that share their hidden layer (eq 18 to 23). Modalities are binary
+/// or Gaussian (variance 1, as data is standardized).
 class Mrbm : public MrbmMatrices {
  public:
-  /// W_track, a_track, W_pose, a_pose, b.
-  static std::vector<ParameterShape> parameter_shapes(const std::array<std::size_t, 2>& visible,
-                                                      std::size_t hidden);
+  /// W_NAME and a_NAME of every modality, then b.
+  static std::vector<ParameterShape> parameter_shapes(const MrbmShape& shape);
 
   Mrbm(Device& device, const MrbmParameters& start);
   /// Of these parameters as they are, of parameter_shapes(); they may stand among those of a larger
   /// machine. @throws ShapeError
-  explicit Mrbm(const Parameters& parameters);
+  Mrbm(const Parameters& parameters, const MrbmShape& shape);
   MrbmParameters to_host() const;
-  std::size_t visible(Modality modality) const { return W[index_of(modality)].rows(); }
+  const MrbmShape& shape() const { return shape_; }
+  std::size_t modality_count() const { return shape_.modalities.size(); }
+  std::size_t visible(std::size_t modality) const { return W[modality].rows(); }
+  VisibleKind kind(std::size_t modality) const { return shape_.modalities[modality].kind; }
   std::size_t hidden() const { return b.columns(); }
   const Parameters& parameters() const { return parameters_; }
   /// Where kernels find everything of each modality (mrbm_shape.clh).
@@ -59,17 +71,19 @@ class Mrbm : public MrbmMatrices {
   const Parameters& transposed() const { return transposed_; }
   Device& device() const { return b.device(); }
 
-  /// Mean-field inference of the absent modality (eq 32, 33), started from zeros, `steps` times.
-  /// With `doubled` the first pass counts the present modality twice in place of the absent one's
+  /// Mean-field inference of the absent modalities (eq 32, 33), started from zeros, `steps` times.
+  /// With `doubled` the first pass counts the present modalities twice in place of the absent ones'
   /// zeros (Sohn et al.). Sampled inference is MrbmChain's.
-  /// @param present [rows x visible(modality)]  @param absent [rows x visible(other)] result
-  void infer(Modality modality, const Rows& present, std::size_t steps, const Rows& absent,
-             bool doubled = false) const;
+  /// @param modalities [rows x visible] for each: what `present` says is there, the others are the
+  /// result  @throws ShapeError
+  void infer(const std::vector<Rows>& modalities, const std::vector<bool>& present,
+             std::size_t steps, bool doubled = false) const;
   void refresh_transposed();
 
-  std::array<Matrix, 2> W_transposed;  ///< [hidden x visible], in transposed()
+  std::vector<Matrix> W_transposed;  ///< [hidden x visible], in transposed()
 
  private:
+  MrbmShape shape_;
   Parameters parameters_, transposed_;
   IndexBuffer layout_;
 };

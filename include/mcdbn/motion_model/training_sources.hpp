@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -10,11 +11,18 @@
 
 namespace mcdbn {
 
+/// The modalities of the model of motion, in the network's order.
+inline constexpr std::size_t kTrack = 0, kPose = 1;  // 2D, 3D
+inline constexpr std::array<const char*, 2> kModalityNames{"track", "pose"};
+
 /// A training set's clips; the set must live on.
 class ClipSource : public SequenceSource {
  public:
   explicit ClipSource(const TrainingSet& set) : set_(set) {}
-  PairedClips sequences() const override { return {set_.tracks, set_.poses, set_.people}; }
+  SynchronizedClips sequences() const override {
+    return {{{kModalityNames[kTrack], set_.tracks}, {kModalityNames[kPose], set_.poses}},
+            set_.people};
+  }
 
  private:
   const TrainingSet& set_;
@@ -29,7 +37,7 @@ class ViewSource : public SequenceSource {
       : clips_(std::move(clips)), modalities_(modalities), config_(config) {}
 
   const TrainingSet& views() const;
-  PairedClips sequences() const override { return ClipSource(views()).sequences(); }
+  SynchronizedClips sequences() const override { return ClipSource(views()).sequences(); }
 
  private:
   mutable std::vector<LoadedClip> clips_;

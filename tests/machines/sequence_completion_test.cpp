@@ -1,6 +1,6 @@
 // Missing 2D joints filled in by the lowest layer, against double precision.
 
-#include "machines/track_completion.hpp"
+#include "machines/sequence_completion.hpp"
 
 #include <doctest/doctest.h>
 
@@ -65,12 +65,12 @@ TEST_CASE("track completion is the mean field of the lowest layer, frame by fram
       cdbn.layers.emplace_back(
           device, CrbmParameters::random({5, 2, 1, VisibleKind::binary}, 1.0, {3, 0, 0, 0}));
       const MatrixF whole = random_matrix(9, 5, 7);
-      CHECK(complete_track(cdbn, whole) == whole);
+      CHECK(complete_sequence(cdbn, whole) == whole);
       MatrixF gappy = whole;
       gappy.row(0).setConstant(kNan);
       gappy(2, 1) = gappy(3, 1) = gappy(3, 4) = gappy(8, 0) = kNan;
       gappy.row(5).setConstant(kNan);
-      const MatrixF filled = complete_track(cdbn, gappy);
+      const MatrixF filled = complete_sequence(cdbn, gappy);
       // Rounding comes to 6e-7 here. One step less or more, or another first guess, comes to 2e-4
       // at least.
       const double off = (filled.cast<double>() - completed(p, gappy)).cwiseAbs().maxCoeff();
@@ -80,7 +80,7 @@ TEST_CASE("track completion is the mean field of the lowest layer, frame by fram
         for (Eigen::Index c = 0; c < 5; ++c)
           if (!std::isnan(gappy(t, c))) CHECK(filled(t, c) == whole(t, c));
       MatrixF narrow = gappy.leftCols(4);
-      CHECK_THROWS_AS(complete_track(cdbn, narrow), ShapeError);
+      CHECK_THROWS_AS(complete_sequence(cdbn, narrow), ShapeError);
     }
   });
 }

@@ -1,0 +1,46 @@
+#include "machines/sequence_completion.hpp"
+
+#include "machines/crbm_on_host.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr int kMeanFieldSteps = 10;
+
+/// The `order` frames before `frame`, the training mean (zero) where the sequence has not begun.
+MatrixF history_of(const MatrixF& sequence, Eigen::Index frame, std::size_t order) {
+  MatrixF history = MatrixF::Zero(1, static_cast<Eigen::Index>(order) * sequence.cols());
+  for (Eigen::Index q = 0; q < static_cast<Eigen::Index>(order); ++q) {
+    const Eigen::Index source = frame - static_cast<Eigen::Index>(order) + q;
+    if (source >= 0)
+      history.middleCols(q * sequence.cols(), sequence.cols()) = sequence.row(source);
+  }
+  return history;
+}
+
+}  // namespace
+
+MatrixF complete_sequence(const Cdbn& cdbn, MatrixF sequence) {
+  if (!sequence.array().isNaN().any()) return sequence;
+  // Gaps are few and short: this runs on the host, over a copy of the lowest layer.
+  const CrbmParameters layer = cdbn.layers.front().to_host();
+  if (sequence.cols() != layer.W.rows())
+    throw ShapeError("gaps: the sequence does not fit the CDBN");
+  for (Eigen::Index t = 0; t < sequence.rows(); ++t) {
+    const auto missing = sequence.row(t).array().isNaN().eval();
+    if (!missing.any()) continue;
+    const MatrixF history = history_of(sequence, t, layer.shape.order);
+    const MatrixF nothing = MatrixF::Zero(1, layer.W.cols());
+    MatrixF row = t > 0 ? MatrixF(sequence.row(t - 1)) : visible_on_host(layer, nothing, history);
+    row = missing.select(row, sequence.row(t));
+    for (int step = 0; step < kMeanFieldSteps; ++step) {
+      const MatrixF hidden = hidden_on_host(layer, row, history);
+      row = missing.select(visible_on_host(layer, hidden, history), row);
+    }
+    sequence.row(t) = row;
+  }
+  return sequence;
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,153 @@
+// An MRBM of more than two modalities, and of Gaussian ones.
+
+#include <doctest/doctest.h>
+
+#include "device/every_device.hpp"
+#include "machines/mrbm_chain.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "reference/error_bounds.hpp"
+#include "reference/mrbm_chain_reference.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+using reference::Bounded;
+using reference::misfit;
+
+namespace {
+
+constexpr VisibleKind kBinary = VisibleKind::binary, kGaussian = VisibleKind::gaussian;
+constexpr std::size_t kRows = 5;
+
+/// An MRBM and values of every modality.
+struct Problem {
+  Problem(const std::vector<std::pair<std::size_t, VisibleKind>>& modalities, std::size_t hidden) {
+    MrbmShape shape{{}, hidden};
+    for (const auto& [visible, kind] : modalities)
+      shape.modalities.push_back({std::to_string(shape.modalities.size()), visible, kind});
+    start = MrbmParameters::zeros(shape);
+    unsigned seed = 0;
+    const auto fill = [&](MatrixF& x, float scale) {
+      x = random_matrix(static_cast<std::size_t>(x.rows()), static_cast<std::size_t>(x.cols()),
+                        ++seed, scale);
+    };
+    for (MatrixF& W : start.W) fill(W, 0.6F);
+    for (MatrixF& a : start.a) fill(a, 0.5F);
+    fill(start.b, 0.5F);
+    for (std::size_t m = 0; m < modalities.size(); ++m) {
+      const MatrixF drawn = random_matrix(kRows, modalities[m].first, ++seed);
+      values.push_back(modalities[m].second == kGaussian
+                           ? drawn
+                           : MatrixF((0.5F * (drawn.array() + 1.0F)).matrix()));
+      model.weights.push_back(start.W[m].cast<double>());
+      model.visible_bias.push_back(start.a[m].cast<double>());
+      model.gaussian.push_back(modalities[m].second == kGaussian);
+    }
+    model.hidden_bias = start.b.cast<double>();
+  }
+
+  std::vector<Bounded> want(const std::vector<bool>& present, const MrbmChainOptions& o) const {
+    std::vector<MatrixD> in_double;
+    for (const MatrixF& value : values) in_double.push_back(value.cast<double>());
+    const auto numbers = [&](const auto& number) {
+      return [&number, key = o.random](int pass, Eigen::Index units) {
+        RandomKey own = key;
+        own.phase = static_cast<std::uint16_t>(key.phase + pass);
+        return MatrixD(
+            MatrixD::NullaryExpr(Eigen::Index{kRows}, units, [&](Eigen::Index r, Eigen::Index c) {
+              return number(own, static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c));
+            }));
+      };
+    };
+    return reference::bounded_chain(
+        model, present, in_double,
+        {static_cast<int>(o.steps), static_cast<double>(o.temperature), o.doubled},
+        numbers(random_uniform), numbers(random_normal));
+  }
+
+  std::vector<MatrixF> got(Device& device, const std::vector<bool>& present,
+                           const MrbmChainOptions& options) const {
+    const Mrbm mrbm(device, start);
+    std::vector<Matrix> on_device;
+    std::vector<Rows> rows;
+    for (std::size_t m = 0; m < values.size(); ++m)
+      // What stands where the answer goes must not count.
+      on_device.push_back(
+          Matrix::from_host(device, present[m] ? values[m] : MatrixF(values[m] * 9)));
+    for (const Matrix& matrix : on_device) rows.emplace_back(matrix);
+    MrbmChain(mrbm, present, kRows).run(rows, options);
+    std::vector<MatrixF> result;
+    for (const Matrix& matrix : on_device) result.push_back(matrix.to_host());
+    return result;
+  }
+
+  void check(const std::vector<bool>& present, const MrbmChainOptions& options) const {
+    const std::vector<Bounded> wanted = want(present, options);
+    on_every_device([&](Device& device) {
+      const std::vector<MatrixF> found = got(device, present, options);
+      for (std::size_t m = 0; m < present.size(); ++m) {
+        CAPTURE(m);
+        if (present[m]) {
+          CHECK(found[m] == values[m]);
+          continue;
+        }
+        int told = 0;
+        for (Eigen::Index r = 0; r < found[m].rows(); ++r) {
+          if (!(wanted[m].bound.row(r).maxCoeff() < 1e-2)) continue;  // rounding decides a draw
+          ++told;
+          CHECK(misfit(found[m].row(r), wanted[m].value.row(r), wanted[m].bound.row(r)) == "");
+        }
+        CHECK(told >= 3);
+      }
+    });
+  }
+
+  MrbmParameters start;
+  reference::Mrbm model;
+  std::vector<MatrixF> values;
+};
+
+MrbmChainOptions options_with(std::size_t steps, float temperature, bool doubled = false) {
+  return {steps, temperature, doubled, Sampling::bernoulli, {77, 3, 2, 0}};
+}
+
+}  // namespace
+
+TEST_CASE("small: the mean field of three modalities, one or two of them absent, is eq 32 and 33") {
+  const Problem problem({{4, kBinary}, {7, kBinary}, {3, kBinary}}, 5);
+  for (const std::vector<bool>& present :
+       {std::vector<bool>{true, true, false}, {false, true, true}, {true, false, false}})
+    for (const bool doubled : {false, true}) problem.check(present, options_with(3, 0.0F, doubled));
+  problem.check({false, false, false}, options_with(2, 0.0F));  // from b alone
+}
+
+TEST_CASE("small: a Gaussian modality is inferred, and tells of others, by its own units") {
+  const Problem two({{6, kGaussian}, {5, kBinary}}, 7);
+  const Problem three({{4, kGaussian}, {17, kBinary}, {3, kGaussian}}, 6);
+  for (const float temperature : {0.0F, 1.0F, 0.4F}) {
+    CAPTURE(temperature);
+    two.check({true, false}, options_with(2, temperature));
+    two.check({false, true}, options_with(2, temperature));
+    three.check({true, false, false}, options_with(2, temperature));
+    three.check({false, true, false}, options_with(1, temperature));
+  }
+}
+
+TEST_CASE("small: a chain of three modalities draws hidden units, then each absent one") {
+  const Problem problem({{4, kBinary}, {7, kBinary}, {3, kBinary}}, 5);
+  problem.check({true, false, false}, options_with(2, 1.0F));
+  problem.check({false, true, true}, options_with(3, 1.0F));
+}
+
+TEST_CASE("small: an MRBM wants two modalities or more, each with a name of its own") {
+  on_every_device([](Device& device) {
+    CHECK_THROWS_AS(Mrbm(device, MrbmParameters::zeros({{{"only", 3}}, 2})), ShapeError);
+    CHECK_THROWS_AS(Mrbm(device, MrbmParameters::zeros({{{"x", 3}, {"x", 4}}, 2})), ShapeError);
+    const Problem problem({{4, kBinary}, {7, kBinary}, {3, kBinary}}, 5);
+    const Mrbm mrbm(device, problem.start);
+    CHECK(mrbm.modality_count() == 3);
+    CHECK(mrbm.visible(2) == 3);
+    CHECK(mrbm.parameters().entry("W_1").rows == 7);
+    CHECK_THROWS_AS(MrbmChain(mrbm, {true, true, true}, 2), ShapeError);
+    CHECK_THROWS_AS(MrbmChain(mrbm, {true, false}, 2), ShapeError);
+  });
+}
