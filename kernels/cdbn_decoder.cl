@@ -3,13 +3,13 @@
 //
 // global: (blocks · GROUP), local: (GROUP). Sequence i's frame t is row i · frames + t of `state`
 // [V_LD wide] and `code` [H_LD wide]; work is done for frames first … last − 1, and the frames before
-// `first` are history. Compile-time: VISIBLE, HIDDEN, ORDER (at least 1), GAUSSIAN, ROWS, COLUMNS,
-// GROUP (tile.clh).
+// `first` are history. Compile-time: crbm_shape.clh (ORDER at least 1; decode_means asks only
+// for ORDER_A), ROWS, COLUMNS, GROUP (tile.clh).
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 GAUSSIAN=0,1 GROUP=1,64 SAMPLE=
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
-//   VISIBLE=1,97 HIDDEN=1,97 ORDER=1,5 GAUSSIAN=0,1
+//   VISIBLE=1,97 HIDDEN=1,97 ORDER_A=1,5 ORDER_B=0,5 GAUSSIAN=0,1
 
 #undef SAMPLE
 #define SAMPLE 1
@@ -47,12 +47,13 @@ INLINE void store_frame(floatN sum[ROWS][COLUMNS], const int count, global float
       if (r < rows) storeN(sum[r][c], (start[r] + frame) * V_LD + column + c * VEC, x);
 }
 
-// sum += history · weights, the oldest frame first (eq 16, 17)
+// sum += history · weights, of the last `order` frames the oldest first (eq 16, 17)
 INLINE void add_history(floatN sum[ROWS][COLUMNS], const int count, local const float* ring,
-                        int frame, global const float* weights, const int ld, int column) {
-  for (int q = 0; q < ORDER; ++q)
-    add_products(sum, count, ring + SLOT(frame + q), V_LD, VISIBLE, weights + q * V_LD * ld, ld,
-                 column);
+                        int frame, const int order, global const float* weights, const int ld,
+                        int column) {
+  for (int q = 0; q < order; ++q)
+    add_products(sum, count, ring + SLOT(frame + ORDER - order + q), V_LD, VISIBLE,
+                 weights + q * V_LD * ld, ld, column);
 }
 
 // The frame is complete in `state`; from here on it is history.
@@ -77,7 +78,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_means(
   for (int frame = first; frame < last; ++frame) {
     FOR_TILES(V_LD, {
       load_frame(sum, count, state, start, frame, column);
-      add_history(sum, count, ring, frame, weights_a, V_LD, column);
+      add_history(sum, count, ring, frame, ORDER_A, weights_a, V_LD, column);
 #if !GAUSSIAN
       apply_sigmoid(sum, count, column, VISIBLE);
 #endif
@@ -109,12 +110,12 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_samples(
     random.z = (uint)frame;
     FOR_TILES(V_LD, {
       load_tile(sum, count, bias_a, 0, column);
-      add_history(sum, count, ring, frame, weights_a, V_LD, column);
+      add_history(sum, count, ring, frame, ORDER_A, weights_a, V_LD, column);
       store_tile(sum, count, bias_v, V_LD, column);
     });
     FOR_TILES(H_LD, {
       load_tile(sum, count, bias_b, 0, column);
-      add_history(sum, count, ring, frame, weights_b, H_LD, column);
+      add_history(sum, count, ring, frame, ORDER_B, weights_b, H_LD, column);
       store_tile(sum, count, bias_h, H_LD, column);
     });
     take_rows(h, H_LD, code, start, frame);

@@ -4,8 +4,8 @@
 // visible means and hidden units. What the products read, visible means `v` and hidden units `s`,
 // is in __local; the rest goes to the outputs, which contrastive_divergence_update.cl reads.
 //
-// global: (blocks · GROUP), local: (GROUP). Compile-time: VISIBLE, HIDDEN (units), ORDER (frames of
-// history), GAUSSIAN (1, or 0 for binary visible units), ROWS, COLUMNS, GROUP (tile.clh).
+// global: (blocks · GROUP), local: (GROUP). Compile-time: crbm_shape.clh, ROWS, COLUMNS, GROUP
+// (tile.clh).
 // parameters_at: the first floats of W, A, B, a and b.
 // Outputs are [blocks · ROWS x V_LD or H_LD]; rows past `rows` repeat the last one.
 //   visible_data, hidden_data          v and p(h | v, H) of the data
@@ -16,7 +16,7 @@
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 GAUSSIAN=0,1 GROUP=1,64 SAMPLE=
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
-//   VISIBLE=1,97 HIDDEN=1,97 ORDER=0,1,5 GAUSSIAN=0,1
+//   VISIBLE=1,97 HIDDEN=1,97 ORDER_A=0,1,5 ORDER_B=0,5 GAUSSIAN=0,1
 
 #undef SAMPLE
 #define SAMPLE 1
@@ -79,16 +79,19 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
   });
   for (int q = 0; q < ORDER; ++q) {
     take_frames(v, frames, at, ORDER - q);
-    FOR_TILES(V_LD, {
-      load_tile(sum, count, visible_change, V_LD, column);
-      add_products(sum, count, v, V_LD, VISIBLE, weights_a + q * V_LD * V_LD, V_LD, column);
-      store_tile(sum, count, visible_change, V_LD, column);
-    });
-    FOR_TILES(H_LD, {
-      load_tile(sum, count, hidden_change, H_LD, column);
-      add_products(sum, count, v, V_LD, VISIBLE, weights_b + q * V_LD * H_LD, H_LD, column);
-      store_tile(sum, count, hidden_change, H_LD, column);
-    });
+    const int seen_by_a = q - (ORDER - ORDER_A), seen_by_b = q - (ORDER - ORDER_B);
+    if (seen_by_a >= 0)
+      FOR_TILES(V_LD, {
+        load_tile(sum, count, visible_change, V_LD, column);
+        add_products(sum, count, v, V_LD, VISIBLE, weights_a + seen_by_a * V_LD * V_LD, V_LD, column);
+        store_tile(sum, count, visible_change, V_LD, column);
+      });
+    if (seen_by_b >= 0)
+      FOR_TILES(H_LD, {
+        load_tile(sum, count, hidden_change, H_LD, column);
+        add_products(sum, count, v, V_LD, VISIBLE, weights_b + seen_by_b * V_LD * H_LD, H_LD, column);
+        store_tile(sum, count, hidden_change, H_LD, column);
+      });
   }
 
   take_frames(v, frames, at, 0);

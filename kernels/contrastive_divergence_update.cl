@@ -10,7 +10,7 @@
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 TILE_ROWS=4,8,16 GAUSSIAN= SAMPLE=
-//   VISIBLE=1,97 HIDDEN=1,97 ORDER=0,1,5 OPTIMIZER=none,momentum,adam
+//   VISIBLE=1,97 HIDDEN=1,97 ORDER_A=0,1,5 ORDER_B=0,5 OPTIMIZER=none,momentum,adam
 
 #include "units.clh"
 #include "crbm_shape.clh"
@@ -53,14 +53,14 @@ INLINE void update_w(int tile, int rows, float mean, global const float* visible
   }
 }
 
-// A or B: ⟨history · change⟩ (eq 38 to 41); `ld` is V_LD for A, H_LD for B
-INLINE void update_directed(int tile, const int ld, int rows, float mean,
+// A or B: ⟨history · change⟩ (eq 38 to 41); `ld` is V_LD for A, H_LD for B, `order` the frames it sees
+INLINE void update_directed(int tile, const int order, const int ld, int rows, float mean,
                             global const float* frames, global const int* index, int shift,
                             global const float* change, int at, global float* parameters,
                             global float* gradients, global float* states, int size, float8 rule) {
   const int row0 = tile / (ld / VEC) * TILE_ROWS;
   const int column = tile % (ld / VEC) * VEC;
-  frames += (shift - ORDER) * V_LD + row0;
+  frames += (shift - order) * V_LD + row0;
   floatN sum[TILE_ROWS];
 #pragma unroll
   for (int r = 0; r < TILE_ROWS; ++r) sum[r] = (floatN)(0.0f);
@@ -89,27 +89,27 @@ kernel void cd_update(
     global const float* loss, global float* loss_sum, float loss_scale) {
   const float mean = 1.0f / (float)rows;
   const float8 rule_bias = without_decay(rule_w);
-  const int history_tiles = ORDER * V_LD / TILE_ROWS;
+  const int frame_tiles = V_LD / TILE_ROWS;
   index += first;
   int tile = get_global_id(0);
-  if (tile < V_LD / TILE_ROWS * (H_LD / VEC)) {
+  if (tile < frame_tiles * (H_LD / VEC)) {
     update_w(tile, rows, mean, visible_data, visible, hidden_data, hidden, parameters_at.s0, parameters,
              gradients, states, size, w_transposed, rule_w);
     return;
   }
-  tile -= V_LD / TILE_ROWS * (H_LD / VEC);
-  if (tile < history_tiles * (V_LD / VEC)) {
-    update_directed(tile, V_LD, rows, mean, frames, index, shift, visible_change, parameters_at.s1, parameters,
+  tile -= frame_tiles * (H_LD / VEC);
+  if (tile < ORDER_A * frame_tiles * (V_LD / VEC)) {
+    update_directed(tile, ORDER_A, V_LD, rows, mean, frames, index, shift, visible_change, parameters_at.s1, parameters,
                     gradients, states, size, rule_a);
     return;
   }
-  tile -= history_tiles * (V_LD / VEC);
-  if (tile < history_tiles * (H_LD / VEC)) {
-    update_directed(tile, H_LD, rows, mean, frames, index, shift, hidden_change, parameters_at.s2, parameters,
+  tile -= ORDER_A * frame_tiles * (V_LD / VEC);
+  if (tile < ORDER_B * frame_tiles * (H_LD / VEC)) {
+    update_directed(tile, ORDER_B, H_LD, rows, mean, frames, index, shift, hidden_change, parameters_at.s2, parameters,
                     gradients, states, size, rule_b);
     return;
   }
-  tile -= history_tiles * (H_LD / VEC);
+  tile -= ORDER_B * frame_tiles * (H_LD / VEC);
   if (tile < V_LD / VEC) {
     update_bias(tile * VEC, V_LD, rows, mean, visible_change, parameters_at.s3, parameters, gradients, states,
                 size, rule_bias);

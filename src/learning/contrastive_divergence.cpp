@@ -137,10 +137,10 @@ void ContrastiveDivergence::composed_gradients(const Rows& rows) {
   scaled_difference(hidden, hidden_data, mean, hidden);
   column_sum(visible, 1.0F, 0.0F, gradient_->a);
   column_sum(hidden, 1.0F, 0.0F, gradient_->b);
-  if (crbm_.shape().order == 0) return;
-  const Rows history = crbm_.history(rows);
-  gemm_transposed_a(history, visible, gradient_->A);
-  gemm_transposed_a(history, hidden, gradient_->B);
+  if (crbm_.shape().order_A() > 0)
+    gemm_transposed_a(crbm_.history_for_A(rows), visible, gradient_->A);
+  if (crbm_.shape().order_B() > 0)
+    gemm_transposed_a(crbm_.history_for_B(rows), hidden, gradient_->B);
 }
 
 CrbmParameters ContrastiveDivergence::gradients() {

@@ -10,7 +10,8 @@ Defines shape_defines(const CrbmShape& shape, const RowTile& tile) {
   return {{"VEC", tile.vector_width},
           {"VISIBLE", to_int(shape.visible)},
           {"HIDDEN", to_int(shape.hidden)},
-          {"ORDER", to_int(shape.order)}};
+          {"ORDER_A", to_int(shape.order_A())},
+          {"ORDER_B", to_int(shape.order_B())}};
 }
 
 /// The first floats of W, A, B, a and b.
@@ -23,8 +24,8 @@ std::size_t update_work_items(const CrbmShape& shape, const RowTile& tile) {
   const std::size_t visible = padded(shape.visible), hidden = padded(shape.hidden);
   const auto vec = static_cast<std::size_t>(tile.vector_width);
   const auto rows = static_cast<std::size_t>(tile.update_rows);
-  const std::size_t vectors = (visible + hidden) / vec;
-  return visible / rows * (hidden / vec) + shape.order * visible / rows * vectors + vectors + 1;
+  const std::size_t directed = shape.order_A() * (visible / vec) + shape.order_B() * (hidden / vec);
+  return visible / rows * (hidden / vec + directed) + (visible + hidden) / vec + 1;
 }
 
 }  // namespace

@@ -89,6 +89,7 @@ void run_epochs(const Stage& stage, MinibatchSchedule& schedule, DivergenceGuard
     report.loss = loss;
     report.windows_per_s = clock.windows_per_s(batches * schedule.batch());
     report.stage_progress = static_cast<double>(step.epoch) / static_cast<double>(stage.epochs);
+    report.overall_progress = report.stage_progress;
     if (is_health_epoch(step.epoch, stage.epochs)) report.health = stage.health();
     observer(report);
     clock.restart();
@@ -107,7 +108,9 @@ MatrixF mean_of(const Sequences& sequences) {
 /// Work of a stage in multiply-adds, to show progress over all of them.
 double crbm_cost(const CrbmShape& shape, const CdSettings& settings) {
   const auto v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
-  const double histories = 2.0 * static_cast<double>(shape.order) * v * (v + h);
+  const double histories =
+      2.0 * v *
+      (static_cast<double>(shape.order_A()) * v + static_cast<double>(shape.order_B()) * h);
   return static_cast<double>(settings.epochs) *
          (histories + (2.0 * static_cast<double>(settings.gibbs_steps) + 3.0) * v * h);
 }
@@ -118,18 +121,18 @@ double mrbm_cost(std::size_t codes, const LearningSettings& learning) {
          static_cast<double>(codes * learning.mrbm_hidden);
 }
 
-/// Turns each stage's progress into that of the whole run.
+/// Turns the progress of each part into that of the whole.
 class OverallProgress {
  public:
   OverallProgress(EpochObserver observer, double total)
       : observer_(std::move(observer)), total_(total) {}
 
-  EpochObserver stage(double cost) {
+  EpochObserver part(double cost) {
     const double before = done_;
     done_ += cost;
     if (!observer_) return {};
     return [this, before, cost](EpochReport report) {
-      report.overall_progress = (before + cost * report.stage_progress) / total_;
+      report.overall_progress = (before + cost * report.overall_progress) / total_;
       observer_(report);
     };
   }
@@ -140,48 +143,20 @@ class OverallProgress {
   double done_ = 0;
 };
 
-std::vector<CrbmShape> layer_shapes(std::size_t visible, VisibleKind kind,
-                                    const LearningSettings& learning) {
-  std::vector<CrbmShape> shapes{{visible, learning.hidden, learning.order, kind}};
-  while (shapes.size() < learning.layers)
-    shapes.push_back({learning.hidden, learning.hidden, learning.order, VisibleKind::binary});
-  return shapes;
-}
-
 const CdSettings& settings_for(const CrbmShape& shape, const LearningSettings& learning) {
   return shape.kind == VisibleKind::gaussian ? learning.gaussian : learning.binary;
 }
 
-struct TrainedCdbn {
-  Cdbn cdbn;
-  Sequences code;
-};
+double cdbn_cost(const std::vector<CrbmShape>& layers, const LearningSettings& learning) {
+  double cost = 0;
+  for (const CrbmShape& shape : layers) cost += crbm_cost(shape, settings_for(shape, learning));
+  return cost;
+}
 
 CrbmParameters small_weights(const CrbmShape& shape, const LearningSettings& learning,
                              std::uint16_t stream) {
   return CrbmParameters::random(shape, settings_for(shape, learning).initial_deviation,
                                 key_of(learning, stream, 0, kWeightPhase));
-}
-
-/// @param start weights to start from; nothing: small random ones
-TrainedCdbn train_cdbn(Device& device, const ModalityClips& modality,
-                       const LearningSettings& learning, const Cdbn* start,
-                       std::uint16_t first_stream, OverallProgress& progress) {
-  TrainedCdbn trained;
-  trained.code = Sequences::from_host(device, modality.clips);
-  std::uint16_t stream = first_stream;
-  for (const CrbmShape& shape : layer_shapes(modality.dimension(), modality.kind, learning)) {
-    const CdSettings& settings = settings_for(shape, learning);
-    const std::size_t layer = trained.cdbn.layers.size();
-    trained.cdbn.layers.push_back(train_crbm(
-        device, trained.code,
-        start ? start->layers.at(layer).to_host() : small_weights(shape, learning, stream),
-        settings, learning, stream, progress.stage(crbm_cost(shape, settings)),
-        fmt::format("{}.{}", modality.name, layer)));
-    ++stream;
-    trained.code = up_pass(trained.cdbn.layers.back(), trained.code);
-  }
-  return trained;
 }
 
 MatrixF logit(const MatrixF& p) {
@@ -241,6 +216,38 @@ std::vector<MatrixF> some_codes(std::span<const Sequences> codes,
 
 }  // namespace
 
+std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings& learning,
+                                    VisibleKind kind) {
+  std::vector<CrbmShape> shapes{{visible, learning.hidden, learning.order, kind}};
+  while (shapes.size() < learning.layers)
+    shapes.push_back({learning.hidden, learning.hidden, learning.order, VisibleKind::binary});
+  return shapes;
+}
+
+TrainedCdbn train_cdbn(Device& device, Sequences visible, const std::vector<CrbmShape>& layers,
+                       const LearningSettings& learning, std::uint16_t first_stream,
+                       const EpochObserver& observer, const std::string& name, const Cdbn* start) {
+  TrainedCdbn trained;
+  trained.code = std::move(visible);
+  OverallProgress progress(observer, cdbn_cost(layers, learning));
+  std::uint16_t stream = first_stream;
+  for (const CrbmShape& shape : layers) {
+    const CdSettings& settings = settings_for(shape, learning);
+    const std::size_t layer = trained.cdbn.layers.size();
+    if (shape.visible != trained.code.values.columns())
+      throw ShapeError(fmt::format("CDBN: layer {} has {} visible units, what it learns from {}",
+                                   layer, shape.visible, trained.code.values.columns()));
+    trained.cdbn.layers.push_back(train_crbm(
+        device, trained.code,
+        start ? start->layers.at(layer).to_host() : small_weights(shape, learning, stream),
+        settings, learning, stream, progress.part(crbm_cost(shape, settings)),
+        fmt::format("{}.{}", name, layer)));
+    ++stream;
+    trained.code = up_pass(trained.cdbn.layers.back(), trained.code);
+  }
+  return trained;
+}
+
 Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
                 const CdSettings& settings, const LearningSettings& learning, std::uint16_t stream,
                 const EpochObserver& observer, const std::string& stage) {
@@ -298,14 +305,14 @@ Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningS
   if (modalities > random_streams::kMostModalities)
     throw ConfigError(
         fmt::format("{} modalities; {} are the most", modalities, random_streams::kMostModalities));
-  MrbmShape shape;
-  shape.hidden = learning.mrbm_hidden;
+  MrbmShape shape{{}, learning.mrbm_hidden};
+  std::vector<std::vector<CrbmShape>> layers;
   const double last_cost = mrbm_cost(modalities * learning.hidden, learning);
   double total = last_cost;
   for (const ModalityClips& modality : clips.modalities) {
-    shape.modalities.push_back({modality.name, learning.hidden});
-    for (const CrbmShape& layer : layer_shapes(modality.dimension(), modality.kind, learning))
-      total += crbm_cost(layer, settings_for(layer, learning));
+    layers.push_back(layer_shapes(modality.dimension(), learning, modality.kind));
+    shape.modalities.push_back({modality.name, layers.back().back().hidden});
+    total += cdbn_cost(layers.back(), learning);
   }
   OverallProgress progress(observer, total);
   std::vector<Cdbn> cdbns(modalities);
@@ -313,15 +320,17 @@ Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningS
   // Algorithm 1 begins with 3D, the last.
   for (std::size_t i = 0; i < modalities; ++i) {
     const std::size_t m = modalities - 1 - i;
+    const ModalityClips& modality = clips.modalities[m];
     TrainedCdbn trained =
-        train_cdbn(device, clips.modalities[m], learning, start ? &start->cdbns.at(m) : nullptr,
-                   random_streams::layers_of(i), progress);
+        train_cdbn(device, Sequences::from_host(device, modality.clips), layers[m], learning,
+                   random_streams::layers_of(i), progress.part(cdbn_cost(layers[m], learning)),
+                   modality.name, start ? &start->cdbns.at(m) : nullptr);
     cdbns[m] = std::move(trained.cdbn);
     codes[m] = std::move(trained.code);
   }
   Mrbm mrbm = train_mrbm(device, codes,
                          start ? start->mrbm.to_host() : small_weights(shape, codes, learning),
-                         learning, random_streams::kMrbm, progress.stage(last_cost));
+                         learning, random_streams::kMrbm, progress.part(last_cost));
   return {std::move(cdbns), std::move(mrbm), learning.look_ahead, learning.mrbm.mean_field_steps};
 }
 

@@ -74,8 +74,8 @@ UnrolledNetwork::Layer::Layer(const Parameters& parameters, const Parameters& gr
                               const CrbmShape& shape, const MatrixF& visible_mean)
     : crbm(parameters, shape, visible_mean),
       gradient(gradients),
-      A_following(parameters.device(), shape.order * crbm.A.stride(), shape.visible),
-      B_following(parameters.device(), shape.order * crbm.B.stride(), shape.visible) {}
+      A_following(parameters.device(), shape.order_A() * crbm.A.stride(), shape.visible),
+      B_following(parameters.device(), shape.order_B() * crbm.B.stride(), shape.visible) {}
 
 UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t mean_field_steps)
     : look_ahead_(start.look_ahead),
@@ -114,10 +114,9 @@ void UnrolledNetwork::refresh_copies() {
   for (auto& stack : layers_)
     for (Layer& layer : stack) {
       layer.crbm.refresh_transposed();
-      const std::size_t order = layer.crbm.shape().order;
-      if (order == 0) continue;
-      transpose_lags(layer.crbm.A, order, layer.A_following);
-      transpose_lags(layer.crbm.B, order, layer.B_following);
+      const CrbmShape& shape = layer.crbm.shape();
+      if (shape.order_A() > 0) transpose_lags(layer.crbm.A, shape.order_A(), layer.A_following);
+      if (shape.order_B() > 0) transpose_lags(layer.crbm.B, shape.order_B(), layer.B_following);
     }
   mrbm_.refresh_transposed();
 }

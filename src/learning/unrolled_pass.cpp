@@ -120,12 +120,13 @@ void UnrolledPass::up_pass(UpPass& up) {
     const Rows units = from(up.units[i], order);
     GemmOptions options;
     options.bias = &layer.b;
-    options.activation = order == 0 ? Activation::centered_sigmoid : Activation::none;
+    const bool has_history = layer.shape().order_B() > 0;
+    options.activation = has_history ? Activation::none : Activation::centered_sigmoid;
     gemm(from(*below, order), layer.W, units, options);
-    if (order > 0) {
+    if (has_history) {
       options = added();
       options.activation = Activation::centered_sigmoid;
-      gemm(layer.history(from(*below, order)), layer.B, units, options);
+      gemm(layer.history_for_B(from(*below, order)), layer.B, units, options);
     }
     drop_out(Rows(up.units[i], 0, rows_), windows_.frames);
     below = &up.units[i];
@@ -159,7 +160,7 @@ void UnrolledPass::down_pass() {
     const bool is_top = i + 1 == down_layers_.size();
     const bool is_binary = layer.shape().kind == VisibleKind::binary;
     const Activation activation = is_binary ? Activation::centered_sigmoid : Activation::none;
-    const std::size_t order = layer.shape().order;
+    const std::size_t order = layer.shape().order_A();
     ++drop_out_key_.phase;
     for (std::size_t frame = windows_.first; frame < windows_.frames; ++frame) {
       const Rows state = at(states_[i], frame);
@@ -173,7 +174,7 @@ void UnrolledPass::down_pass() {
       if (order > 0) {
         options = added();
         options.activation = activation;
-        gemm(layer.history(state), layer.A, state, options);
+        gemm(layer.history_for_A(state), layer.A, state, options);
       }
       if (is_binary) drop_out(state, 1);  // the same units in every frame
     }
@@ -190,7 +191,7 @@ void UnrolledPass::down_pass_backward() {
   const std::size_t first = windows_.first;
   for (std::size_t i = 0; i < down_layers_.size(); ++i) {
     UnrolledNetwork::Layer& layer = down_layers_[i];
-    const std::size_t order = layer.crbm.shape().order;
+    const std::size_t order = layer.crbm.shape().order_A();
     const bool is_binary = layer.crbm.shape().kind == VisibleKind::binary;
     Matrix& errors = state_errors_[i];
     // Through time: what a frame did to those that had it as history.
@@ -210,8 +211,8 @@ void UnrolledPass::down_pass_backward() {
         is_top ? Rows(values_, steps_ * rows_ + first, rows_ - first) : from(states_[i + 1], first);
     gemm_transposed_a(error, above, layer.gradient.W, 1.0F, 1.0F);
     if (order > 0)
-      gemm_transposed_a(layer.crbm.history(from(states_[i], first)), error, layer.gradient.A, 1.0F,
-                        1.0F);
+      gemm_transposed_a(layer.crbm.history_for_A(from(states_[i], first)), error, layer.gradient.A,
+                        1.0F, 1.0F);
     column_sum(error, 1.0F, 1.0F, layer.gradient.a);
     if (is_top)
       gemm(error, layer.crbm.W, Rows(value_errors_, (steps_ - 1) * rows_ + first, rows_ - first),
@@ -252,24 +253,24 @@ void UnrolledPass::mean_field_backward() {
 void UnrolledPass::up_pass_backward(UpPass& up) {
   for (std::size_t i = up.layers.size(); i-- > 0;) {
     UnrolledNetwork::Layer& layer = up.layers[i];
-    const std::size_t order = layer.crbm.shape().order;
+    const std::size_t order = layer.crbm.shape().order, order_B = layer.crbm.shape().order_B();
     const Matrix& below = i > 0 ? up.units[i - 1] : up.input;
     const Rows error(up.errors[i], order, rows_ - order);
     gemm_transposed_a(from(below, order), error, layer.gradient.W, 1.0F, 1.0F);
-    if (order > 0)
-      gemm_transposed_a(layer.crbm.history(from(below, order)), error, layer.gradient.B, 1.0F,
+    if (order_B > 0)
+      gemm_transposed_a(layer.crbm.history_for_B(from(below, order)), error, layer.gradient.B, 1.0F,
                         1.0F);
     column_sum(error, 1.0F, 1.0F, layer.gradient.b);
     if (i == 0) break;
     const Rows units(below), error_below(up.errors[i - 1], 0, rows_);
     GemmOptions options = through_units(&units, kept_share_);
-    if (order == 0) {
+    if (order_B == 0) {
       gemm(Rows(up.errors[i], 0, rows_), layer.crbm.W_transposed, error_below, options);
       continue;
     }
     gemm(Rows(up.errors[i], 0, rows_), layer.crbm.W_transposed, error_below);
     options.beta = 1.0F;
-    gemm(following(up.errors[i], 0, rows_, 1, order), layer.B_following, error_below, options);
+    gemm(following(up.errors[i], 0, rows_, 1, order_B), layer.B_following, error_below, options);
   }
 }
 

@@ -68,11 +68,11 @@ void CdbnDecoder::down_pass(std::size_t frame, bool top_is_driven) {
       // The state holds a + code·Wᵀ: what is left is the history's part.
       options.beta = 1.0F;
       options.activation = activation_of(layer);
-      gemm(layer.history(state), layer.A, state, options);
+      gemm(layer.history_for_A(state), layer.A, state, options);
       continue;
     }
     options.bias = &layer.a;
-    gemm(layer.history(state), layer.A, state, options);
+    gemm(layer.history_for_A(state), layer.A, state, options);
     GemmOptions from_above;
     from_above.beta = 1.0F;
     from_above.activation = activation_of(layer);

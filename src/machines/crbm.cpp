@@ -27,19 +27,37 @@ Parameters uploaded(Device& device, const CrbmParameters& start) {
   return parameters;
 }
 
+/// Of each row the frames before it, as one long row.
+Rows frames_before(const Rows& rows, std::size_t order) {
+  if (!rows.index && rows.first < order)
+    throw ShapeError("CRBM: a row has fewer frames before it than the order");
+  Rows past = rows.index
+                  ? Rows::indexed(*rows.matrix, *rows.index, rows.index_first, rows.count,
+                                  rows.shift - static_cast<int>(order), order)
+                  : Rows::strided(*rows.matrix, rows.first - order, rows.count, rows.step, order);
+  // A and B have rows for the padding of every frame, so a history of one has its padding too.
+  past.columns = order * rows.matrix->stride();
+  return past;
+}
+
 }  // namespace
+
+bool CrbmShape::operator==(const CrbmShape& other) const {
+  return visible == other.visible && hidden == other.hidden && order == other.order &&
+         kind == other.kind && order_A() == other.order_A() && order_B() == other.order_B();
+}
 
 CrbmParameters CrbmParameters::zeros(const CrbmShape& shape) {
   const auto visible = static_cast<Eigen::Index>(shape.visible);
   const auto hidden = static_cast<Eigen::Index>(shape.hidden);
-  const auto history = static_cast<Eigen::Index>(shape.order) * visible;
   return {shape,
           MatrixF::Zero(visible, hidden),
-          MatrixF::Zero(history, visible),
-          MatrixF::Zero(history, hidden),
+          MatrixF::Zero(static_cast<Eigen::Index>(shape.order_A()) * visible, visible),
+          MatrixF::Zero(static_cast<Eigen::Index>(shape.order_B()) * visible, hidden),
           MatrixF::Zero(1, visible),
           MatrixF::Zero(1, hidden),
-          MatrixF::Zero(1, visible)};
+          MatrixF::Zero(1, visible),
+          MatrixF::Ones(1, visible)};
 }
 
 CrbmParameters CrbmParameters::random(const CrbmShape& shape, double deviation,
@@ -61,7 +79,8 @@ CrbmParameters CrbmParameters::read(const Parameters& from, const CrbmShape& sha
           from.to_host("B"),
           from.to_host("a"),
           from.to_host("b"),
-          MatrixF::Zero(1, static_cast<Eigen::Index>(shape.visible))};
+          MatrixF::Zero(1, static_cast<Eigen::Index>(shape.visible)),
+          MatrixF::Ones(1, static_cast<Eigen::Index>(shape.visible))};
 }
 
 void CrbmParameters::write(Parameters to) const {
@@ -73,11 +92,14 @@ void CrbmParameters::write(Parameters to) const {
 }
 
 std::vector<ParameterShape> Crbm::parameter_shapes(const CrbmShape& shape) {
-  const std::size_t history = shape.order * shape.visible;
-  return {{.name = "W", .rows = shape.visible, .columns = shape.hidden},
-          {.name = "A", .rows = history, .columns = shape.visible, .frame_rows = shape.visible},
-          {.name = "B", .rows = history, .columns = shape.hidden, .frame_rows = shape.visible},
-          {.name = "a", .rows = 1, .columns = shape.visible, .is_weight = false},
+  const std::size_t visible = shape.visible, seen_by_A = shape.order_A() * visible,
+                    seen_by_B = shape.order_B() * visible;
+  if (shape.order_A() > shape.order || shape.order_B() > shape.order)
+    throw ShapeError("CRBM: A or B sees more frames than the order");
+  return {{.name = "W", .rows = visible, .columns = shape.hidden},
+          {.name = "A", .rows = seen_by_A, .columns = visible, .frame_rows = visible},
+          {.name = "B", .rows = seen_by_B, .columns = shape.hidden, .frame_rows = visible},
+          {.name = "a", .rows = 1, .columns = visible, .is_weight = false},
           {.name = "b", .rows = 1, .columns = shape.hidden, .is_weight = false}};
 }
 
@@ -89,12 +111,17 @@ CrbmMatrices::CrbmMatrices(const Parameters& parameters)
       b(parameters.matrix("b")) {}
 
 Crbm::Crbm(Device& device, const CrbmParameters& start)
-    : Crbm(uploaded(device, start), start.shape, start.visible_mean) {}
+    : Crbm(uploaded(device, start), start.shape, start.visible_mean, start.visible_deviation) {}
 
-Crbm::Crbm(const Parameters& parameters, const CrbmShape& shape, const MatrixF& visible_mean_row)
+Crbm::Crbm(const Parameters& parameters, const CrbmShape& shape, const MatrixF& visible_mean_row,
+           const MatrixF& visible_deviation_row)
     : CrbmMatrices(parameters),
       W_transposed(parameters.device(), shape.hidden, shape.visible),
       visible_mean(Matrix::from_host(parameters.device(), visible_mean_row)),
+      visible_deviation(Matrix::from_host(
+          parameters.device(), visible_deviation_row.size() > 0
+                                   ? visible_deviation_row
+                                   : MatrixF::Ones(1, static_cast<Eigen::Index>(shape.visible)))),
       shape_(shape),
       parameters_(parameters) {
   refresh_transposed();
@@ -103,38 +130,36 @@ Crbm::Crbm(const Parameters& parameters, const CrbmShape& shape, const MatrixF& 
 CrbmParameters Crbm::to_host() const {
   CrbmParameters host = CrbmParameters::read(parameters_, shape_);
   host.visible_mean = visible_mean.to_host();
+  host.visible_deviation = visible_deviation.to_host();
   return host;
 }
 
 Rows Crbm::history(const Rows& rows) const {
-  const int order = static_cast<int>(shape_.order);
-  if (!rows.index && rows.first < shape_.order)
-    throw ShapeError("CRBM: a row has fewer frames before it than the order");
-  Rows past = rows.index ? Rows::indexed(*rows.matrix, *rows.index, rows.index_first, rows.count,
-                                         rows.shift - order, shape_.order)
-                         : Rows::strided(*rows.matrix, rows.first - shape_.order, rows.count,
-                                         rows.step, shape_.order);
-  // A and B have rows for the padding of every frame, so a history of one has its padding too.
-  past.columns = shape_.order * rows.matrix->stride();
-  return past;
+  return frames_before(rows, shape_.order);
+}
+Rows Crbm::history_for_A(const Rows& rows) const {
+  return frames_before(rows, shape_.order_A());
+}
+Rows Crbm::history_for_B(const Rows& rows) const {
+  return frames_before(rows, shape_.order_B());
 }
 
 void Crbm::dynamic_hidden_bias(const Rows& rows, const Rows& out) const {
   GemmOptions options;
   options.bias = &b;
-  gemm(history(rows), B, out, options);
+  gemm(history_for_B(rows), B, out, options);
 }
 
 void Crbm::dynamic_visible_bias(const Rows& rows, const Rows& out) const {
   GemmOptions options;
   options.bias = &a;
-  gemm(history(rows), A, out, options);
+  gemm(history_for_A(rows), A, out, options);
 }
 
 void Crbm::hidden_probabilities(const Rows& rows, const Rows& out) const {
   GemmOptions options;
   options.activation = Activation::sigmoid;
-  if (shape_.order > 0) {
+  if (shape_.order_B() > 0) {
     dynamic_hidden_bias(rows, out);
     options.beta = 1.0F;
   } else {

@@ -7,13 +7,13 @@ MatrixF sigmoid_on_host(const MatrixF& x) {
 }
 
 MatrixF hidden_on_host(const CrbmParameters& crbm, const MatrixF& visible, const MatrixF& history) {
-  MatrixF input = visible * crbm.W + history * crbm.B;
+  MatrixF input = visible * crbm.W + history.rightCols(crbm.B.rows()) * crbm.B;
   input.rowwise() += crbm.b.row(0);
   return sigmoid_on_host(input);
 }
 
 MatrixF visible_on_host(const CrbmParameters& crbm, const MatrixF& hidden, const MatrixF& history) {
-  MatrixF mean = hidden * crbm.W.transpose() + history * crbm.A;
+  MatrixF mean = hidden * crbm.W.transpose() + history.rightCols(crbm.A.rows()) * crbm.A;
   mean.rowwise() += crbm.a.row(0);
   return crbm.shape.kind == VisibleKind::binary ? sigmoid_on_host(mean) : mean;
 }

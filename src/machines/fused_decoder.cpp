@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/random_streams.hpp"
 #include "device/kernel_arguments.hpp"
 #include "machines/cdbn_decoder.hpp"
@@ -9,14 +11,17 @@
 namespace mcdbn {
 namespace {
 
-cl::Kernel& decoder_kernel(const Crbm& layer, const char* name, const RowTile& tile) {
+/// @param order_B history that the hidden units see; 0 where they are not asked
+cl::Kernel& decoder_kernel(const Crbm& layer, const char* name, std::size_t order_B,
+                           const RowTile& tile) {
   const CrbmShape& shape = layer.shape();
   return layer.device().programs().kernel(
       "cdbn_decoder.cl", name,
       with_tile({{"VEC", tile.vector_width},
                  {"VISIBLE", to_int(shape.visible)},
                  {"HIDDEN", to_int(shape.hidden)},
-                 {"ORDER", to_int(shape.order)},
+                 {"ORDER_A", to_int(shape.order_A())},
+                 {"ORDER_B", to_int(order_B)},
                  {"GAUSSIAN", shape.kind == VisibleKind::gaussian ? 1 : 0}},
                 tile));
 }
@@ -34,12 +39,14 @@ std::optional<std::vector<RowTile>> CdbnDecoder::fused_tiles(bool sampled) const
   for (const Crbm& layer : cdbn_.layers) {
     const CrbmShape& shape = layer.shape();
     const bool samples = sampled && &layer == &cdbn_.layers.back();
-    if (shape.order == 0 || (samples && shape.kind != VisibleKind::binary)) return std::nullopt;
-    const std::size_t ring = shape.order * padded(shape.visible);
+    if (shape.order_A() == 0) return std::nullopt;
+    if (samples && (shape.order_B() == 0 || shape.kind != VisibleKind::binary)) return std::nullopt;
+    const std::size_t order = std::max(shape.order_A(), samples ? shape.order_B() : 0);
+    const std::size_t ring = order * padded(shape.visible);
     const std::size_t states = samples ? padded(shape.visible) + padded(shape.hidden) : 0;
     const auto tile =
         choose_row_tile(layer.device(), ring + states, sequences_,
-                        fmt::format("decoder of {} units, order {}", shape.visible, shape.order));
+                        fmt::format("decoder of {} units, order {}", shape.visible, order));
     if (!tile) return std::nullopt;
     tiles.push_back(*tile);
   }
@@ -62,7 +69,7 @@ void CdbnDecoder::fused_means(std::size_t layer, std::size_t first, std::size_t 
                               const RowTile& tile) {
   drive_layer(layer, first, last);
   const Crbm& crbm = cdbn_.layers[layer];
-  launch(crbm.device(), decoder_kernel(crbm, "decode_means", tile), size_for(sequences_, tile),
+  launch(crbm.device(), decoder_kernel(crbm, "decode_means", 0, tile), size_for(sequences_, tile),
          states_[layer].buffer(), to_int(sequences_), to_int(frames_), to_int(first), to_int(last),
          crbm.A.buffer());
 }
@@ -77,12 +84,12 @@ void CdbnDecoder::fused_samples(std::size_t first, std::size_t last,
   }
   const RandomKey key{options.seed, 0, random_streams::kDecoder,
                       0};  // the kernel fills in the frame and the phase
-  launch(top.device(), decoder_kernel(top, "decode_samples", tile), size_for(sequences_, tile),
-         states_.back().buffer(), code_.buffer(), to_int(sequences_), to_int(frames_),
-         to_int(first), to_int(last), top.W.buffer(), top.W_transposed.buffer(), top.A.buffer(),
-         top.B.buffer(), top.a.buffer(), top.b.buffer(), below_bias_.buffer(), top_bias_.buffer(),
-         to_int(options.sampling.gibbs_steps), static_cast<float>(options.drawn_share()),
-         random_argument(key));
+  launch(top.device(), decoder_kernel(top, "decode_samples", top.shape().order_B(), tile),
+         size_for(sequences_, tile), states_.back().buffer(), code_.buffer(), to_int(sequences_),
+         to_int(frames_), to_int(first), to_int(last), top.W.buffer(), top.W_transposed.buffer(),
+         top.A.buffer(), top.B.buffer(), top.a.buffer(), top.b.buffer(), below_bias_.buffer(),
+         top_bias_.buffer(), to_int(options.sampling.gibbs_steps),
+         static_cast<float>(options.drawn_share()), random_argument(key));
 }
 
 }  // namespace mcdbn

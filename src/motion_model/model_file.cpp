@@ -16,15 +16,23 @@ using nlohmann::json;
 constexpr int kFormatVersion = 1;
 
 json shape_json(const CrbmShape& shape) {
-  return {{"visible", shape.visible},
-          {"hidden", shape.hidden},
-          {"order", shape.order},
-          {"kind", shape.kind == VisibleKind::gaussian ? "gaussian" : "binary"}};
+  json entry = {{"visible", shape.visible},
+                {"hidden", shape.hidden},
+                {"order", shape.order},
+                {"kind", shape.kind == VisibleKind::gaussian ? "gaussian" : "binary"}};
+  if (shape.order_A() != shape.order) entry["order_A"] = shape.order_A();
+  if (shape.order_B() != shape.order) entry["order_B"] = shape.order_B();
+  return entry;
 }
 
 CrbmShape shape_from(const json& entry) {
-  return {entry.at("visible"), entry.at("hidden"), entry.at("order"),
-          entry.at("kind") == "gaussian" ? VisibleKind::gaussian : VisibleKind::binary};
+  const std::size_t order = entry.at("order");
+  return {entry.at("visible"),
+          entry.at("hidden"),
+          order,
+          entry.at("kind") == "gaussian" ? VisibleKind::gaussian : VisibleKind::binary,
+          entry.value("order_A", order),
+          entry.value("order_B", order)};
 }
 
 void put(Safetensors& file, const std::string& prefix, const Parameters& parameters) {
@@ -46,6 +54,8 @@ json put_cdbn(Safetensors& file, const std::string& name, const Cdbn& cdbn) {
     const std::string prefix = fmt::format("{}.{}.", name, i);
     put(file, prefix, cdbn.layers[i].parameters());
     file.put(prefix + "visible_mean", cdbn.layers[i].visible_mean.to_host());
+    const MatrixF deviation = cdbn.layers[i].visible_deviation.to_host();
+    if ((deviation.array() != 1.0F).any()) file.put(prefix + "visible_deviation", deviation);
     shapes.push_back(shape_json(cdbn.layers[i].shape()));
   }
   return shapes;
@@ -59,9 +69,12 @@ Cdbn get_cdbn(Device& device, const Safetensors& file, const std::string& path,
     const CrbmShape shape = shape_from(shapes[i]);
     const Parameters parameters(device, Crbm::parameter_shapes(shape));
     get(file, path, prefix, parameters);
+    const auto row = [&](const char* what) {
+      return file.get(prefix + what, path, 1, static_cast<Eigen::Index>(shape.visible));
+    };
     cdbn.layers.emplace_back(
-        parameters, shape,
-        file.get(prefix + "visible_mean", path, 1, static_cast<Eigen::Index>(shape.visible)));
+        parameters, shape, row("visible_mean"),
+        file.tensors.contains(prefix + "visible_deviation") ? row("visible_deviation") : MatrixF{});
   }
   if (cdbn.layers.empty())
     throw InputError(path + ": a CDBN without layers; train the model again");

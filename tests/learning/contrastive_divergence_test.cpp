@@ -19,10 +19,10 @@ struct CdCase {
   std::size_t gibbs_steps;
 };
 
-const std::vector<CdCase> kSmallCases = {{{1, 1, 0, VisibleKind::gaussian}, 1, 1},
-                                         {{3, 5, 2, VisibleKind::binary}, 3, 2},
-                                         {{31, 23, 5, VisibleKind::gaussian}, 7, 5},
-                                         {{17, 33, 1, VisibleKind::binary}, 21, 3}};
+const std::vector<CdCase> kSmallCases = {
+    {{1, 1, 0, VisibleKind::gaussian}, 1, 1},       {{3, 5, 2, VisibleKind::binary}, 3, 2},
+    {{31, 23, 5, VisibleKind::gaussian}, 7, 5},     {{17, 33, 1, VisibleKind::binary}, 21, 3},
+    {{7, 9, 4, VisibleKind::gaussian, 1, 4}, 5, 2}, {{5, 6, 3, VisibleKind::binary, 3, 0}, 4, 1}};
 const std::vector<CdCase> kModelCases = {{{96, 300, 5, VisibleKind::gaussian}, 2, 5},
                                          {{96, 300, 5, VisibleKind::gaussian}, 100, 1},
                                          {{300, 300, 5, VisibleKind::binary}, 100, 1}};
@@ -31,16 +31,16 @@ const std::vector<CdCase> kModelCases = {{{96, 300, 5, VisibleKind::gaussian}, 2
 class Scene {
  public:
   explicit Scene(const CdCase& cd) : cd_(cd) {
-    const auto [visible, hidden, order, kind] = cd.shape;
+    const std::size_t visible = cd.shape.visible, hidden = cd.shape.hidden, order = cd.shape.order;
     parameters = CrbmParameters::zeros(cd.shape);
     const float scale = 1.0F / std::sqrt(static_cast<float>(visible));
     parameters.W = random_matrix(visible, hidden, 1, scale);
-    parameters.A = random_matrix(order * visible, visible, 2, 0.3F * scale);
-    parameters.B = random_matrix(order * visible, hidden, 3, 0.3F * scale);
+    parameters.A = random_matrix(cd.shape.order_A() * visible, visible, 2, 0.3F * scale);
+    parameters.B = random_matrix(cd.shape.order_B() * visible, hidden, 3, 0.3F * scale);
     parameters.a = random_matrix(1, visible, 4, 0.2F);
     parameters.b = random_matrix(1, hidden, 5, 0.2F);
     frames = random_matrix(order + 2 * cd.batch + 3, visible, 6, 1.7F);
-    if (kind == VisibleKind::binary)
+    if (cd.shape.kind == VisibleKind::binary)
       frames = ((frames.array() / 1.7F + 1.0F) / 2.0F).matrix();  // probabilities
     for (std::size_t r = 0; r < cd.batch; ++r)
       rows.push_back(static_cast<std::int32_t>(order + (2 * r + 1) % (2 * cd.batch + 3)));

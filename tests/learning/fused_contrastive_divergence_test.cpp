@@ -23,8 +23,11 @@ struct Case {
 };
 
 /// Sizes, orders and both kinds of units that contrastive_divergence_test.cpp does not have; every
-/// one is compiled for itself.
-const std::vector<Case> kCases = {{{13, 17, 0, kBinary}, 29, 5}, {{33, 31, 5, kBinary}, 103, 1}};
+/// one is compiled for itself. The last ones' A and B see histories of their own.
+const std::vector<Case> kCases = {{{13, 17, 0, kBinary}, 29, 5},
+                                  {{33, 31, 5, kBinary}, 103, 1},
+                                  {{11, 19, 4, kBinary, 4, 2}, 9, 2},
+                                  {{19, 5, 4, kGaussian, 0, 3}, 10, 2}};
 
 CdRule rule_of(std::size_t gibbs_steps) {
   CdRule rule;
@@ -37,9 +40,10 @@ CdRule rule_of(std::size_t gibbs_steps) {
 /// Frames, windows into them, and a model to start from; all of the same numbers every time.
 struct Problem {
   explicit Problem(const Case& test) : test(test) {
-    const auto [visible, hidden, order, kind] = test.shape;
+    const std::size_t visible = test.shape.visible, hidden = test.shape.hidden,
+                      order = test.shape.order;
     frames = random_matrix(order + 40, visible, 11);
-    if (kind == kBinary) frames = (0.5F * (frames.array() + 1.0F)).matrix();
+    if (test.shape.kind == kBinary) frames = (0.5F * (frames.array() + 1.0F)).matrix();
     for (std::size_t i = 0; i < 2 * test.batch; ++i)
       index.push_back(static_cast<std::int32_t>(order + (7 * i + 3) % 40));
     start = CrbmParameters::zeros(test.shape);
@@ -55,7 +59,7 @@ struct Problem {
   }
 
   reference::CrbmBatch batch(std::size_t number) const {
-    const auto [visible, hidden, order, kind] = test.shape;
+    const std::size_t visible = test.shape.visible, order = test.shape.order;
     reference::CrbmBatch result{MatrixD(test.batch, visible), MatrixD(test.batch, order * visible)};
     for (std::size_t r = 0; r < test.batch; ++r) {
       const auto row = static_cast<Eigen::Index>(r);

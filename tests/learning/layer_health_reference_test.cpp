@@ -13,10 +13,9 @@ namespace {
 
 CrbmParameters random_crbm(const CrbmShape& shape) {
   CrbmParameters p = CrbmParameters::zeros(shape);
-  const std::size_t history = shape.order * shape.visible;
   p.W = random_matrix(shape.visible, shape.hidden, 1, 0.8F);
-  p.A = random_matrix(history, shape.visible, 2, 0.3F);
-  p.B = random_matrix(history, shape.hidden, 3, 0.9F);
+  p.A = random_matrix(shape.order_A() * shape.visible, shape.visible, 2, 0.3F);
+  p.B = random_matrix(shape.order_B() * shape.visible, shape.hidden, 3, 0.9F);
   p.a = random_matrix(1, shape.visible, 4, 0.5F);
   p.b = random_matrix(1, shape.hidden, 5, 7.0F);
   return p;
@@ -117,6 +116,8 @@ TEST_CASE("crbm_health is the double reference's: Gaussian and binary, with and 
   check_against_reference({5, 7, 3, VisibleKind::gaussian});
   check_against_reference({6, 6, 2, VisibleKind::binary});
   check_against_reference({5, 8, 0, VisibleKind::gaussian});
+  check_against_reference({5, 7, 4, VisibleKind::gaussian, 1, 4});
+  check_against_reference({5, 7, 4, VisibleKind::binary, 4, 2});
 }
 
 TEST_CASE("layer health is of sixteen windows and ten free frames") {

@@ -10,9 +10,10 @@
 
 namespace mcdbn::test {
 
-/// A layer of a small network: its hidden units and its frames of history.
+/// A layer of a small network: its hidden units and its frames of history, A's and B's own if said.
 struct LayerSize {
   std::size_t hidden, order;
+  std::optional<std::size_t> own_order_A = {}, own_order_B = {};
 };
 
 /// What a small network is built from: random parameters in single precision.
@@ -24,8 +25,8 @@ struct NetworkParameters {
 inline CrbmParameters random_layer(const CrbmShape& shape, unsigned seed) {
   CrbmParameters layer = CrbmParameters::zeros(shape);
   layer.W = random_matrix(shape.visible, shape.hidden, seed, 0.7F);
-  layer.A = random_matrix(shape.order * shape.visible, shape.visible, seed + 1, 0.12F);
-  layer.B = random_matrix(shape.order * shape.visible, shape.hidden, seed + 2, 0.4F);
+  layer.A = random_matrix(shape.order_A() * shape.visible, shape.visible, seed + 1, 0.12F);
+  layer.B = random_matrix(shape.order_B() * shape.visible, shape.hidden, seed + 2, 0.4F);
   layer.a = random_matrix(1, shape.visible, seed + 3, 0.5F);
   layer.b = random_matrix(1, shape.hidden, seed + 4, 0.5F);
   if (shape.kind == VisibleKind::binary)
@@ -44,7 +45,8 @@ inline NetworkParameters random_network(const std::array<std::size_t, 2>& visibl
     for (const LayerSize& size : sizes[m]) {
       const bool lowest = network.stacks[m].empty();
       network.stacks[m].push_back(random_layer(
-          {below, size.hidden, size.order, lowest ? VisibleKind::gaussian : VisibleKind::binary},
+          {below, size.hidden, size.order, lowest ? VisibleKind::gaussian : VisibleKind::binary,
+           size.own_order_A, size.own_order_B},
           seed += 10));
       below = size.hidden;
     }

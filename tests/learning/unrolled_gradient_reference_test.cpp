@@ -23,7 +23,7 @@ DropOut some_drop_out(const UnrolledModel& model, int present) {
 // The reference of fine-tuning is itself compared with the forward reference.
 TEST_CASE("back-propagation in double gives the finite differences of the forward reference") {
   const UnrolledModel model =
-      in_double(random_network({3, 5}, {{{{4, 2}, {3, 1}}, {{2, 1}, {6, 3}}}}, 4, 100));
+      in_double(random_network({3, 5}, {{{{4, 2, 2, 1}, {3, 1}}, {{2, 1}, {6, 3, 2, 3}}}}, 4, 100));
   for (const int present : {0, 1}) {
     const MatrixD values = random_matrix(kFrames, present == 0 ? 3 : 5, 7).cast<double>(),
                   target = random_matrix(kFrames, present == 0 ? 5 : 3, 8).cast<double>();

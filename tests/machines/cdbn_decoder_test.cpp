@@ -71,7 +71,7 @@ void check_means(const MatrixF& states, const MatrixF& above, const CrbmParamete
   for (std::size_t frame = first; frame < kFrames; ++frame) {
     CAPTURE(frame);
     const Bounded code = Bounded::exact(at_frame(above, sequences, frame));
-    Bounded want = with_history(states, sequences, frame, p.A, p.a, p.shape.order)
+    Bounded want = with_history(states, sequences, frame, p.A, p.a, p.shape.order_A())
                        .add_product(code, exact(p.W).transposed())
                        .result();
     if (p.shape.kind == kBinary) want = sigmoid(want);
@@ -95,8 +95,8 @@ std::size_t check_samples(const MatrixF& states, const MatrixF& code, const Crbm
   const Bounded W = exact(p.W);
   std::size_t counted = 0;
   for (std::size_t frame = p.shape.order; frame < kFrames; ++frame) {
-    const Sum bias_v = with_history(states, sequences, frame, p.A, p.a, p.shape.order);
-    const Sum bias_h = with_history(states, sequences, frame, p.B, p.b, p.shape.order);
+    const Sum bias_v = with_history(states, sequences, frame, p.A, p.a, p.shape.order_A());
+    const Sum bias_h = with_history(states, sequences, frame, p.B, p.b, p.shape.order_B());
     const auto below = [&](const Bounded& h) {
       return sigmoid(Sum(bias_v).add_product(h, W.transposed()).result());
     };
@@ -137,6 +137,7 @@ TEST_CASE("decoder: every frame's means are the reference's, fused and frame by 
   on_every_device([](Device& device) {
     for (const auto& [shape, sequences] :
          {Case{{1, 1, 1, kGaussian}, 1}, Case{{7, 5, 5, kBinary}, 3},
+          Case{{5, 7, 4, kBinary, 2, 4}, 3}, Case{{9, 3, 3, kGaussian, 3, 0}, 2},
           Case{{33, 19, 2, kGaussian}, 11}})
       for (const bool fused : {true, false}) {
         CAPTURE(shape.visible);
@@ -175,6 +176,7 @@ TEST_CASE("decoder: sampled frames are the reference's with the same draws") {
     options.seed = 7;
     for (const auto& [shape, sequences] :
          {Case{{1, 1, 1, kBinary}, 1}, Case{{7, 13, 5, kBinary}, 3},
+          Case{{6, 9, 4, kBinary, 1, 4}, 3}, Case{{5, 11, 4, kBinary, 3, 2}, 2},
           Case{{19, 33, 2, kBinary}, 11}}) {
       CAPTURE(shape.visible);
       const CrbmParameters p = parameters_of(shape, 3);

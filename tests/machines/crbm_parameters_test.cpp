@@ -19,14 +19,15 @@ using reference::Sum;
 namespace {
 
 const std::vector<CrbmShape> kShapes = {
-    {1, 1, 1, VisibleKind::gaussian},   {5, 5, 2, VisibleKind::binary},
-    {16, 16, 1, VisibleKind::gaussian}, {17, 3, 5, VisibleKind::gaussian},
-    {3, 17, 4, VisibleKind::binary},    {7, 7, 0, VisibleKind::binary}};
+    {1, 1, 1, VisibleKind::gaussian},       {5, 5, 2, VisibleKind::binary},
+    {16, 16, 1, VisibleKind::gaussian},     {17, 3, 5, VisibleKind::gaussian},
+    {3, 17, 4, VisibleKind::binary},        {7, 7, 0, VisibleKind::binary},
+    {5, 3, 4, VisibleKind::gaussian, 4, 1}, {3, 4, 2, VisibleKind::binary, 0, 2}};
 
 /// Every matrix with entries of its own.
 CrbmParameters filled(const CrbmShape& shape, unsigned seed) {
   CrbmParameters p = CrbmParameters::zeros(shape);
-  for (MatrixF* matrix : {&p.W, &p.A, &p.B, &p.a, &p.b, &p.visible_mean})
+  for (MatrixF* matrix : {&p.W, &p.A, &p.B, &p.a, &p.b, &p.visible_mean, &p.visible_deviation})
     *matrix = random_matrix(static_cast<std::size_t>(matrix->rows()),
                             static_cast<std::size_t>(matrix->cols()), ++seed);
   return p;
@@ -52,6 +53,7 @@ void check_same(const CrbmParameters& got, const CrbmParameters& want) {
   CHECK(got.a == want.a);
   CHECK(got.b == want.b);
   CHECK(got.visible_mean == want.visible_mean);
+  CHECK(got.visible_deviation == want.visible_deviation);
 }
 
 }  // namespace
@@ -95,6 +97,12 @@ TEST_CASE("small: a CRBM's parameters that do not fit its shape are refused") {
       CHECK_THROWS_AS(Crbm(device, p), ShapeError);
     }
     CrbmParameters turned = whole;
+    CrbmShape too_long = shape;
+    too_long.own_order_A = 3;
+    CHECK_THROWS_AS(Crbm::parameter_shapes(too_long), ShapeError);
+    too_long = shape;
+    too_long.own_order_B = 3;
+    CHECK_THROWS_AS(Crbm::parameter_shapes(too_long), ShapeError);
     turned.shape = {3, 5, 2, VisibleKind::gaussian};
     turned.A = random_matrix(6, 3, 9);
     turned.B = random_matrix(6, 5, 9);
@@ -121,11 +129,12 @@ TEST_CASE("small: a layer's biases and hidden probabilities are eq 11, 16 and 17
       }
       for (std::size_t i = 0; i < count; ++i) {
         const auto t = static_cast<Eigen::Index>(first + i), row = static_cast<Eigen::Index>(i);
-        const Bounded history =
-            exact(history_of(frames, t, static_cast<Eigen::Index>(shape.order)));
+        const auto history = [&](std::size_t order) {
+          return exact(history_of(frames, t, static_cast<Eigen::Index>(order)));
+        };
         const Bounded visible_bias =
-            Sum().add(exact(p.a)).add_product(history, exact(p.A)).result();
-        Sum hidden_input = Sum().add(exact(p.b)).add_product(history, exact(p.B));
+            Sum().add(exact(p.a)).add_product(history(shape.order_A()), exact(p.A)).result();
+        Sum hidden_input = Sum().add(exact(p.b)).add_product(history(shape.order_B()), exact(p.B));
         const Bounded hidden_bias = hidden_input.result();
         if (shape.order > 0) {
           CHECK(misfit(visible.to_host().row(row), visible_bias.value, visible_bias.bound) == "");

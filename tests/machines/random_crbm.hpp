@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "base/random_matrix.hpp"
 #include "mcdbn/machines/crbm.hpp"
 
@@ -11,9 +13,10 @@ inline CrbmParameters random_crbm(const CrbmShape& shape, unsigned seed, float d
   CrbmParameters p = CrbmParameters::zeros(shape);
   const float scale = drive / (drive + static_cast<float>(shape.hidden));
   p.W = random_matrix(shape.visible, shape.hidden, seed, scale);
-  p.A = random_matrix(shape.order * shape.visible, shape.visible, seed + 1,
-                      0.5F / static_cast<float>(shape.order * shape.visible));
-  p.B = random_matrix(shape.order * shape.visible, shape.hidden, seed + 2, scale);
+  p.A = random_matrix(
+      shape.order_A() * shape.visible, shape.visible, seed + 1,
+      0.5F / static_cast<float>(std::max<std::size_t>(shape.order_A(), 1) * shape.visible));
+  p.B = random_matrix(shape.order_B() * shape.visible, shape.hidden, seed + 2, scale);
   p.a = random_matrix(1, shape.visible, seed + 3, 0.5F);
   p.b = random_matrix(1, shape.hidden, seed + 4, 0.5F);
   p.visible_mean = (0.5F * (random_matrix(1, shape.visible, seed + 5).array() + 1.0F)).matrix();

@@ -94,7 +94,7 @@ TEST_CASE("fine-tuning is the reference's schedule: two layers of equal sizes, g
 }
 
 TEST_CASE("fine-tuning is the reference's schedule: past the rate's rise, two reports") {
-  FineTuningCase small(kClips, {{{{5, 2}, {3, 1}}, {{4, 1}, {6, 3}}}}, 7);
+  FineTuningCase small(kClips, {{{{5, 2, 1, 2}, {3, 1}}, {{4, 1}, {6, 3, 3, 2}}}}, 7);
   small.config.fine_tuning.steps = 36;
   small.config.fine_tuning.average = 0.7;
   small.config.look_ahead = 3;

@@ -27,6 +27,7 @@ void check_layers(const std::vector<Crbm>& got, const std::vector<CrbmParameters
     CHECK(layer.a == want[i].a);
     CHECK(layer.b == want[i].b);
     CHECK(layer.visible_mean == want[i].visible_mean);
+    CHECK(layer.visible_deviation == want[i].visible_deviation);
     CHECK(got[i].W_transposed.to_host() == want[i].W.transpose());
   }
 }
@@ -128,6 +129,30 @@ TEST_CASE("what a model may lack is lacking after saving and loading, and other 
     model.network.sampling = {.gibbs_steps = 0, .mrbm_gibbs_steps = 0, .steady = false, .scale = 2};
     save_model(folder / "one", model);
     check_same(load_model(device, folder / "one"), model, example);
+  });
+}
+
+TEST_CASE("histories of A's and B's own, and a learnt deviation, are saved and loaded") {
+  const ScratchFolder folder;
+  const ExampleModel example(false);
+  on_every_device([&](Device& device) {
+    Model model = example.on(device);
+    std::vector<CrbmParameters> stack = example.track;
+    CrbmShape shape = stack[0].shape;
+    shape.own_order_A = 1;
+    stack[0].A = stack[0].A.bottomRows(static_cast<Eigen::Index>(shape.visible)).eval();
+    stack[0].visible_deviation = random_matrix(1, shape.visible, 3);
+    stack[0].shape = shape;
+    shape = stack[1].shape;
+    shape.own_order_B = 0;
+    stack[1].B = stack[1].B.topRows(0).eval();
+    stack[1].shape = shape;
+    model.network.track.layers.clear();
+    for (const CrbmParameters& p : stack) model.network.track.layers.emplace_back(device, p);
+    save_model(folder / "one", model);
+    const Model loaded = load_model(device, folder / "one");
+    check_layers(loaded.network.track.layers, stack);
+    check_layers(loaded.network.pose.layers, example.pose);
   });
 }
 

@@ -79,8 +79,10 @@ Crbm exact_gradient(const Crbm& model, const CrbmBatch& batch) {
     const RowVectorD v = weighted_means.colwise().sum();
     const RowVectorD h = probability.transpose() * states;
     expected.weights += weighted_means.transpose() * states;
-    expected.visible_history += batch.history.row(r).transpose() * v;
-    expected.hidden_history += batch.history.row(r).transpose() * h;
+    expected.visible_history +=
+        batch.history.row(r).tail(model.visible_history.rows()).transpose() * v;
+    expected.hidden_history +=
+        batch.history.row(r).tail(model.hidden_history.rows()).transpose() * h;
     expected.visible_bias += v;
     expected.hidden_bias += h;
   }

@@ -22,10 +22,12 @@ BoundedCdStep bounded_cd_step(const BoundedCrbm& model, const BoundedCrbm& veloc
                               const CrbmBatch& batch, int k, const HiddenDraws& draws,
                               const UpdateRule& rule_W, const UpdateRule& rule_A,
                               const UpdateRule& rule_B) {
-  const Bounded history = Bounded::exact(batch.history), data = Bounded::exact(batch.visible);
+  const Bounded data = Bounded::exact(batch.visible);
+  const Bounded seen_by_A = Bounded::exact(batch.history.rightCols(model.A.value.rows())),
+                seen_by_B = Bounded::exact(batch.history.rightCols(model.B.value.rows()));
   // The device stores the dynamic biases (eq 16, 17); the other layer's products go on from there.
-  const Bounded visible_bias = Sum().add_product(history, model.A).add_row(model.a).result();
-  const Bounded hidden_bias = Sum().add_product(history, model.B).add_row(model.b).result();
+  const Bounded visible_bias = Sum().add_product(seen_by_A, model.A).add_row(model.a).result();
+  const Bounded hidden_bias = Sum().add_product(seen_by_B, model.B).add_row(model.b).result();
   const auto hidden_of = [&](const Bounded& visible) {
     return sigmoid(Sum().add(hidden_bias).add_product(visible, model.W).result());
   };
@@ -51,7 +53,7 @@ BoundedCdStep bounded_cd_step(const BoundedCrbm& model, const BoundedCrbm& veloc
                                  .add_product(-visible.transposed(), hidden)
                                  .divide(cases)
                                  .result();
-  const auto learnt_from = [&](const Bounded& change) {
+  const auto learnt_from = [&](const Bounded& history, const Bounded& change) {
     return Sum().add_product(history.transposed(), change).divide(cases).result();
   };
   const auto mean_of = [&](const Bounded& change) {
@@ -61,8 +63,8 @@ BoundedCdStep bounded_cd_step(const BoundedCrbm& model, const BoundedCrbm& veloc
   biases.weight_decay = 0.0F;
   BoundedCrbm &p = step.parameters, &v = step.velocities;
   bounded_momentum_update(p.W, v.W, gradient_W, rule_W);
-  bounded_momentum_update(p.A, v.A, learnt_from(visible_change), rule_A);
-  bounded_momentum_update(p.B, v.B, learnt_from(hidden_change), rule_B);
+  bounded_momentum_update(p.A, v.A, learnt_from(seen_by_A, visible_change), rule_A);
+  bounded_momentum_update(p.B, v.B, learnt_from(seen_by_B, hidden_change), rule_B);
   bounded_momentum_update(p.a, v.a, mean_of(visible_change), biases);
   bounded_momentum_update(p.b, v.b, mean_of(hidden_change), biases);
   return step;

@@ -43,11 +43,13 @@ Crbm Crbm::with_parameters(const Eigen::VectorXd& flat) const {
 }
 
 MatrixD dynamic_visible_bias(const Crbm& model, const MatrixD& history) {
-  return plus_row(history * model.visible_history, model.visible_bias);
+  return plus_row(history.rightCols(model.visible_history.rows()) * model.visible_history,
+                  model.visible_bias);
 }
 
 MatrixD dynamic_hidden_bias(const Crbm& model, const MatrixD& history) {
-  return plus_row(history * model.hidden_history, model.hidden_bias);
+  return plus_row(history.rightCols(model.hidden_history.rows()) * model.hidden_history,
+                  model.hidden_bias);
 }
 
 MatrixD hidden_probability(const Crbm& model, const MatrixD& visible,
@@ -65,8 +67,9 @@ Crbm statistics(const Crbm& model, const CrbmBatch& batch, const MatrixD& visibl
                 const MatrixD& hidden) {
   Crbm sums = model;
   sums.weights = visible.transpose() * hidden;
-  sums.visible_history = batch.history.transpose() * visible;
-  sums.hidden_history = batch.history.transpose() * hidden;
+  sums.visible_history =
+      batch.history.rightCols(model.visible_history.rows()).transpose() * visible;
+  sums.hidden_history = batch.history.rightCols(model.hidden_history.rows()).transpose() * hidden;
   sums.visible_bias = visible.colwise().sum();
   sums.hidden_bias = hidden.colwise().sum();
   return sums;

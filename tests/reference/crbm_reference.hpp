@@ -9,8 +9,9 @@ namespace mcdbn::reference {
 
 enum class VisibleUnits { gaussian, binary };
 
-/// Parameters of a CRBM with D visible and H hidden units that sees n past frames (σ = 1); with
-/// n = 0 an RBM. Gradients and velocities have the same shapes and use this type too.
+/// Parameters of a CRBM with D visible and H hidden units that sees n past frames (σ = 1), A or
+/// B perhaps fewer, the latest of them; with n = 0 an RBM. Gradients and velocities have the same
+/// shapes and use this type too.
 struct Crbm {
   VisibleUnits visible_units = VisibleUnits::gaussian;
   MatrixD weights;          ///< W [D x H]

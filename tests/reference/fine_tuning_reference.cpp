@@ -20,7 +20,9 @@ constexpr double kBeta1 = 0.9, kBeta2 = 0.99, kEpsilon = 1e-8;
 
 Eigen::Index total_order(const std::vector<Crbm>& stack) {
   Eigen::Index order = 0;
-  for (const Crbm& layer : stack) order += layer.hidden_history.rows() / layer.weights.rows();
+  for (const Crbm& layer : stack)
+    order +=
+        std::max(layer.visible_history.rows(), layer.hidden_history.rows()) / layer.weights.rows();
   return order;
 }
 

@@ -88,7 +88,8 @@ CrbmBatch batch_of(const GreedyCode& code, const std::vector<Window>& windows, i
 }
 
 int order_of(const Crbm& crbm) {
-  return static_cast<int>(crbm.hidden_history.rows() / crbm.weights.rows());
+  const auto rows = std::max(crbm.visible_history.rows(), crbm.hidden_history.rows());
+  return static_cast<int>(rows / crbm.weights.rows());
 }
 
 /// Normal draws, rounded as the device holds them.

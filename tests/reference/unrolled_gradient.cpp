@@ -1,12 +1,20 @@
 #include "reference/unrolled_gradient.hpp"
 
+#include <algorithm>
+
 #include "reference/units_reference.hpp"
 
 namespace mcdbn::reference {
 namespace {
 
-Eigen::Index order_of(const Crbm& layer) {
+Eigen::Index order_A(const Crbm& layer) {
+  return layer.visible_history.rows() / layer.weights.rows();
+}
+Eigen::Index order_B(const Crbm& layer) {
   return layer.hidden_history.rows() / layer.weights.rows();
+}
+Eigen::Index order_of(const Crbm& layer) {
+  return std::max(order_A(layer), order_B(layer));
 }
 
 /// The `order` frames before `frame`, oldest first, side by side.
@@ -100,7 +108,7 @@ void UnrolledGradient::go_up() {
     for (Eigen::Index t = valid; t < frames_; ++t) {
       up_[i].own.row(t) =
           centered_sigmoid(layer.hidden_bias + below->row(t) * layer.weights +
-                           history(*below, t, order_of(layer)) * layer.hidden_history);
+                           history(*below, t, order_B(layer)) * layer.hidden_history);
       drop(up_[i], t);
     }
     below = &up_[i].dropped;
@@ -132,7 +140,7 @@ void UnrolledGradient::go_down() {
     units.dropped = units.own;
     for (Eigen::Index t = first_; t < frames_; ++t) {
       const RowVectorD input = layer.visible_bias + above->row(t) * layer.weights.transpose() +
-                               history(units.dropped, t, order_of(layer)) * layer.visible_history;
+                               history(units.dropped, t, order_A(layer)) * layer.visible_history;
       units.own.row(t) = is_binary(layer) ? centered_sigmoid(input) : input;
       drop(units, t);
     }
@@ -149,7 +157,7 @@ MatrixD UnrolledGradient::back_down(UnrolledModel& sum, MatrixD error) const {
     const Crbm& layer = model_.stacks[q_][i];
     Crbm& gradient = sum.stacks[q_][i];
     const MatrixD& above = i + 1 < down_.size() ? down_[i + 1].dropped : missing_.back().own;
-    const Eigen::Index order = order_of(layer), width = layer.visible_bias.size();
+    const Eigen::Index order = order_A(layer), width = layer.visible_bias.size();
     MatrixD error_above = MatrixD::Zero(frames_, above.cols());
     for (Eigen::Index t = frames_; t-- > first_;) {
       const RowVectorD input =
@@ -193,9 +201,9 @@ void UnrolledGradient::back_up(UnrolledModel& sum, MatrixD error) const {
     const Crbm& layer = model_.stacks[p_][i];
     Crbm& gradient = sum.stacks[p_][i];
     const MatrixD& below = i > 0 ? up_[i - 1].dropped : values_;
-    const Eigen::Index order = order_of(layer), width = layer.visible_bias.size();
+    const Eigen::Index order = order_B(layer), width = layer.visible_bias.size();
     MatrixD error_below = MatrixD::Zero(frames_, width);
-    for (Eigen::Index t = order; t < frames_; ++t) {
+    for (Eigen::Index t = order_of(layer); t < frames_; ++t) {
       const RowVectorD input = through(up_[i], t, error.row(t));
       gradient.hidden_bias += input;
       gradient.weights += below.row(t).transpose() * input;

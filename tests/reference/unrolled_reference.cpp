@@ -1,12 +1,15 @@
 #include "reference/unrolled_reference.hpp"
 
+#include <algorithm>
+
 #include "reference/units_reference.hpp"
 
 namespace mcdbn::reference {
 namespace {
 
 Eigen::Index order_of(const Crbm& layer) {
-  return layer.weights.rows() > 0 ? layer.hidden_history.rows() / layer.weights.rows() : 0;
+  const Eigen::Index rows = std::max(layer.visible_history.rows(), layer.hidden_history.rows());
+  return layer.weights.rows() > 0 ? rows / layer.weights.rows() : 0;
 }
 
 /// The `order` frames before `frame`, oldest first, side by side (eq 15).

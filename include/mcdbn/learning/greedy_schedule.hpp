@@ -5,6 +5,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "mcdbn/learning/epoch_report.hpp"
 #include "mcdbn/learning/sequence_source.hpp"
@@ -20,6 +21,27 @@ namespace mcdbn {
 /// @throws DivergenceError saying what to lower
 Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningSettings& learning,
                    const EpochObserver& observer = {}, const Mcdbn* start = nullptr);
+
+struct TrainedCdbn {
+  Cdbn cdbn;
+  Sequences code;  ///< of what it was trained on
+};
+
+/// The layers that the settings say, as wide and with as long a history each.
+/// @param kind of the lowest layer's visible units
+std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings& learning,
+                                    VisibleKind kind = VisibleKind::gaussian);
+
+/// A CDBN layer by layer, each on the code of the one beneath. Gaussian layers learn as
+/// `learning.gaussian` says, binary ones as `learning.binary`.
+/// @param layers from below, any width and order each: layer_shapes(), or the caller's own
+/// @param first_stream of the lowest layer's random numbers; the others' follow
+/// @param start weights to start from; nothing: small random ones
+/// @throws ShapeError if a layer does not fit the one beneath; DivergenceError
+TrainedCdbn train_cdbn(Device& device, Sequences visible, const std::vector<CrbmShape>& layers,
+                       const LearningSettings& learning, std::uint16_t first_stream = 0,
+                       const EpochObserver& observer = {}, const std::string& name = "cdbn",
+                       const Cdbn* start = nullptr);
 
 /// One layer of Algorithm 1: CD-k on every window of `visible` for settings.epochs epochs.
 /// @param initial its visible_mean is taken from `visible`

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "mcdbn/base/random.hpp"
 #include "mcdbn/device/parameters.hpp"
 
@@ -12,34 +14,43 @@ struct CrbmShape {
   std::size_t hidden = 0;
   std::size_t order = 0;  ///< frames of history; 0 makes it an RBM
   VisibleKind kind = VisibleKind::gaussian;
-  bool operator==(const CrbmShape&) const = default;
+  /// Frames of it that A and B see, the latest ones, at most `order`; unset: all of them.
+  std::optional<std::size_t> own_order_A = {}, own_order_B = {};
+
+  std::size_t order_A() const { return own_order_A.value_or(order); }
+  std::size_t order_B() const { return own_order_B.value_or(order); }
+  bool operator==(const CrbmShape& other) const;
 };
 
 /// A CRBM's parameters on the host, with the paper's letters. Histories run oldest frame first.
 struct CrbmParameters {
   CrbmShape shape;
   MatrixF W;  ///< [visible x hidden]
-  MatrixF A;  ///< [order·visible x visible] history → visible (eq 16)
-  MatrixF B;  ///< [order·visible x hidden]  history → hidden (eq 17)
+  MatrixF A;  ///< [order_A·visible x visible] history → visible (eq 16)
+  MatrixF B;  ///< [order_B·visible x hidden]  history → hidden (eq 17)
   MatrixF a;  ///< [1 x visible]
   MatrixF b;  ///< [1 x hidden]
   /// [1 x visible] what the visible units are on average over the training windows (0 where they
   /// are standardized): the history before a free-running start.
   MatrixF visible_mean;
+  /// [1 x visible] σ of Gaussian units (eq 9): what the frames that the machine sees are divided by
+  /// before it sees them, so that its own units have variance 1. Ones, unless it was learnt or
+  /// given.
+  MatrixF visible_deviation;
 
   static CrbmParameters zeros(const CrbmShape& shape);
   /// W, A and B drawn from N(0, deviation²), biases zero.
   static CrbmParameters random(const CrbmShape& shape, double deviation, const RandomKey& key);
   /// What stands in a machine's buffer (Crbm::parameter_shapes), or in one of gradients;
-  /// visible_mean is zero.
+  /// visible_mean is zero, visible_deviation one.
   static CrbmParameters read(const Parameters& from, const CrbmShape& shape);
   /// W, A, B, a and b. @throws ShapeError
   void write(Parameters to) const;
 };
 
 /// The paper's letters in place among parameters of Crbm::parameter_shapes, or among gradients. A
-/// and B have order·stride rows: a history is read with its padding, whose weights are zero and
-/// stay zero because the padding is.
+/// and B have a row for every float of the frames that they see: a history is read with its
+/// padding, whose weights are zero and stay zero because the padding is.
 struct CrbmMatrices {
   explicit CrbmMatrices(const Parameters& parameters);
   Matrix W, A, B, a, b;
@@ -50,13 +61,15 @@ struct CrbmMatrices {
 /// [frames x visible], so that the history of row t is the `order` rows before it, read in place.
 class Crbm : public CrbmMatrices {
  public:
-  /// W, A, B, a, b.
+  /// W, A, B, a, b. @throws ShapeError if A or B should see more frames than `order`
   static std::vector<ParameterShape> parameter_shapes(const CrbmShape& shape);
 
   Crbm(Device& device, const CrbmParameters& start);
   /// Of these parameters as they are; they may stand among those of a larger machine.
-  /// @param visible_mean_row [1 x visible]  @throws ShapeError
-  Crbm(const Parameters& parameters, const CrbmShape& shape, const MatrixF& visible_mean_row);
+  /// @param visible_mean_row [1 x visible]  @param visible_deviation_row [1 x visible]; none: ones
+  /// @throws ShapeError
+  Crbm(const Parameters& parameters, const CrbmShape& shape, const MatrixF& visible_mean_row,
+       const MatrixF& visible_deviation_row = {});
   CrbmParameters to_host() const;
   const CrbmShape& shape() const { return shape_; }
   const Parameters& parameters() const { return parameters_; }
@@ -64,6 +77,9 @@ class Crbm : public CrbmMatrices {
 
   /// The history of each row: `order` frames that end before it. @param rows one frame each
   Rows history(const Rows& rows) const;
+  /// What A and B see of it: order_A and order_B frames.
+  Rows history_for_A(const Rows& rows) const;
+  Rows history_for_B(const Rows& rows) const;
 
   /// b̂ = b + H·B (eq 17). @param out [rows x hidden]
   void dynamic_hidden_bias(const Rows& rows, const Rows& out) const;
@@ -74,8 +90,9 @@ class Crbm : public CrbmMatrices {
   /// Brings the transposed copy of W up to date after W changed.
   void refresh_transposed();
 
-  Matrix W_transposed;  ///< [hidden x visible]
-  Matrix visible_mean;  ///< [1 x visible], see CrbmParameters
+  Matrix W_transposed;       ///< [hidden x visible]
+  Matrix visible_mean;       ///< [1 x visible], see CrbmParameters
+  Matrix visible_deviation;  ///< [1 x visible], see CrbmParameters
 
  private:
   CrbmShape shape_;
