@@ -27,6 +27,10 @@ inline constexpr std::uint16_t kPixelNoise = 202;
 inline constexpr std::uint16_t kMissingJoints = 203;
 inline constexpr std::uint16_t kHiddenArm = 204;
 inline constexpr std::uint16_t kHiddenLimbs = 205;
+// Of a single machine (machines/sampling.hpp, energy.hpp, partition.hpp).
+inline constexpr std::uint16_t kChains = 210;
+inline constexpr std::uint16_t kFlippedUnits = 211;
+inline constexpr std::uint16_t kAnnealing = 212;
 inline constexpr std::uint16_t kPerceptron = 0x4d4c;  ///< and the next for each layer's drop-out
 
 }  // namespace mcdbn::random_streams

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "machines/in_double.hpp"
 #include "machines/two_modalities.hpp"
 #include "mcdbn/machines/crbm.hpp"
 #include "mcdbn/machines/mrbm.hpp"
@@ -12,16 +13,6 @@
 #include "reference/mrbm_error_bound.hpp"
 
 namespace mcdbn::test {
-
-inline reference::Crbm in_double(const CrbmParameters& p) {
-  return {p.shape.kind == VisibleKind::gaussian ? reference::VisibleUnits::gaussian
-                                                : reference::VisibleUnits::binary,
-          p.W.cast<double>(),
-          p.A.cast<double>(),
-          p.B.cast<double>(),
-          p.a.cast<double>(),
-          p.b.cast<double>()};
-}
 
 inline reference::Mrbm in_double(const MrbmParameters& p) {
   reference::Mrbm mrbm;

@@ -166,6 +166,12 @@ Bounded sigmoid(const Bounded& x) {
   return rounded(sigmoid(x.value), 0.25 * x.bound, kSigmoidError);
 }
 
+Bounded softplus(const Bounded& x) {
+  // exp's error and the rounding of 1 + exp are at most those of 1; then the logarithm and the sum.
+  const MatrixD own = constant_like(x.value, gamma_n(kExpError + 1.0));
+  return rounded(softplus(x.value), x.bound + own, kLogError + 1.0);
+}
+
 Bounded sigmoid_gradient(const Bounded& y) {
   return times(y, one_minus(y));
 }

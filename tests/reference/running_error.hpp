@@ -66,6 +66,8 @@ Bounded column_sum(const Bounded& x);
 Bounded total(const Bounded& x);
 /// σ(x), eq 8: ¼ of the input's error, as |σ'| ≤ ¼, plus the function's own.
 Bounded sigmoid(const Bounded& x);
+/// log(1 + exp(x)) as max(x, 0) + log(1 + exp(−|x|)): it brings no two numbers further apart.
+Bounded softplus(const Bounded& x);
 /// y·(1 − y)
 Bounded sigmoid_gradient(const Bounded& y);
 

@@ -14,6 +14,14 @@ MatrixD sigmoid(const MatrixD& x) {
   return x.unaryExpr([](double value) { return sigmoid(value); });
 }
 
+double softplus(double x) {
+  return std::max(x, 0.0) + std::log1p(std::exp(-std::abs(x)));
+}
+
+MatrixD softplus(const MatrixD& x) {
+  return x.unaryExpr([](double value) { return softplus(value); });
+}
+
 MatrixD bernoulli(const MatrixD& probability, const MatrixD& uniform) {
   return (uniform.array() < probability.array()).cast<double>();
 }
@@ -30,8 +38,7 @@ double cross_entropy_of_sigmoid(const MatrixD& target, const MatrixD& x) {
   double sum = 0;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     // log(1 + e^x) − t·x
-    const double value = x.data()[i];
-    sum += std::max(value, 0.0) + std::log1p(std::exp(-std::abs(value))) - target.data()[i] * value;
+    sum += softplus(x.data()[i]) - target.data()[i] * x.data()[i];
   }
   return sum;
 }

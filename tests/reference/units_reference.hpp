@@ -10,6 +10,10 @@ namespace mcdbn::reference {
 double sigmoid(double x);
 MatrixD sigmoid(const MatrixD& x);
 
+/// log(1 + exp(x)), without overflow.
+double softplus(double x);
+MatrixD softplus(const MatrixD& x);
+
 /// 1 where the uniform draw is below the probability (eq 6, 7), else 0.
 MatrixD bernoulli(const MatrixD& probability, const MatrixD& uniform);
 

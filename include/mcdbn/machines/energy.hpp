@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+
+#include "mcdbn/machines/cdbn.hpp"
+#include "mcdbn/machines/sequences.hpp"
+
+namespace mcdbn {
+
+/// F(v | H) = −log Σ_h exp(−E(v, h | H)) of every frame that has a history: −log p(v | H) but for
+/// the partition function, which depends on H (log_partition).
+/// Gaussian units: ½ ‖v − â‖² − Σ_j log(1 + exp(b̂_j + v·W_j)), eq 9 and 14 with their erratum (plus
+/// before the quadratic term); binary ones: −v·â in place of the square (eq 2).
+/// @return [all frames x 1], rows numbered as the frames are  @throws ShapeError
+Sequences free_energy(const Crbm& crbm, const Sequences& visible);
+
+/// That of the top machine on its code, the up-pass of the layers beneath: the stack's own has no
+/// closed form.
+Sequences free_energy(const Cdbn& cdbn, const Sequences& visible);
+
+/// An estimate of Σ_i log p(v_i | the other units, H) of a machine of binary units: one unit i
+/// of each frame, drawn evenly, stands for all: D · log σ(F(v with v_i flipped) − F(v)).
+/// scikit-learn's BernoulliRBM.score_samples is the same.
+/// @return [all frames x 1]  @throws ShapeError for Gaussian units
+Sequences pseudo_log_likelihood(const Crbm& crbm, const Sequences& visible, std::uint64_t seed);
+
+}  // namespace mcdbn

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+
+#include "mcdbn/base/settings.hpp"
+#include "mcdbn/machines/crbm.hpp"
+
+namespace mcdbn {
+
+/// Annealed importance sampling (Neal 2001; Salakhutdinov and Murray 2008).
+struct AisSettings {
+  std::size_t temperatures = 1000;
+  std::size_t chains = 100;
+  std::uint64_t seed = 1;
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"temperatures", at_least(1), "temperatures",
+                  "from the base distribution to the machine: more weigh chains more evenly"},
+          self.temperatures);
+    visit(Setting{"chains", at_least(2), "chains",
+                  "whose weights are averaged: the standard error falls with their root"},
+          self.chains);
+    visit(Setting{"seed", at_least(0), "", "of every random number"}, self.seed);
+  }
+};
+
+struct LogPartition {
+  double value = 0;
+  /// Of the chains' weights over their mean. Few temperatures leave the weights so uneven that it
+  /// is too small itself.
+  double standard_error = 0;
+};
+
+/// log Z = log Σ_{v,h} exp(−E(v, h | H)) (an integral over Gaussian units), so that log p(v | H) =
+/// −F(v | H) − log Z. The base distribution has no weights; its visible biases are the machine's
+/// own where units are Gaussian, and those of visible_mean, within 0.05 … 0.95, where they are
+/// binary. Temperatures lie evenly between.
+/// @param history [order·visible], oldest frame first; empty for an RBM
+/// @throws ShapeError, ConfigError for settings out of their range
+LogPartition log_partition(const Crbm& crbm, const AisSettings& settings = {},
+                           const RowVectorF& history = {});
+
+}  // namespace mcdbn

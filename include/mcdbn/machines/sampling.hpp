@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+
+#include "mcdbn/base/settings.hpp"
+#include "mcdbn/machines/cdbn.hpp"
+#include "mcdbn/machines/sequences.hpp"
+
+namespace mcdbn {
+
+/// How chains of Gibbs steps run (eq 6 to 11).
+struct ChainSettings {
+  std::size_t steps = 100;
+  std::uint64_t seed = 1;
+  bool means = false;
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"steps", at_least(1), "steps",
+                  "Gibbs steps of a chain: more forget its start better and take longer"},
+          self.steps);
+    visit(Setting{"seed", at_least(0), "", "of every random number"}, self.seed);
+    visit(Setting{"means", on_or_off(), "",
+                  "the last step gives the visible units' means, which show more than draws"},
+          self.means);
+  }
+};
+
+/// Mean field: hidden probabilities of the frames, the visible units' means given those, so many
+/// times. Histories stay the data's.
+/// @return frames that have a history  @throws ShapeError
+Sequences reconstruct(const Crbm& crbm, const Sequences& visible, std::size_t steps = 1);
+
+/// Up through all layers, `steps` at the top, down again; each layer's histories are the codes that
+/// the data have there.
+Sequences reconstruct(const Cdbn& cdbn, const Sequences& visible, std::size_t steps = 1);
+
+/// Draws the visible units that are NaN, frame after frame: each frame's Gibbs steps start from the
+/// frame before, what is given stands after each step, and the history is what was given or drawn.
+/// Before a clip stands the training mean.
+/// @param given clips, NaN where a unit is to be drawn
+/// @return clips, whole  @throws ShapeError
+Sequences sample_given(const Crbm& crbm, const Sequences& given, const ChainSettings& settings);
+
+/// The same up and down through all layers in each step. The lower layers are directed, so these
+/// are no exact draws from the stack's own conditional distribution.
+Sequences sample_given(const Cdbn& cdbn, const Sequences& given, const ChainSettings& settings);
+
+/// Free chains of an RBM. `start` may be Matrix::filled_with_row(rbm.visible_mean, chains).
+/// @param start [chains x visible]  @return [chains x visible]
+/// @throws ShapeError for a machine with a history: it generates sequences instead
+Matrix sample(const Crbm& rbm, const Matrix& start, const ChainSettings& settings);
+
+/// Of a DBN: the chains are the top machine's, from the code of `start`; the layers beneath give
+/// one draw down (Hinton et al. 2006).
+Matrix sample(const Cdbn& dbn, const Matrix& start, const ChainSettings& settings);
+
+}  // namespace mcdbn
