@@ -3,6 +3,7 @@
 
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/base/matrices.hpp"
+#include "mcdbn/base/matrix_file.hpp"
 #include "mcdbn/base/random.hpp"
 #include "mcdbn/base/settings.hpp"
 #include "mcdbn/camera/camera.hpp"
