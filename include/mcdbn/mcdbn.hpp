@@ -1,6 +1,7 @@
 /// Everything public of mcdbn-cl.
 #pragma once
 
+#include "mcdbn/base/column_scale.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/base/matrices.hpp"
 #include "mcdbn/base/matrix_file.hpp"
@@ -39,6 +40,7 @@
 #include "mcdbn/machines/cdbn.hpp"
 #include "mcdbn/machines/crbm.hpp"
 #include "mcdbn/machines/energy.hpp"
+#include "mcdbn/machines/machine_file.hpp"
 #include "mcdbn/machines/mcdbn.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 #include "mcdbn/machines/partition.hpp"

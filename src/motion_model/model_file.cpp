@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "base/safetensors.hpp"
 #include "base/setting_values.hpp"
-#include "mcdbn/base/errors.hpp"
+#include "machines/machine_tensors.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
 #include "motion_model/modalities_json.hpp"
 
@@ -15,80 +14,7 @@ using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
 
-json shape_json(const CrbmShape& shape) {
-  json entry = {{"visible", shape.visible},
-                {"hidden", shape.hidden},
-                {"order", shape.order},
-                {"kind", shape.kind == VisibleKind::gaussian ? "gaussian" : "binary"}};
-  if (shape.order_A() != shape.order) entry["order_A"] = shape.order_A();
-  if (shape.order_B() != shape.order) entry["order_B"] = shape.order_B();
-  return entry;
-}
-
-CrbmShape shape_from(const json& entry) {
-  const std::size_t order = entry.at("order");
-  return {entry.at("visible"),
-          entry.at("hidden"),
-          order,
-          entry.at("kind") == "gaussian" ? VisibleKind::gaussian : VisibleKind::binary,
-          entry.value("order_A", order),
-          entry.value("order_B", order)};
-}
-
-void put(Safetensors& file, const std::string& prefix, const Parameters& parameters) {
-  for (const ParameterShape& shape : parameters.entries())
-    file.put(prefix + shape.name, parameters.to_host(shape.name));
-}
-
-void get(const Safetensors& file, const std::string& path, const std::string& prefix,
-         Parameters parameters) {
-  for (const ParameterShape& shape : parameters.entries())
-    parameters.upload(shape.name,
-                      file.get(prefix + shape.name, path, static_cast<Eigen::Index>(shape.rows),
-                               static_cast<Eigen::Index>(shape.columns)));
-}
-
-json put_cdbn(Safetensors& file, const std::string& name, const Cdbn& cdbn) {
-  json shapes = json::array();
-  for (std::size_t i = 0; i < cdbn.layers.size(); ++i) {
-    const std::string prefix = fmt::format("{}.{}.", name, i);
-    put(file, prefix, cdbn.layers[i].parameters());
-    file.put(prefix + "visible_mean", cdbn.layers[i].visible_mean.to_host());
-    const MatrixF deviation = cdbn.layers[i].visible_deviation.to_host();
-    if ((deviation.array() != 1.0F).any()) file.put(prefix + "visible_deviation", deviation);
-    shapes.push_back(shape_json(cdbn.layers[i].shape()));
-  }
-  return shapes;
-}
-
-Cdbn get_cdbn(Device& device, const Safetensors& file, const std::string& path,
-              const std::string& name, const json& shapes) {
-  Cdbn cdbn;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const std::string prefix = fmt::format("{}.{}.", name, i);
-    const CrbmShape shape = shape_from(shapes[i]);
-    const Parameters parameters(device, Crbm::parameter_shapes(shape));
-    get(file, path, prefix, parameters);
-    const auto row = [&](const char* what) {
-      return file.get(prefix + what, path, 1, static_cast<Eigen::Index>(shape.visible));
-    };
-    cdbn.layers.emplace_back(
-        parameters, shape, row("visible_mean"),
-        file.tensors.contains(prefix + "visible_deviation") ? row("visible_deviation") : MatrixF{});
-  }
-  if (cdbn.layers.empty())
-    throw InputError(path + ": a CDBN without layers; train the model again");
-  return cdbn;
-}
-
 constexpr const char* kMrbmPrefix = "mrbm.";
-
-Mrbm get_mrbm(Device& device, const Safetensors& file, const std::string& path,
-              const MrbmShape& shape) {
-  const Parameters parameters(device, Mrbm::parameter_shapes(shape));
-  get(file, path, kMrbmPrefix, parameters);
-  return {parameters, shape};
-}
 
 json sampling_json(const SamplingRule& rule) {
   return {{"gibbs_steps", rule.gibbs_steps},
@@ -105,36 +31,19 @@ SamplingRule sampling_from(const json& about) {
           entry.at("scale")};
 }
 
-json parsed_description(const Safetensors& file, const std::string& path) {
-  const auto text = file.metadata.find("mcdbn");
-  if (text == file.metadata.end()) throw InputError(path + ": not a model of mcdbn-cl");
-  json about = json::parse(text->second);
-  if (about.at("format_version") != kFormatVersion)
-    throw InputError(
-        fmt::format("{}: model format {}, this program reads {}; train the model again", path,
-                    about.at("format_version").dump(), kFormatVersion));
-  return about;
+json parsed_description(const TensorFile& file) {
+  return description_in(file, "mcdbn", "a model of mcdbn-cl", kFormatVersion);
 }
 
-/// What `read` makes of a description, whose errors say which file is damaged.
-template <typename Read>
-auto reading_description(const std::filesystem::path& path, Read&& read) {
-  try {
-    return read();
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(fmt::format("{}: damaged model description: {}", path.string(), error.what()));
-  }
-}
-
-Model model_from(Device& device, const Safetensors& file, const std::string& path) {
-  const json about = parsed_description(file, path);
+Model model_from(Device& device, const TensorFile& file) {
+  const json about = parsed_description(file);
   std::vector<Cdbn> cdbns;
   MrbmShape shape{{}, about.at("mrbm_hidden")};
-  for (const char* name : kModalityNames) {
-    cdbns.push_back(get_cdbn(device, file, path, name, about.at(name)));
+  for (const std::string name : kModalityNames) {
+    cdbns.push_back(get_cdbn(device, file, name + ".", about.at(name)));
     shape.modalities.push_back({name, cdbns.back().code_dimension()});
   }
-  Mrbm mrbm = get_mrbm(device, file, path, shape);
+  Mrbm mrbm = get_mrbm(device, file, kMrbmPrefix, shape);
   Model model{{std::move(cdbns), std::move(mrbm), about.at("look_ahead"),
                about.at("mean_field_steps"), sampling_from(about), about.value("fills_gaps", true)},
               modalities_from(about.at("modalities")),
@@ -158,9 +67,9 @@ void save_model(const std::filesystem::path& path, const Model& model) {
   about["format_version"] = kFormatVersion;
   for (std::size_t m = 0; m < model.network.modality_count(); ++m) {
     const std::string& name = model.network.modality(m).name;
-    about[name] = put_cdbn(file, name, model.network.cdbns[m]);
+    about[name] = put_cdbn(file, name + ".", model.network.cdbns[m]);
   }
-  put(file, kMrbmPrefix, model.network.mrbm.parameters());
+  put_mrbm(file, kMrbmPrefix, model.network.mrbm);
   about["mrbm_hidden"] = model.network.mrbm.hidden();
   about["look_ahead"] = model.network.look_ahead;
   about["mean_field_steps"] = model.network.mean_field_steps;
@@ -180,13 +89,15 @@ void save_model(const std::filesystem::path& path, const Model& model) {
 
 Model load_model(Device& device, const std::filesystem::path& path) {
   const Safetensors file = read_safetensors(path);
-  return reading_description(path, [&] { return model_from(device, file, path.string()); });
+  return reading_description(path.string(), [&] {
+    return model_from(device, {file, path.string()});
+  });
 }
 
 nlohmann::json describe_model(const std::filesystem::path& path) {
   const Safetensors file = read_safetensors(path);
-  return reading_description(path, [&] {
-    const json about = parsed_description(file, path.string());
+  return reading_description(path.string(), [&] {
+    const json about = parsed_description({file, path.string()});
     const json& config = about.at("config");
     std::size_t numbers = 0;
     for (const auto& [name, tensor] : file.tensors) numbers += tensor.values.size();

@@ -3,9 +3,9 @@
 #include <chrono>
 
 #include "base/text_file.hpp"
+#include "learning/metrics_log.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
-#include "motion_model/metrics_log.hpp"
 #include "motion_model/sample_calibration.hpp"
 
 namespace mcdbn {

@@ -1,4 +1,4 @@
-#include "motion_model/metrics_log.hpp"
+#include "learning/metrics_log.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+
+#include "mcdbn/base/matrices.hpp"
+
+namespace mcdbn {
+
+/// What each column of some data is less its mean, over its deviation: what Gaussian units of
+/// variance 1 see.
+struct ColumnScale {
+  RowVectorF mean, deviation;
+
+  /// Over all rows of all matrices; NaN does not count. A column that never changes has deviation
+  /// 1. @throws ShapeError if the matrices differ in columns
+  static ColumnScale of(std::span<const MatrixF> data);
+  MatrixF apply(const MatrixF& values) const;  ///< @throws ShapeError
+  MatrixF undo(const MatrixF& scaled) const;   ///< @throws ShapeError
+};
+
+}  // namespace mcdbn

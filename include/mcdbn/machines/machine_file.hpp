@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <variant>
+#include <vector>
+
+#include "mcdbn/base/column_scale.hpp"
+#include "mcdbn/machines/cdbn.hpp"
+#include "mcdbn/machines/mrbm.hpp"
+
+namespace mcdbn {
+
+/// A machine of its own, and what its data were.
+struct SavedMachine {
+  std::variant<Crbm, Cdbn, Mrbm> machine;
+  /// What the data were scaled by before the machine saw them, one of each modality; a scale
+  /// without columns, or none: data as they are.
+  std::vector<ColumnScale> scales = {};
+  nlohmann::json config = {};  ///< the settings that it was fitted with
+};
+
+/// One .safetensors file: tensors `W`, `A` … of a CRBM, `0.W` … of a CDBN, metadata with format
+/// version, shapes and settings. Written atomically. @throws InputError
+void save_machine(const std::filesystem::path& path, const SavedMachine& saved);
+/// @throws InputError
+SavedMachine load_machine(Device& device, const std::filesystem::path& path);
+
+/// Whether a .safetensors file holds a machine of its own (and not a model of motion, say).
+/// @throws InputError
+bool is_machine_file(const std::filesystem::path& path);
+/// The file's own account of itself, for people: kind, sizes, settings. Needs no device.
+/// @throws InputError
+nlohmann::json describe_machine(const std::filesystem::path& path);
+
+}  // namespace mcdbn

@@ -1,0 +1,131 @@
+// A machine of its own in a file: it comes back as it was, and a damaged file is refused.
+
+#include "mcdbn/machines/machine_file.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/safetensors.hpp"
+#include "base/scratch_folder.hpp"
+#include "device/every_device.hpp"
+#include "machines/random_crbm.hpp"
+#include "mcdbn/base/errors.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+using nlohmann::json;
+
+namespace {
+
+constexpr VisibleKind kGaussian = VisibleKind::gaussian, kBinary = VisibleKind::binary;
+
+void check_same(const CrbmParameters& got, const CrbmParameters& want) {
+  CHECK(got.shape == want.shape);
+  for (MatrixF CrbmParameters::*matrix :
+       {&CrbmParameters::W, &CrbmParameters::A, &CrbmParameters::B, &CrbmParameters::a,
+        &CrbmParameters::b, &CrbmParameters::visible_mean})
+    CHECK(got.*matrix == want.*matrix);
+}
+
+/// What loading says of this content; empty if it loads.
+std::string complaint(Device& device, const std::filesystem::path& path,
+                      const Safetensors& content) {
+  write_safetensors(path, content);
+  try {
+    load_machine(device, path);
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    CHECK(text.starts_with(path.string() + ": "));
+    return text;
+  }
+  return "";
+}
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("small: a CRBM comes back from its file as it was saved, scale and settings too") {
+  const ScratchFolder folder;
+  const auto path = folder / "machine.safetensors";
+  on_every_device([&](Device& device) {
+    for (const CrbmShape& shape : {CrbmShape{5, 3, 0, kBinary}, CrbmShape{3, 17, 2, kGaussian},
+                                   CrbmShape{1, 1, 1, kBinary}}) {
+      const CrbmParameters p = random_crbm(shape, 3, 4.0F);
+      ColumnScale scale{random_matrix(1, shape.visible, 8), random_matrix(1, shape.visible, 9)};
+      save_machine(path, {Crbm(device, p), {scale}, {{"seed", 7}}});
+      const SavedMachine got = load_machine(device, path);
+      REQUIRE(std::holds_alternative<Crbm>(got.machine));
+      const Crbm& crbm = std::get<Crbm>(got.machine);
+      check_same(crbm.to_host(), p);
+      CHECK(crbm.W_transposed.to_host() == p.W.transpose());
+      REQUIRE(got.scales.size() == 1);
+      CHECK(got.scales[0].mean == scale.mean);
+      CHECK(got.scales[0].deviation == scale.deviation);
+      CHECK(got.config == json{{"seed", 7}});
+      CHECK(is_machine_file(path));
+      const json about = describe_machine(path);
+      CHECK(about.at("kind") == "crbm");
+      CHECK(about.at("layers").at(0).at("order") == shape.order);
+      CHECK(about.at("standardized") == true);
+      CHECK(about.at("parameters") ==
+            static_cast<std::size_t>(p.W.size() + p.A.size() + p.B.size() + p.b.size()) +
+                4 * shape.visible);
+    }
+  });
+}
+
+TEST_CASE("small: a CDBN comes back from its file layer by layer") {
+  const ScratchFolder folder;
+  const auto path = folder / "machine.safetensors";
+  on_every_device([&](Device& device) {
+    const std::vector<CrbmParameters> layers = {random_crbm({5, 7, 2, kGaussian}, 1, 4.0F),
+                                                random_crbm({7, 3, 0, kBinary}, 2, 4.0F)};
+    Cdbn cdbn;
+    for (const CrbmParameters& p : layers) cdbn.layers.emplace_back(device, p);
+    save_machine(path, {cdbn});
+    const SavedMachine got = load_machine(device, path);
+    REQUIRE(std::holds_alternative<Cdbn>(got.machine));
+    const auto& back = std::get<Cdbn>(got.machine).layers;
+    REQUIRE(back.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) check_same(back[i].to_host(), layers[i]);
+    CHECK(got.scales.empty());
+    CHECK(describe_machine(path).at("standardized") == false);
+  });
+}
+
+TEST_CASE("a machine's file that is not whole is refused, and the message says what is missing") {
+  const ScratchFolder folder;
+  const auto path = folder / "machine.safetensors";
+  on_every_device([&](Device& device) {
+    save_machine(path, {Crbm(device, random_crbm({5, 3, 2, kGaussian}, 3, 4.0F)),
+                        {{random_matrix(1, 5, 8), random_matrix(1, 5, 9)}}});
+    const Safetensors whole = read_safetensors(path);
+    REQUIRE(whole.tensors.size() == 8);
+    for (const auto& [name, tensor] : whole.tensors) {
+      CAPTURE(name);
+      Safetensors without = whole;
+      without.tensors.erase(name);
+      CHECK(says(complaint(device, path, without), "no tensor " + name + " "));
+    }
+    const auto with = [&](const char* key, const json& value) {
+      Safetensors content = whole;
+      json about = json::parse(whole.metadata.at("mcdbn_machine"));
+      about[key] = value;
+      content.metadata["mcdbn_machine"] = about.dump();
+      return complaint(device, path, content);
+    };
+    CHECK(with("kind", "crbm").empty());
+    CHECK(says(with("kind", "other"), "a machine of unknown kind \"other\""));
+    CHECK(says(with("kind", "cdbn"), "no tensor 0.W"));
+    CHECK(says(with("layers", 3), "damaged model description"));
+    CHECK(says(with("layers", json::array()), "damaged model description"));
+    CHECK(says(with("format_version", 2), "model format 2, this program reads 1"));
+    Safetensors other = whole;
+    other.metadata = {{"mcdbn", "{}"}};
+    CHECK(says(complaint(device, path, other), "not a machine that mcdbn-cl fitted"));
+    CHECK_FALSE(is_machine_file(path));
+    CHECK_THROWS_AS(load_machine(device, folder / "absent.safetensors"), InputError);
+  });
+}
