@@ -1,10 +1,9 @@
 // One layer's part of a CDBN's down-pass (Algorithm 5): all frames of many sequences in one launch.
-// A work-group carries ROWS sequences from frame to frame, their last ORDER frames in __local.
+// A work-group carries ROWS sequences from frame to frame (frame_ring.clh).
 //
-// global: (blocks · GROUP), local: (GROUP). Sequence i's frame t is row i · frames + t of `state`
-// [V_LD wide] and `code` [H_LD wide]; work is done for frames first … last − 1, and the frames before
-// `first` are history. Compile-time: crbm_shape.clh (ORDER at least 1; decode_means asks only
-// for ORDER_A), ROWS, COLUMNS, GROUP (tile.clh).
+// Sequence i's frame t is row i · frames + t of `state` [V_LD wide] and `code` [H_LD wide]; work is done
+// for frames first … last − 1, and the frames before `first` are history. ORDER is at least
+// 1; decode_means asks only for ORDER_A.
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 GAUSSIAN=0,1 GROUP=1,64 SAMPLE=
@@ -13,56 +12,7 @@
 
 #undef SAMPLE
 #define SAMPLE 1
-#include "tile.clh"
-#include "crbm_shape.clh"
-
-// A frame's place in the ring of the last ORDER ones, [ORDER x ROWS x V_LD].
-#define SLOT(frame) ((frame) % ORDER * (ROWS * V_LD))
-
-// x ← rows start[r] of `from`
-INLINE void take_rows(local float* x, const int ld, global const float* from,
-                      const int start[ROWS], int frame) {
-  for (int column = get_local_id(0) * VEC; column < ld; column += GROUP * VEC)
-    for (int r = 0; r < ROWS; ++r)
-      storeN(loadN((start[r] + frame) * ld + column, from), r * ld + column, x);
-}
-
-// Rows of whole sequences instead of a block's.
-INLINE void load_frame(floatN sum[ROWS][COLUMNS], const int count, global const float* x,
-                       const int start[ROWS], int frame, int column) {
-#pragma unroll
-  for (int r = 0; r < ROWS; ++r)
-#pragma unroll
-    for (int c = 0; c < count; ++c)
-      sum[r][c] = loadN((start[r] + frame) * V_LD + column + c * VEC, x);
-}
-
-// Only the first `rows` rows: those past the last sequence repeat it, with other draws.
-INLINE void store_frame(floatN sum[ROWS][COLUMNS], const int count, global float* x,
-                        const int start[ROWS], int rows, int frame, int column) {
-#pragma unroll
-  for (int r = 0; r < ROWS; ++r)
-#pragma unroll
-    for (int c = 0; c < count; ++c)
-      if (r < rows) storeN(sum[r][c], (start[r] + frame) * V_LD + column + c * VEC, x);
-}
-
-// sum += history · weights, of the last `order` frames the oldest first (eq 16, 17)
-INLINE void add_history(floatN sum[ROWS][COLUMNS], const int count, local const float* ring,
-                        int frame, const int order, global const float* weights, const int ld,
-                        int column) {
-  for (int q = 0; q < order; ++q)
-    add_products(sum, count, ring + SLOT(frame + ORDER - order + q), V_LD, VISIBLE,
-                 weights + q * V_LD * ld, ld, column);
-}
-
-// The frame is complete in `state`; from here on it is history.
-INLINE void remember_frame(local float* ring, global const float* state, const int start[ROWS],
-                           int frame) {
-  SYNC();
-  take_rows(ring + SLOT(frame), V_LD, state, start, frame);
-  SYNC();
-}
+#include "frame_ring.clh"
 
 // `state` holds a + (layer above) · Wᵀ (the drive) and becomes the visible means.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_means(

@@ -27,6 +27,7 @@ inline constexpr std::uint16_t kPixelNoise = 202;
 inline constexpr std::uint16_t kMissingJoints = 203;
 inline constexpr std::uint16_t kHiddenArm = 204;
 inline constexpr std::uint16_t kHiddenLimbs = 205;
+inline constexpr std::uint16_t kGeneration = 206;
 // Of a single machine (machines/sampling.hpp, energy.hpp, partition.hpp).
 inline constexpr std::uint16_t kChains = 210;
 inline constexpr std::uint16_t kFlippedUnits = 211;

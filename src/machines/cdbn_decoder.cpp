@@ -13,17 +13,31 @@ Activation activation_of(const Crbm& layer) {
   return layer.shape().kind == VisibleKind::binary ? Activation::sigmoid : Activation::none;
 }
 
+std::vector<Matrix> at_training_mean(const Cdbn& cdbn, std::size_t rows) {
+  std::vector<Matrix> states;
+  for (const Crbm& layer : cdbn.layers)
+    states.push_back(Matrix::filled_with_row(layer.visible_mean, rows));
+  return states;
+}
+
 }  // namespace
 
 CdbnDecoder::CdbnDecoder(const Cdbn& cdbn, const Matrix& code, std::size_t sequences)
+    : CdbnDecoder(cdbn, code, sequences, at_training_mean(cdbn, code.rows())) {}
+
+CdbnDecoder::CdbnDecoder(const Cdbn& cdbn, const Matrix& code, std::size_t sequences,
+                         std::vector<Matrix> states)
     : cdbn_(cdbn),
       code_(code),
       sequences_(sequences),
-      frames_(sequences ? code.rows() / sequences : 0) {
+      frames_(sequences ? code.rows() / sequences : 0),
+      states_(std::move(states)) {
   if (sequences == 0 || code.rows() % sequences != 0 || code.columns() != cdbn.code_dimension())
     throw ShapeError("decoder: the code does not fit the CDBN");
-  for (const Crbm& layer : cdbn.layers)
-    states_.push_back(Matrix::filled_with_row(layer.visible_mean, code.rows()));
+  if (states_.size() != cdbn.layers.size()) throw ShapeError("decoder: rows for other layers");
+  for (std::size_t i = 0; i < states_.size(); ++i)
+    if (states_[i].rows() != code.rows() || states_[i].columns() != cdbn.layers[i].shape().visible)
+      throw ShapeError("decoder: the visible rows do not fit the CDBN");
 }
 
 void CdbnDecoder::decode(std::size_t first, std::size_t last, const RegenerationOptions& options,

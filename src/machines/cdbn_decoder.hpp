@@ -13,9 +13,13 @@ class CdbnDecoder {
  public:
   /// @param code [sequences·frames x code_dimension], one sequence after another
   CdbnDecoder(const Cdbn& cdbn, const Matrix& code, std::size_t sequences);
+  /// On visible rows of the caller's, one matrix for each layer, of code's rows: those before the
+  /// first decoded frame are its history. @throws ShapeError
+  CdbnDecoder(const Cdbn& cdbn, const Matrix& code, std::size_t sequences,
+              std::vector<Matrix> states);
 
   /// Fills in the visible rows of frame `first` … `last` − 1 of every sequence, in order; frames
-  /// before `first` are history at the training mean. Enqueues and returns.
+  /// before `first` are history, at the training mean unless the caller's. Enqueues and returns.
   /// @param fused false: some launches a frame, wherever it would fit
   /// @throws ShapeError if `first` leaves less than the largest order of a layer as history
   void decode(std::size_t first, std::size_t last, const RegenerationOptions& options,
