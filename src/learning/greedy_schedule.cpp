@@ -8,6 +8,7 @@
 #include "device/pointwise.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/divergence_guard.hpp"
+#include "learning/history_noise.hpp"
 #include "learning/minibatch.hpp"
 #include "learning/multi_prediction.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -257,6 +258,9 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
   MinibatchSchedule schedule(device, visible.window_rows(shape.order), learning.batch,
                              learning.least_batches);
   ContrastiveDivergence cd(crbm, schedule.batch(), settings);
+  std::optional<HistoryNoise> noise;
+  if (settings.history_noise > 0 && shape.order > 0)
+    noise.emplace(device, cd, shape, schedule.batch(), settings.history_noise);
   const std::vector<MatrixF> windows =
       observer ? health_windows(visible, shape.order + kFreeRunFrames) : std::vector<MatrixF>{};
   const std::string kind = shape.kind == VisibleKind::gaussian ? "gaussian" : "binary";
@@ -268,7 +272,7 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
                   settings.initial_deviation));
   run_epochs({stage,
               settings.epochs,
-              cd,
+              noise ? static_cast<LearningRule&>(*noise) : cd,
               {{&visible.values, 0}},
               [&] { return crbm_health(crbm.to_host(), windows); }},
              schedule, guard, key_of(learning, stream, 0, 0), observer);

@@ -102,6 +102,14 @@ inline GreedyScene scene_without_history() {
   return scene;
 }
 
+/// Histories with noise, more of it in the upper layer.
+inline GreedyScene scene_with_history_noise() {
+  GreedyScene scene = scene_of_different_sizes();
+  scene.plan.gaussian.history_noise = 0.3;
+  scene.plan.binary.history_noise = 0.5;
+  return scene;
+}
+
 inline CdSettings settings_of(const reference::CdPlan& plan) {
   return {.gibbs_steps = static_cast<std::size_t>(plan.gibbs_steps),
           .rate = plan.rate,
@@ -111,6 +119,7 @@ inline CdSettings settings_of(const reference::CdPlan& plan) {
           .momentum_from_epoch = static_cast<std::size_t>(plan.momentum_from_epoch),
           .weight_decay = plan.weight_decay,
           .initial_deviation = plan.initial_deviation,
+          .history_noise = plan.history_noise,
           .epochs = static_cast<std::size_t>(plan.epochs)};
 }
 

@@ -97,6 +97,7 @@ const std::vector<PlanChange>& plan_changes() {
       {"gaussian: no decay", [](Plan& p) { p.gaussian.weight_decay = 0; }},
       {"gaussian: deviation",
        [](Plan& p) { p.gaussian.initial_deviation = p.binary.initial_deviation; }},
+      {"gaussian: noise", [](Plan& p) { p.gaussian.history_noise = 0.1; }},
       {"gaussian: fewer epochs", [](Plan& p) { --p.gaussian.epochs; }},
       {"gaussian: more epochs", [](Plan& p) { ++p.gaussian.epochs; }},
       {"binary: Gibbs steps", [](Plan& p) { ++p.binary.gibbs_steps; }},
@@ -105,6 +106,7 @@ const std::vector<PlanChange>& plan_changes() {
       {"binary: momentum early", [](Plan& p) { --p.binary.momentum_from_epoch; }},
       {"binary: momentum late", [](Plan& p) { ++p.binary.momentum_from_epoch; }},
       {"binary: no decay", [](Plan& p) { p.binary.weight_decay = 0; }},
+      {"binary: noise", [](Plan& p) { p.binary.history_noise = 0.1; }},
       {"binary: fewer epochs", [](Plan& p) { --p.binary.epochs; }},
       {"settings of the kinds swapped", [](Plan& p) { std::swap(p.gaussian, p.binary); }},
       {"mrbm: rate", [](Plan& p) { p.mrbm.rate *= 1.3; }},
@@ -127,6 +129,10 @@ TEST_CASE("greedy training gives the double reference's parameters: all sizes ar
 
 TEST_CASE("greedy training gives the double reference's parameters: no history") {
   check_training(scene_without_history());
+}
+
+TEST_CASE("greedy training gives the double reference's parameters: histories with noise") {
+  check_training(scene_with_history_noise());
 }
 
 TEST_CASE("greedy training goes on from the weights that it is given, and leaves them alone") {

@@ -31,6 +31,7 @@ const std::vector<Expected<LearningSettings>>& learning_settings() {
        "5"},
       {"gaussian.weight-decay", [](C& c) { return at(c.gaussian.weight_decay); }, "0.0002"},
       {"gaussian.initial-deviation", [](C& c) { return at(c.gaussian.initial_deviation); }, "0.01"},
+      {"gaussian.history-noise", [](C& c) { return at(c.gaussian.history_noise); }, "0"},
       {"gaussian.epochs", [](C& c) { return at(c.gaussian.epochs); }, "3"},
       {"binary.gibbs-steps", [](C& c) { return at(c.binary.gibbs_steps); }, "1"},
       {"binary.rate", [](C& c) { return at(c.binary.rate); }, "0.01"},
@@ -40,6 +41,7 @@ const std::vector<Expected<LearningSettings>>& learning_settings() {
       {"binary.momentum-from-epoch", [](C& c) { return at(c.binary.momentum_from_epoch); }, "5"},
       {"binary.weight-decay", [](C& c) { return at(c.binary.weight_decay); }, "0.0002"},
       {"binary.initial-deviation", [](C& c) { return at(c.binary.initial_deviation); }, "0.01"},
+      {"binary.history-noise", [](C& c) { return at(c.binary.history_noise); }, "0"},
       {"binary.epochs", [](C& c) { return at(c.binary.epochs); }, "3"},
       {"mrbm.rate", [](C& c) { return at(c.mrbm.rate); }, "0.0003"},
       {"mrbm.weight-decay", [](C& c) { return at(c.mrbm.weight_decay); }, "0"},
@@ -158,8 +160,8 @@ TEST_CASE("learning settings: what is out of range is refused by its name") {
   for (const char* name :
        {"gaussian.rate-A", "gaussian.rate-B", "gaussian.weight-decay", "gaussian.initial-deviation",
         "binary.rate-A", "binary.rate-B", "binary.weight-decay", "binary.initial-deviation",
-        "mrbm.weight-decay", "mrbm.initial-deviation", "fine-tuning.weight-decay",
-        "fine-tuning.reverse"}) {
+        "gaussian.history-noise", "binary.history-noise", "mrbm.weight-decay",
+        "mrbm.initial-deviation", "fine-tuning.weight-decay", "fine-tuning.reverse"}) {
     refused(name, -1e-6, "at least 0");
     accepted(name, 0);
   }

@@ -11,7 +11,7 @@ namespace mcdbn::reference {
 namespace {
 
 constexpr int kPoseStream = 0, kTrackStream = 64, kMrbmStream = 128;
-constexpr int kShufflePhase = 0x7000;
+constexpr int kShufflePhase = 0x7000, kNoisePhase = 0x7200;
 constexpr int kWeightsW = 1, kWeightsA = 2, kWeightsB = 3;
 
 RandomKey random_key(const GreedyPlan& plan, int stream, int step, int phase) {
@@ -85,6 +85,17 @@ CrbmBatch batch_of(const GreedyCode& code, const std::vector<Window>& windows, i
   for (int q = 0; q < order; ++q)
     batch.history.middleCols(q * visible, visible) = rows_of(code, windows, q - order);
   return batch;
+}
+
+/// Adds normal draws to the histories, a row for each frame of each window, the current one too.
+void add_noise(MatrixD& history, Eigen::Index visible, double deviation, const RandomKey& key) {
+  const Eigen::Index order = history.cols() / visible;
+  for (Eigen::Index window = 0; window < history.rows(); ++window)
+    for (Eigen::Index i = 0; i < history.cols(); ++i)
+      history(window, i) +=
+          deviation * random_normal(key,
+                                    static_cast<std::uint32_t>(window * (order + 1) + i / visible),
+                                    static_cast<std::uint32_t>(i % visible));
 }
 
 int order_of(const Crbm& crbm) {
@@ -239,7 +250,10 @@ GreedyRun train_layer(const GreedyPlan& plan, const CdPlan& rule, const GreedyCo
     };
     double loss = 0;
     for (int number = 0; number < batches.count(); ++number, ++step) {
-      const CrbmBatch batch = batch_of(visible, batches.batch(number), order);
+      CrbmBatch batch = batch_of(visible, batches.batch(number), order);
+      if (rule.history_noise > 0)
+        add_noise(batch.history, batch.visible.cols(), rule.history_noise,
+                  random_key(plan, stream, step, kNoisePhase));
       const HiddenDraws draws = [&](int gibbs_step) {
         MatrixD uniform(batch.visible.rows(), crbm.weights.cols());
         for (Eigen::Index r = 0; r < uniform.rows(); ++r)

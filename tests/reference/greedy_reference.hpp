@@ -19,6 +19,7 @@ struct CdPlan {
   int momentum_from_epoch = 0;  ///< none up to this epoch
   double weight_decay = 0;      ///< of W, A and B
   double initial_deviation = 0;
+  double history_noise = 0;  ///< deviation of what is added to each frame of a history
   int epochs = 1;
 };
 

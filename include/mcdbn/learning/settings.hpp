@@ -15,6 +15,7 @@ struct CdSettings {
   std::size_t momentum_from_epoch = 5;
   double weight_decay = 2e-4;
   double initial_deviation = 0.01;
+  double history_noise = 0.0;
   std::size_t epochs = 3;
 
   template <typename Self, typename Visit>
@@ -41,6 +42,10 @@ struct CdSettings {
     visit(Setting{"initial-deviation", at_least(0), "",
                   "spread of the first weights where no fine-tuning follows, which has its own"},
           self.initial_deviation);
+    visit(Setting{"history-noise", at_least(0), "",
+                  "deviation of normal noise on the history, new in every mini-batch: what runs on "
+                  "its own output learns to stay on course"},
+          self.history_noise);
     visit(Setting{"epochs", at_least(1), "epochs",
                   "rounds over the data; without fine-tuning 100, binary 50"},
           self.epochs);
