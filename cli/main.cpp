@@ -27,9 +27,9 @@ enum ExitCode {
 };
 
 constexpr std::array kCommands = {
-    add_devices_command,  add_synthesize_command, add_project_command,
-    add_render_command,   add_train_command,      add_regenerate_command,
-    add_evaluate_command, add_info_command,       add_bench_command,
+    add_devices_command, add_synthesize_command, add_project_command,  add_render_command,
+    add_train_command,   add_regenerate_command, add_generate_command, add_evaluate_command,
+    add_info_command,    add_bench_command,
 };
 
 constexpr const char* kDescription =

@@ -11,6 +11,7 @@
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
+#include "sample_path.hpp"
 #include "sampling_options.hpp"
 
 namespace mcdbn::cli {
@@ -21,15 +22,6 @@ struct RegenerateOptions {
   SamplingOptions sampling;
   std::string fit = kFitTrack;
 };
-
-/// out.bvh, or out_01.bvh … for several samples.
-std::filesystem::path sample_path(const std::filesystem::path& output, std::size_t sample,
-                                  std::size_t samples) {
-  if (samples == 1) return output;
-  const std::string name =
-      fmt::format("{}_{:02}{}", output.stem().string(), sample + 1, output.extension().string());
-  return output.parent_path() / name;
-}
 
 void run_regenerate(const CommandContext& context, const RegenerateOptions& options) {
   Device device = Device::open({context.platform, context.device});

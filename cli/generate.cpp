@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "commands.hpp"
+#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/motion_model/clip_generation.hpp"
+#include "sample_path.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+struct GenerateOptions {
+  std::filesystem::path model, seed_clip, output;
+  GenerationOptions generation;
+};
+
+void run_generate(const CommandContext& context, const GenerateOptions& options) {
+  Device device = Device::open({context.platform, context.device});
+  const Model model = load_model(device, options.model);
+  GenerationOptions generation = options.generation;
+  generation.seed = context.seed;
+  const Motion seed = load_clip(options.seed_clip, {.fps = model.modalities.fps});
+  const auto motions = generate_clip(model, seed, generation);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const auto path = sample_path(options.output, i, motions.size());
+    write_bvh(path, motions[i]);
+    spdlog::info("{}: {} frames at {:.4g} fps", path.string(), motions[i].frames(),
+                 motions[i].fps());
+  }
+}
+
+}  // namespace
+
+void add_generate_command(CLI::App& app, CommandContext& context) {
+  constexpr std::size_t kMostFrames = 1'000'000, kMostSamples = 1000, kMostSteps = 1000;
+  constexpr double kHottest = 10.0;
+  auto options = std::make_shared<GenerateOptions>();
+  GenerationOptions& generation = options->generation;
+  CLI::App* command = app.add_subcommand(
+      "generate", "Goes on where a clip ends: new 3D motion, as BVH, without any track");
+  command->add_option("--model", options->model, "Trained model")->required()->type_name("FILE");
+  command
+      ->add_option("--seed-clip", options->seed_clip,
+                   "BVH clip to go on from: its last frames and its person")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("-o,--output", options->output, "BVH file to write: the new frames")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--frames", generation.frames, "New frames, at the model's rate")
+      ->check(CLI::Range(std::size_t{1}, kMostFrames))
+      ->capture_default_str();
+  command
+      ->add_option("--samples", generation.samples,
+                   "Variations; several are written as out_01.bvh …")
+      ->check(CLI::Range(std::size_t{1}, kMostSamples))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--temperature", generation.temperature,
+          "How far hidden units are drawn from their mean: 0 draws nothing, 1 as the model "
+          "has it")
+      ->check(CLI::Range(0.0, kHottest))
+      ->capture_default_str();
+  command
+      ->add_option("--gibbs-steps", generation.gibbs_steps,
+                   "Drawn steps of the top layer in each frame (k of Algorithm 4)")
+      ->check(CLI::Range(std::size_t{0}, kMostSteps))
+      ->capture_default_str();
+  add_seed_option(*command, context);
+  add_device_options(*command, context);
+  add_quiet_option(*command, context);
+  command->footer(
+      "Example:\n  mcdbn-cl generate --model run/model.safetensors --seed-clip walk.bvh -o out.bvh "
+      "--frames 1000");
+  command->callback([&context, options] {
+    context.run = [&context, options] { run_generate(context, *options); };
+  });
+}
+
+}  // namespace mcdbn::cli
