@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
 #include "commands.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/motion_model/clip_generation.hpp"
@@ -18,19 +20,42 @@ struct GenerateOptions {
   GenerationOptions generation;
 };
 
+/// What the library says of the seed clip, with its name.
+std::vector<Motion> generated(const Model& model, const GenerateOptions& options,
+                              const GenerationOptions& generation, GenerationHealth& health) {
+  const Motion seed = load_clip(options.seed_clip, {.fps = model.modalities.fps});
+  try {
+    return generate_clip(model, seed, generation, &health);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", options.seed_clip.string(), error.what()));
+  }
+}
+
+/// How bounded and alive it is, in a line.
+void report(const GenerationHealth& health) {
+  std::vector<double> deviation(health.deviation.begin(), health.deviation.end());
+  std::sort(deviation.begin(), deviation.end());
+  const std::size_t cycle = *std::min_element(health.cycle.begin(), health.cycle.end());
+  spdlog::info(
+      "its channels deviate {:.2f} to {:.2f} times as far as in training (median {:.2f}); {}",
+      deviation.front(), deviation.back(), deviation[deviation.size() / 2],
+      cycle > 0 ? fmt::format("the shortest cycle has {} frames", cycle) : "no cycle");
+}
+
 void run_generate(const CommandContext& context, const GenerateOptions& options) {
   Device device = Device::open({context.platform, context.device});
   const Model model = load_model(device, options.model);
   GenerationOptions generation = options.generation;
   generation.seed = context.seed;
-  const Motion seed = load_clip(options.seed_clip, {.fps = model.modalities.fps});
-  const auto motions = generate_clip(model, seed, generation);
+  GenerationHealth health;
+  const auto motions = generated(model, options, generation, health);
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const auto path = sample_path(options.output, i, motions.size());
     write_bvh(path, motions[i]);
     spdlog::info("{}: {} frames at {:.4g} fps", path.string(), motions[i].frames(),
                  motions[i].fps());
   }
+  report(health);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ MatrixD root_path(const MatrixD& root, const Eigen::Matrix3d& camera_from_world,
 }  // namespace
 
 std::vector<Motion> generate_clip(const Model& model, const Motion& seed,
-                                  const GenerationOptions& options) {
+                                  const GenerationOptions& options, GenerationHealth* health) {
   const Modalities& modalities = model.modalities;
   const Cdbn& cdbn = model.network.pose;
   const Motion at_rate = resample(seed, modalities.fps);
@@ -41,9 +41,10 @@ std::vector<Motion> generate_clip(const Model& model, const Motion& seed,
   const WorldPose last = forward_kinematics(skeleton, at_rate.channels.bottomRows(1));
   const Eigen::Vector3d start =
       last.position[static_cast<std::size_t>(skeleton.find(modalities.root_name()))];
+  const auto poses = generate(cdbn, {modalities.encode_pose(at_rate, camera_from_world)}, options);
+  if (health) *health = generation_health(poses);
   std::vector<Motion> motions;
-  for (const MatrixF& pose :
-       generate(cdbn, {modalities.encode_pose(at_rate, camera_from_world)}, options)) {
+  for (const MatrixF& pose : poses) {
     const MatrixD features = modalities.pose_scale.invert(pose);
     motions.push_back(modalities.pose_features.decode(
         features, camera_from_world, skeleton, modalities.fps,

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "mcdbn/base/matrices.hpp"
+
+namespace mcdbn {
+
+/// Whether what was generated is bounded and alive.
+struct GenerationHealth {
+  /// [1 x visible] of each channel over all frames of all sequences: where data is standardized,
+  /// the share of the training data's deviation.
+  RowVectorD deviation;
+  /// Of each sequence, RMS change of a channel from frame to frame over the last kLateFrames: next
+  /// to nothing where it came to a stop.
+  std::vector<double> late_speed;
+  /// Of each sequence, the shortest lag in frames after which it comes back to where it was
+  /// (shortest_cycle).
+  std::vector<std::size_t> cycle;
+
+  static constexpr int kLateFrames = 200;
+};
+
+/// @param sequences standardized, [frames x visible] each
+GenerationHealth generation_health(const std::vector<MatrixF>& sequences);
+
+/// The first lag from 2 frames on at which the mean squared change has a minimum that is below
+/// kComesBack of what it was at the largest on the way there: a walk's stride. 0 if there is none
+/// up to `longest`, as for what wanders or only shakes.
+std::size_t shortest_cycle(const MatrixF& sequence, std::size_t longest = 90);
+inline constexpr double kComesBack = 0.7;
+
+}  // namespace mcdbn

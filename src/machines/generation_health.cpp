@@ -1,0 +1,57 @@
+#include "mcdbn/machines/generation_health.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mcdbn {
+namespace {
+
+/// Mean squared change of a channel over `lag` frames.
+double change(const MatrixF& sequence, Eigen::Index lag) {
+  const Eigen::Index rows = sequence.rows() - lag;
+  if (rows <= 0 || sequence.cols() == 0) return 0;
+  return (sequence.bottomRows(rows) - sequence.topRows(rows)).cast<double>().squaredNorm() /
+         static_cast<double>(rows * sequence.cols());
+}
+
+RowVectorD deviation_of(const std::vector<MatrixF>& sequences) {
+  if (sequences.empty()) return {};
+  RowVectorD sum = RowVectorD::Zero(sequences.front().cols()), squares = sum;
+  double frames = 0;
+  for (const MatrixF& sequence : sequences) {
+    sum += sequence.cast<double>().colwise().sum();
+    frames += static_cast<double>(sequence.rows());
+  }
+  const RowVectorD mean = sum / std::max(frames, 1.0);
+  for (const MatrixF& sequence : sequences)
+    squares += (sequence.cast<double>().rowwise() - mean).array().square().matrix().colwise().sum();
+  return (squares / std::max(frames, 1.0)).cwiseSqrt();
+}
+
+}  // namespace
+
+std::size_t shortest_cycle(const MatrixF& sequence, std::size_t longest) {
+  double largest = 0, before = 0, at = change(sequence, 1);
+  for (std::size_t lag = 2; lag <= longest; ++lag) {
+    const double after = change(sequence, static_cast<Eigen::Index>(lag));
+    largest = std::max(largest, at);
+    if (lag > 2 && at < before && at <= after && at < kComesBack * largest) return lag - 1;
+    before = at;
+    at = after;
+  }
+  return 0;
+}
+
+GenerationHealth generation_health(const std::vector<MatrixF>& sequences) {
+  GenerationHealth health;
+  health.deviation = deviation_of(sequences);
+  for (const MatrixF& sequence : sequences) {
+    const Eigen::Index late =
+        std::min<Eigen::Index>(sequence.rows(), GenerationHealth::kLateFrames);
+    health.late_speed.push_back(std::sqrt(change(sequence.bottomRows(late), 1)));
+    health.cycle.push_back(shortest_cycle(sequence));
+  }
+  return health;
+}
+
+}  // namespace mcdbn

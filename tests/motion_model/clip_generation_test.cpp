@@ -1,0 +1,140 @@
+// From a seed clip to clips that go on from it: frames, rates, the root's path, every option.
+
+#include "mcdbn/motion_model/clip_generation.hpp"
+
+#include <doctest/doctest.h>
+
+#include "device/every_device.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "motion/body_size.hpp"
+#include "motion/resample.hpp"
+#include "motion_model/clip_scene.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+struct Scene {
+  CameraPlacement view{35, 12, std::nullopt, 45, 1920, 1080};
+  Modalities modalities = modalities_of({swinging(small_body(), 60)}, view);
+
+  Model model(Device& device) const {
+    return {random_network(device, modalities), modalities, {}, {}};
+  }
+};
+
+GenerationOptions some_options() {
+  GenerationOptions options;
+  options.frames = 20;
+  options.samples = 2;
+  options.gibbs_steps = 3;
+  options.temperature = 0.9;
+  options.seed = 17;
+  return options;
+}
+
+/// A body of other proportions with another way to write the same joints.
+Motion other_person(int frames, double fps) {
+  Skeleton body = small_body();
+  for (Joint& joint : body.joints) joint.offset *= 1.25;
+  std::swap(body.joints[2].channels[0], body.joints[2].channels[2]);
+  return swinging(body, frames, fps);
+}
+
+double largest(const MatrixD& difference) {
+  return difference.cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+TEST_CASE("generate_clip: what the network makes of the seed at the model's rate, on its person") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const Model model = scene.model(device);
+    for (const double fps : {30.0, 47.0, 120.0}) {
+      CAPTURE(fps);
+      const Motion seed = other_person(90, fps);
+      const GenerationOptions options = some_options();
+      const auto got = generate_clip(model, seed, options);
+      const Motion at_rate = resample(seed, 30);
+      const Eigen::Matrix3d camera = camera_rotation(35, 12);
+      const auto poses =
+          generate(model.network.pose, {scene.modalities.encode_pose(at_rate, camera)}, options);
+      REQUIRE(got.size() == 2);
+      CHECK(largest(got[0].channels - got[1].channels) > 1e-3);
+      for (std::size_t i = 0; i < got.size(); ++i) {
+        CHECK(got[i].frames() == 20);
+        CHECK(got[i].fps() == doctest::Approx(30));
+        CHECK(got[i].skeleton.joints[3].offset == seed.skeleton.joints[3].offset);
+        // Orientations are the features'; where the root is does not touch them.
+        const MatrixD want = scene.modalities.pose_scale.invert(poses[i]);
+        const Motion there = scene.modalities.pose_features.decode(want, camera, seed.skeleton, 30,
+                                                                   path_of(got[i], "Hips"));
+        CHECK(largest(got[i].channels - there.channels) < 1e-6);
+      }
+    }
+  });
+}
+
+TEST_CASE("generate_clip: the root goes on from the seed's end, as height and velocity say") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const Model model = scene.model(device);
+    const Motion seed = other_person(90, 30);
+    const GenerationOptions options = some_options();
+    const Eigen::Matrix3d camera = camera_rotation(35, 12);
+    const auto poses =
+        generate(model.network.pose, {scene.modalities.encode_pose(seed, camera)}, options);
+    const double units = file_units_per_metre(seed.skeleton);
+    const auto motions = generate_clip(model, seed, options);
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      const MatrixD path = path_of(motions[i], "Hips");
+      const MatrixD root = scene.modalities.pose_features.root_features(
+          scene.modalities.pose_scale.invert(poses[i]));
+      Eigen::RowVector3d before = path_of(seed, "Hips").bottomRows(1);
+      for (Eigen::Index t = 0; t < path.rows(); ++t) {
+        CAPTURE(t);
+        const Eigen::RowVector3d step = units / 30 * root.row(t).tail(3) * camera;
+        CHECK(path(t, 0) - before.x() == doctest::Approx(step.x()).epsilon(1e-9));
+        CHECK(path(t, 2) - before.z() == doctest::Approx(step.z()).epsilon(1e-9));
+        CHECK(path(t, 1) == doctest::Approx(units * root(t, 0)).epsilon(1e-9));
+        before = path.row(t);
+      }
+    }
+  });
+}
+
+TEST_CASE("generate_clip: every option comes to its use, and too short a seed is refused") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const Model model = scene.model(device);
+    const Motion seed = swinging(small_body(), 40);
+    const GenerationOptions options = some_options();
+    const auto first = [&](const GenerationOptions& changed) {
+      return generate_clip(model, seed, changed).at(0).channels;
+    };
+    const MatrixD usual = first(options);
+    CHECK(first(options) == usual);
+    const auto changes = [&](auto&& change) {
+      GenerationOptions changed = options;
+      change(changed);
+      return first(changed) != usual;
+    };
+    CHECK(changes([](GenerationOptions& o) { ++o.seed; }));
+    CHECK(changes([](GenerationOptions& o) { o.temperature = 0.3; }));
+    CHECK(changes([](GenerationOptions& o) { o.gibbs_steps = 4; }));
+    GenerationOptions longer = options;
+    longer.frames = 25;
+    CHECK(first(longer).topRows(20) == usual);
+    CHECK(first(longer).rows() == 25);
+    Motion end = seed;
+    end.channels = MatrixD(seed.channels.bottomRows(3));
+    CHECK_NOTHROW(generate_clip(model, end, options));
+    end.channels = MatrixD(seed.channels.bottomRows(2));  // the network's order is 3
+    CHECK_THROWS_AS(generate_clip(model, end, options), InputError);
+    Motion stranger = seed;
+    stranger.skeleton.joints[4].name = "Tail";
+    CHECK_THROWS_AS(generate_clip(model, stranger, options), InputError);
+  });
+}
