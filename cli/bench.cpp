@@ -117,14 +117,16 @@ void run_bench(const CommandContext& context, const BenchOptions& options) {
 
 void add_bench_command(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand(
-      "bench", "Times the mini-batch of each layer, products and regeneration on a device");
+      "bench",
+      "Times the mini-batch of each layer, products, regeneration and generation on a device");
   const auto options = std::make_shared<BenchOptions>();
   command
       ->add_option("--only", options->layers,
                    "Layers to measure (default: all but epoch): gaussian_crbm, binary_crbm, mrbm, "
-                   "mrbm_chain, gemm, regeneration, epoch (a thousand to a million frames)")
-      ->check(CLI::IsMember(
-          {"gaussian_crbm", "binary_crbm", "mrbm", "mrbm_chain", "gemm", "regeneration", "epoch"}))
+                   "mrbm_chain, gemm, regeneration, generation, epoch (a thousand to a million "
+                   "frames)")
+      ->check(CLI::IsMember({"gaussian_crbm", "binary_crbm", "mrbm", "mrbm_chain", "gemm",
+                             "regeneration", "generation", "epoch"}))
       ->type_name("LAYER");
   command->add_flag("--tune", options->tune,
                     "First find what suits the device best and keep it in the user's cache folder");

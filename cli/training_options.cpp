@@ -20,8 +20,10 @@ std::string group_of(const std::string& setting) {
 
 void TrainingOptions::add_to(CLI::App& command) {
   command
-      .add_option("--preset", preset_, "default, or paper: the paper's own figures, which diverge")
-      ->check(CLI::IsMember({"default", "paper"}))
+      .add_option("--preset", preset_,
+                  "default; paper: the paper's own figures, which diverge; generation: the greedy "
+                  "stages alone, so that `generate` goes on and on")
+      ->check(CLI::IsMember({"default", "paper", "generation"}))
       ->capture_default_str();
   command
       .add_option(
@@ -29,7 +31,7 @@ void TrainingOptions::add_to(CLI::App& command) {
           "greedy: layer by layer, as the paper does, and with two layers of order 5 and 300 "
           "units unless told otherwise; fine-tuning: the whole network by back-propagation, from "
           "random weights; both: some epochs of the one before the other "
-          "(default, but for --preset paper)")
+          "(default, but for the other presets)")
       ->check(CLI::IsMember({"greedy", "fine-tuning", "joint", "both"}));
   command
       .add_option_function<std::filesystem::path>(
@@ -70,6 +72,7 @@ TrainingConfig TrainingOptions::resolve(const std::vector<SaidSetting>& last) co
     return config;
   };
   if (preset_ == "paper") return applied_to(TrainingConfig::paper());
+  if (preset_ == "generation") return applied_to(TrainingConfig::generation());
   const TrainingConfig config = applied_to({});
   return config.fine_tuning.steps > 0 ? config : applied_to(TrainingConfig::greedy());
 }

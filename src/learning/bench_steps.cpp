@@ -9,6 +9,7 @@
 #include "learning/minibatch.hpp"
 #include "learning/multi_prediction.hpp"
 #include "machines/mrbm_chain.hpp"
+#include "mcdbn/machines/generation.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 
 namespace mcdbn {
@@ -249,6 +250,29 @@ BenchStep regeneration_step(Device& device, double temperature) {
           [=] { regenerate(*network, tracks, options); }};
 }
 
+/// Ten samples that run freely, each frame with that many Gibbs steps.
+BenchStep generation_step(Device& device, std::size_t gibbs_steps) {
+  constexpr std::size_t kVisible = 96, kHidden = 300, kOrder = 5;
+  const auto cdbn = std::make_shared<Cdbn>();
+  cdbn->layers.emplace_back(
+      device, CrbmParameters::random({kVisible, kHidden, kOrder, VisibleKind::gaussian},
+                                     kWeightDeviation, {}));
+  GenerationOptions options;
+  options.frames = 1000;
+  options.samples = 10;
+  options.gibbs_steps = gibbs_steps;
+  const std::vector<MatrixF> seeds{random_frames(kOrder, kVisible, VisibleKind::gaussian)};
+  // Both dynamic biases; up and down in each drawn step and in the last.
+  const double multiply_adds = static_cast<double>(kOrder * kVisible * (kVisible + kHidden) +
+                                                   2 * (gibbs_steps + 1) * kVisible * kHidden);
+  return {{{"layer", "generation"},
+           {"frames", options.frames},
+           {"samples", options.samples},
+           {"k", gibbs_steps}},
+          2.0 * multiply_adds * static_cast<double>(options.frames * options.samples),
+          [=] { generate(*cdbn, seeds, options); }};
+}
+
 }  // namespace
 
 std::vector<BenchStepMaker> crbm_minibatch_steps(std::size_t batch) {
@@ -281,6 +305,8 @@ std::vector<BenchStepMaker> bench_steps() {
           [=, m = m, n = n, k = k](Device& device) { return gemm_step(device, m, n, k, backend); });
   for (const double temperature : {0.0, 1.0})
     makers.emplace_back([=](Device& device) { return regeneration_step(device, temperature); });
+  for (const std::size_t gibbs_steps : {1U, 30U})
+    makers.emplace_back([=](Device& device) { return generation_step(device, gibbs_steps); });
   return makers;
 }
 

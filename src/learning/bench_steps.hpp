@@ -22,8 +22,8 @@ using BenchStepMaker = std::function<BenchStep(Device&)>;
 std::vector<BenchStepMaker> crbm_minibatch_steps(std::size_t batch);
 
 /// The mini-batch step of every kind of layer at batch 100 and 1024, the MRBM's inference, the
-/// products of the model's sizes by both back ends, and the regeneration of ten samples of a
-/// 1,000-frame clip.
+/// products of the model's sizes by both back ends, and the regeneration and free generation of ten
+/// samples of 1,000 frames.
 std::vector<BenchStepMaker> bench_steps();
 
 /// An epoch of a CRBM over a thousand to a million frames: whether the cost is that of the data.

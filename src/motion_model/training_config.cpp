@@ -14,6 +14,13 @@ TrainingConfig TrainingConfig::paper() {
   return config;
 }
 
+TrainingConfig TrainingConfig::generation() {
+  TrainingConfig config;
+  static_cast<LearningSettings&>(config) = LearningSettings::generation();
+  config.phases = 4;
+  return config;
+}
+
 std::string former_name(const std::string& setting) {
   const std::string prefix = "fine-tuning.";
   if (!setting.starts_with(prefix)) return {};

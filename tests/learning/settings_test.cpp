@@ -95,6 +95,22 @@ TEST_CASE(
                                                          {"fine-tuning.steps", "0"}});
 }
 
+TEST_CASE("learning settings: the generation preset is one layer by CD-1 with noise on histories") {
+  CHECK(changed_by(LearningSettings::generation()) == Values{{"order", "8"},
+                                                             {"hidden", "300"},
+                                                             {"mrbm-hidden", "300"},
+                                                             {"gaussian.gibbs-steps", "1"},
+                                                             {"gaussian.rate", "0.003"},
+                                                             {"gaussian.rate-B", "0.003"},
+                                                             {"gaussian.weight-decay", "0.0005"},
+                                                             {"gaussian.history-noise", "1"},
+                                                             {"gaussian.epochs", "100"},
+                                                             {"binary.epochs", "50"},
+                                                             {"mrbm.rate", "0.001"},
+                                                             {"mrbm.epochs", "30"},
+                                                             {"fine-tuning.steps", "0"}});
+}
+
 TEST_CASE("learning settings: the paper's preset has the paper's own figures") {
   Values want = {{"order", "5"},
                  {"hidden", "300"},
@@ -121,6 +137,7 @@ TEST_CASE("learning settings: the defaults and the presets are within range") {
   CHECK_NOTHROW(LearningSettings{}.validate());
   CHECK_NOTHROW(LearningSettings::greedy().validate());
   CHECK_NOTHROW(LearningSettings::paper().validate());
+  CHECK_NOTHROW(LearningSettings::generation().validate());
 }
 
 TEST_CASE("learning settings: what is out of range is refused by its name") {

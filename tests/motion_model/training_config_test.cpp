@@ -42,8 +42,11 @@ TEST_CASE("training config: its settings are its parts' and the loss's, with the
 TEST_CASE("training config: presets are those of learning") {
   CHECK(changed_by(TrainingConfig::greedy()) == changed_by(LearningSettings::greedy()));
   CHECK(changed_by(TrainingConfig::paper()) == changed_by(LearningSettings::paper()));
-  for (const TrainingConfig& config :
-       {TrainingConfig{}, TrainingConfig::greedy(), TrainingConfig::paper()})
+  Values generation = changed_by(LearningSettings::generation());
+  generation["phases"] = "4";
+  CHECK(changed_by(TrainingConfig::generation()) == generation);
+  for (const TrainingConfig& config : {TrainingConfig{}, TrainingConfig::greedy(),
+                                       TrainingConfig::paper(), TrainingConfig::generation()})
     CHECK_NOTHROW(config.validate());
 }
 

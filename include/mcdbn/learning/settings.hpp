@@ -163,6 +163,9 @@ struct LearningSettings {
   /// The paper's own figures (Table 2, section V.C): rate 0.1, momentum 0.9, weights from N(0, 1),
   /// MRBM of 150, no look-ahead. Diverges: the guard says so.
   static LearningSettings paper();
+  /// For free-running generation: the greedy stages with one layer a CDBN, by CD-1 with noise on
+  /// the histories (docs/generation.md).
+  static LearningSettings generation();
   /// @throws ConfigError naming the setting that is out of range
   void validate() const { check_settings(*this); }
 

@@ -44,6 +44,8 @@ struct TrainingConfig : CorpusSettings, LearningSettings {
   /// With LearningSettings::greedy or paper.
   static TrainingConfig greedy();
   static TrainingConfig paper();
+  /// With LearningSettings::generation, on every frame of the clips' own rates up to 120 a second.
+  static TrainingConfig generation();
   /// @throws ConfigError naming the setting that is out of range
   void validate() const { check_settings(*this); }
 
