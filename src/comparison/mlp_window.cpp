@@ -8,8 +8,7 @@
 #include "base/missing_values.hpp"
 #include "base/random_streams.hpp"
 #include "comparison/clip_pairs.hpp"
-#include "device/gemm.hpp"
-#include "device/optimizer.hpp"
+#include "comparison/track_window.hpp"
 #include "device/pointwise.hpp"
 #include "learning/minibatch.hpp"
 #include "mcdbn/features/standardizer.hpp"
@@ -22,7 +21,7 @@ constexpr std::uint16_t kStream = random_streams::kPerceptron;
 
 /// The clip with its ends repeated, so that every frame is the middle of a window.
 MatrixF extended(const MatrixF& track) {
-  constexpr auto reach = static_cast<Eigen::Index>(MlpWindow::kReach);
+  constexpr Eigen::Index reach = kWindowReach;
   const MatrixF seen = at_mean_where_unknown(track);
   MatrixF rows(track.rows() + 2 * reach, track.cols());
   rows.topRows(reach) = seen.row(0).replicate(reach, 1);
@@ -31,88 +30,13 @@ MatrixF extended(const MatrixF& track) {
   return rows;
 }
 
-/// `0.W`
-std::string name_of(std::size_t layer, const char* letter) {
-  return fmt::format("{}.{}", layer, letter);
-}
-
-std::vector<ParameterShape> parameter_shapes(const std::vector<MlpWindow::Layer>& layers) {
-  std::vector<ParameterShape> shapes;
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    const auto rows = static_cast<std::size_t>(layers[i].W.rows());
-    const auto columns = static_cast<std::size_t>(layers[i].W.cols());
-    shapes.push_back({.name = name_of(i, "W"), .rows = rows, .columns = columns});
-    shapes.push_back({.name = name_of(i, "b"), .rows = 1, .columns = columns, .is_weight = false});
-  }
-  return shapes;
-}
-
-/// One layer in training: its parameters and gradients, and the transposed copy of W.
-class TrainedLayer {
- public:
-  TrainedLayer(const Parameters& parameters, const Parameters& gradients, std::size_t number)
-      : W_(parameters.matrix(name_of(number, "W"))),
-        b_(parameters.matrix(name_of(number, "b"))),
-        gradient_W_(gradients.matrix(name_of(number, "W"))),
-        gradient_b_(gradients.matrix(name_of(number, "b"))),
-        W_transposed_(W_.device(), W_.columns(), W_.rows()) {
-    refresh();
-  }
-
-  void forward(const Rows& input, const Rows& output, Activation activation) const {
-    GemmOptions options;
-    options.bias = &b_;
-    options.activation = activation;
-    gemm(input, W_, output, options);
-  }
-
-  /// Error at this layer's output → error at the output `below` of the rectified layer beneath,
-  /// from which drop-out took its part.
-  void backward(const Rows& error, const Rows& below, double kept_share,
-                const Rows& error_below) const {
-    GemmOptions options;
-    options.alpha = static_cast<float>(1.0 / kept_share);
-    options.activation = Activation::relu_gradient;
-    options.factor = &below;
-    gemm(error, W_transposed_, error_below, options);
-  }
-
-  void differentiate(const Rows& input, const Rows& error) {
-    gemm_transposed_a(input, error, gradient_W_);
-    column_sum(error, 1.0F, 0.0F, gradient_b_);
-  }
-
-  /// After W changed.
-  void refresh() { transpose(W_, W_transposed_); }
-
-  MlpWindow::Layer to_host() const { return {W_.to_host(), b_.to_host()}; }
-
- private:
-  Matrix W_, b_, gradient_W_, gradient_b_, W_transposed_;
-};
-
-/// Variance 1 / (3 · inputs), as PyTorch starts its linear layers: with the variance of He et al.,
-/// six times as much, the error on unseen people is 2 to 3 mm larger. Padding between the frames of
-/// a window stays zero, as its inputs are.
-MlpWindow::Layer random_layer(std::size_t inputs, std::size_t rows, std::size_t outputs,
-                              RandomKey key) {
-  const double deviation = std::sqrt(1.0 / (3.0 * static_cast<double>(inputs)));
-  MlpWindow::Layer layer{MatrixF(rows, outputs), MatrixF::Zero(1, outputs)};
-  for (Eigen::Index r = 0; r < layer.W.rows(); ++r)
-    for (Eigen::Index c = 0; c < layer.W.cols(); ++c)
-      layer.W(r, c) =
-          static_cast<float>(deviation * random_normal(key, static_cast<std::uint32_t>(r),
-                                                       static_cast<std::uint32_t>(c)));
-  return layer;
-}
-
 /// Rows of the clips, one below another, that are the middle of a window.
 std::vector<std::int32_t> window_rows(const std::vector<MatrixF>& clips) {
   std::vector<std::int32_t> rows;
   std::size_t first = 0;
   for (const MatrixF& clip : clips) {
     const auto frames = static_cast<std::size_t>(clip.rows());
-    for (std::size_t t = MlpWindow::kReach; t + MlpWindow::kReach < frames; ++t)
+    for (auto t = static_cast<std::size_t>(kWindowReach); t + kWindowReach < frames; ++t)
       rows.push_back(static_cast<std::int32_t>(first + t));
     first += frames;
   }
@@ -127,8 +51,7 @@ class Trainer {
       : settings_(settings),
         tracks_(tracks),
         poses_(poses),
-        optimizer_(start(device, first_layers(settings, tracks, poses)), OptimizerKind::adam),
-        layers_(make_layers()),
+        network_(device, first_layers(settings, tracks, poses)),
         hidden_{Matrix(device, batch, settings.hidden), Matrix(device, batch, settings.hidden)},
         errors_{Matrix(device, batch, settings.hidden), Matrix(device, batch, settings.hidden)},
         output_(device, batch, poses.columns()),
@@ -137,63 +60,53 @@ class Trainer {
   void step(const IndexBuffer& index, std::size_t first, double rate) {
     ++steps_;
     const std::size_t n = output_.rows();
-    const Rows input = Rows::indexed(tracks_, index, first, n, -static_cast<int>(MlpWindow::kReach),
-                                     MlpWindow::kFrames);
+    const Rows input = Rows::indexed(tracks_, index, first, n, -static_cast<int>(kWindowReach),
+                                     static_cast<std::size_t>(kWindowFrames));
     gather(Rows::indexed(poses_, index, first, n), target_);
-    const double kept = 1.0 - settings_.dropout;
-    layers_[0].forward(input, hidden_[0], Activation::relu);
+    network_.forward(0, input, hidden_[0], Activation::relu);
     drop(0);
-    layers_[1].forward(hidden_[0], hidden_[1], Activation::relu);
+    network_.forward(1, hidden_[0], hidden_[1], Activation::relu);
     drop(1);
-    layers_[2].forward(hidden_[1], output_, Activation::none);
+    network_.forward(2, hidden_[1], output_);
 
     // The squared error's gradient, but for a factor that Adam does not see.
     scaled_difference(output_, target_, 1.0F / static_cast<float>(n), output_);
-    layers_[2].backward(output_, hidden_[1], kept, errors_[1]);
-    layers_[1].backward(errors_[1], hidden_[0], kept, errors_[0]);
-    layers_[2].differentiate(hidden_[1], output_);
-    layers_[1].differentiate(hidden_[0], errors_[1]);
-    layers_[0].differentiate(input, errors_[0]);
-    const UpdateRule rule =
-        UpdateRule::adam(static_cast<float>(rate), static_cast<float>(settings_.weight_decay));
-    optimizer_.next_step();
-    optimizer_.update(rule);
-    for (TrainedLayer& layer : layers_) layer.refresh();
+    back(2, output_, 1);
+    back(1, errors_[1], 0);
+    network_.differentiate(2, hidden_[1], output_);
+    network_.differentiate(1, hidden_[0], errors_[1]);
+    network_.differentiate(0, input, errors_[0]);
+    network_.update(
+        UpdateRule::adam(static_cast<float>(rate), static_cast<float>(settings_.weight_decay)));
   }
 
-  std::array<MlpWindow::Layer, 3> to_host() const {
-    return {layers_[0].to_host(), layers_[1].to_host(), layers_[2].to_host()};
-  }
+  std::vector<DenseLayer> to_host() const { return network_.to_host(); }
 
  private:
-  static std::vector<MlpWindow::Layer> first_layers(const MlpWindow::Settings& settings,
-                                                    const Matrix& tracks, const Matrix& poses) {
+  /// With the variance of He et al., six times as much, the error on unseen people is 2 to 3 mm
+  /// larger. Padding between the frames of a window stays zero, as its inputs are.
+  static std::vector<DenseLayer> first_layers(const MlpWindow::Settings& settings,
+                                              const Matrix& tracks, const Matrix& poses) {
     RandomKey key{settings.seed, 0, kStream, kWeightPhase};
     const auto layer = [&](std::size_t inputs, std::size_t rows, std::size_t outputs) {
       ++key.step;
-      return random_layer(inputs, rows, outputs, key);
+      return random_dense_layer(inputs, rows, outputs, key);
     };
     // Read in place, a window of frames has their padding in it.
-    return {layer(MlpWindow::kFrames * tracks.columns(), MlpWindow::kFrames * tracks.stride(),
-                  settings.hidden),
-            layer(settings.hidden, settings.hidden, settings.hidden),
-            layer(settings.hidden, settings.hidden, poses.columns())};
+    return {
+        layer(kWindowFrames * tracks.columns(), kWindowFrames * tracks.stride(), settings.hidden),
+        layer(settings.hidden, settings.hidden, settings.hidden),
+        layer(settings.hidden, settings.hidden, poses.columns())};
   }
 
-  static Parameters start(Device& device, const std::vector<MlpWindow::Layer>& layers) {
-    Parameters parameters(device, parameter_shapes(layers));
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-      parameters.upload(name_of(i, "W"), layers[i].W);
-      parameters.upload(name_of(i, "b"), layers[i].b);
-    }
-    return parameters;
-  }
-
-  std::array<TrainedLayer, 3> make_layers() {
-    const Parameters& parameters = optimizer_.parameters();
-    const Parameters gradients = parameters.in(optimizer_.gradients());
-    return {TrainedLayer(parameters, gradients, 0), TrainedLayer(parameters, gradients, 1),
-            TrainedLayer(parameters, gradients, 2)};
+  /// Error at a layer's output → error at the rectified units beneath, of which drop-out took its
+  /// part.
+  void back(std::size_t layer, const Rows& error, std::size_t below) {
+    const Rows units = hidden_[below];
+    network_.backward(layer, error, errors_[below],
+                      {.gradient = Activation::relu_gradient,
+                       .units = &units,
+                       .scale = static_cast<float>(1.0 / (1.0 - settings_.dropout))});
   }
 
   void drop(std::size_t layer) {
@@ -207,8 +120,7 @@ class Trainer {
   const Matrix& tracks_;
   const Matrix& poses_;
   int steps_ = 0;
-  Optimizer optimizer_;
-  std::array<TrainedLayer, 3> layers_;
+  DenseNetwork network_;
   std::array<Matrix, 2> hidden_, errors_;
   Matrix output_, target_;
 };
@@ -256,7 +168,8 @@ MatrixF MlpWindow::predict(const MatrixF& track) const {
     GemmOptions options;
     options.bias = &b;
     if (i + 1 < layers_.size()) options.activation = Activation::relu;
-    gemm(i == 0 ? Rows::strided(frames, 0, count, 1, kFrames) : Rows(values), W, output, options);
+    gemm(i == 0 ? Rows::strided(frames, 0, count, 1, kWindowFrames) : Rows(values), W, output,
+         options);
     device_->queue().finish();  // W and b live no longer than this
     values = std::move(output);
   }

@@ -1,15 +1,14 @@
 #pragma once
 
-#include <array>
-
 #include "comparison/baseline.hpp"
+#include "comparison/dense_network.hpp"
 #include "mcdbn/device/device.hpp"
 
 namespace mcdbn {
 
-/// A perceptron with two hidden layers of rectified units on 11 frames of 2D (as RidgeWindow takes
-/// them), trained on the device by Adam with drop-out on the squared error: what anybody would try
-/// first today.
+/// A perceptron with two hidden layers of rectified units on 11 frames of 2D
+/// (track_window.hpp), trained on the device by Adam with drop-out on the squared error: what
+/// anybody would try first today.
 class MlpWindow : public Baseline {
  public:
   struct Settings {
@@ -31,9 +30,6 @@ class MlpWindow : public Baseline {
       return settings;
     }
   };
-  static constexpr std::size_t kReach = 5;
-  static constexpr std::size_t kFrames = 2 * kReach + 1;
-
   explicit MlpWindow(Device& device) : MlpWindow(device, Settings()) {}
   MlpWindow(Device& device, const Settings& settings) : device_(&device), settings_(settings) {}
 
@@ -41,18 +37,14 @@ class MlpWindow : public Baseline {
   void fit(const std::vector<MatrixF>& tracks, const std::vector<MatrixF>& poses) override;
   MatrixF predict(const MatrixF& track) const override;
 
-  /// One layer: output = input·W + b, its input as wide as the device pads it.
-  struct Layer {
-    MatrixF W;  ///< [inputs x outputs]
-    MatrixF b;  ///< [1 x outputs]
-  };
-  const std::array<Layer, 3>& layers() const { return layers_; }
+  /// The first layer's input is as wide as the device pads it. Empty before fit().
+  const std::vector<DenseLayer>& layers() const { return layers_; }
 
  private:
   Device* device_;
   Settings settings_;
   Eigen::Index track_dimension_ = 0;
-  std::array<Layer, 3> layers_;
+  std::vector<DenseLayer> layers_;
 };
 
 }  // namespace mcdbn

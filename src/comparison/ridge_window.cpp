@@ -9,6 +9,7 @@
 
 #include "base/missing_values.hpp"
 #include "comparison/clip_pairs.hpp"
+#include "comparison/track_window.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/features/standardizer.hpp"
 
@@ -20,16 +21,10 @@ constexpr int kFolds = 5;
 constexpr std::array kPenalties = {1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0, 100.0};
 
 /// Rows first … first + count − 1 of the regression's input.
-/// @param track [frames x d2], no NaN  @return [count x kFrames·d2 + 1], the last column is 1
+/// @param track [frames x d2], no NaN  @return [count x kWindowFrames·d2 + 1], the last column is 1
 MatrixD windows(const MatrixF& track, Eigen::Index first, Eigen::Index count) {
-  const Eigen::Index d2 = track.cols();
-  MatrixD rows(count, RidgeWindow::kFrames * d2 + 1);
-  for (Eigen::Index i = 0; i < count; ++i)
-    for (int k = 0; k < RidgeWindow::kFrames; ++k) {
-      const Eigen::Index frame =
-          std::clamp<Eigen::Index>(first + i + k - RidgeWindow::kReach, 0, track.rows() - 1);
-      rows.row(i).segment(k * d2, d2) = track.row(frame).cast<double>();
-    }
+  MatrixD rows(count, kWindowFrames * track.cols() + 1);
+  rows.leftCols(kWindowFrames * track.cols()) = track_windows(track, first, count).cast<double>();
   rows.rightCols<1>().setOnes();
   return rows;
 }
@@ -80,7 +75,7 @@ struct Moments {
 /// Frames in folds of clips that stand together, as one person's clips mostly do: the penalty has
 /// to suit people who were not trained on. Fewer clips than folds are cut into that many pieces.
 std::vector<Moments> folds(const std::vector<MatrixF>& tracks, const std::vector<MatrixF>& poses) {
-  const Eigen::Index inputs = RidgeWindow::kFrames * tracks[0].cols() + 1;
+  const Eigen::Index inputs = kWindowFrames * tracks[0].cols() + 1;
   std::vector<Moments> result(kFolds, Moments(inputs, poses[0].cols()));
   const std::size_t clips = tracks.size();
   for (std::size_t clip = 0; clip < clips; ++clip) {
@@ -122,7 +117,7 @@ void RidgeWindow::fit(const std::vector<MatrixF>& tracks, const std::vector<Matr
 }
 
 MatrixF RidgeWindow::predict(const MatrixF& track) const {
-  check_track(track, coefficients_.size() ? (coefficients_.rows() - 1) / kFrames : 0);
+  check_track(track, coefficients_.size() ? (coefficients_.rows() - 1) / kWindowFrames : 0);
   const MatrixF input = at_mean_where_unknown(track);
   MatrixF output(input.rows(), coefficients_.cols());
   for (Eigen::Index first = 0; first < input.rows(); first += kBlock) {

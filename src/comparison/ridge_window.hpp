@@ -4,21 +4,17 @@
 
 namespace mcdbn {
 
-/// Ridge regression from a window of 2D frames (5 before, the frame itself, 5 after; the clip's
-/// first and last frames are repeated at its ends) to the pose, with a bias that is not penalised.
-/// The penalty is chosen by five-fold cross-validation over whole clips.
+/// Ridge regression from a window of 2D frames (track_window.hpp) to the pose, with a bias that is
+/// not penalised. The penalty is chosen by five-fold cross-validation over whole clips.
 class RidgeWindow : public Baseline {
  public:
-  static constexpr int kReach = 5;
-  static constexpr int kFrames = 2 * kReach + 1;
-
   std::string name() const override { return "ridge_window"; }
   void fit(const std::vector<MatrixF>& tracks, const std::vector<MatrixF>& poses) override;
   MatrixF predict(const MatrixF& track) const override;
 
   /// The penalty a training frame, on squared coefficients.
   double penalty() const { return penalty_; }
-  /// [kFrames·d2 + 1 x d3], earliest frame first, the bias last.
+  /// [kWindowFrames·d2 + 1 x d3], earliest frame first, the bias last.
   const MatrixD& coefficients() const { return coefficients_; }
 
  private:
