@@ -32,6 +32,8 @@ inline constexpr std::uint16_t kGeneration = 206;
 inline constexpr std::uint16_t kChains = 210;
 inline constexpr std::uint16_t kFlippedUnits = 211;
 inline constexpr std::uint16_t kAnnealing = 212;
-inline constexpr std::uint16_t kPerceptron = 0x4d4c;  ///< and the next for each layer's drop-out
+inline constexpr std::uint16_t kPerceptron = 0x4d4c;   ///< and the next for each layer's drop-out
+inline constexpr std::uint16_t kAutoencoder = 0x4d60;  ///< and the next for each RBM
+inline constexpr std::uint16_t kBoltzmannMachine = 0x4d70;
 
 }  // namespace mcdbn::random_streams

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "comparison/adam_reference.hpp"
 #include "comparison/clips.hpp"
 #include "comparison/mlp_window.hpp"
 #include "device/every_device.hpp"
@@ -17,26 +18,6 @@ namespace {
 
 constexpr std::uint16_t kStream = 0x4d4c;
 constexpr Eigen::Index kReach = 5, kFrames = 11;
-
-/// A matrix of parameters with Adam's moments.
-struct Trained {
-  MatrixD value, mean, square;
-  explicit Trained(const MatrixD& start)
-      : value(start),
-        mean(MatrixD::Zero(start.rows(), start.cols())),
-        square(MatrixD::Zero(start.rows(), start.cols())) {}
-
-  /// Kingma and Ba (2015), weight decay decoupled.
-  void update(const MatrixD& gradient, double rate, double decay, int step) {
-    const double beta1 = 0.9, beta2 = 0.999;
-    mean = beta1 * mean + (1 - beta1) * gradient;
-    square = (beta2 * square.array() + (1 - beta2) * gradient.array().square()).matrix();
-    const MatrixD direction = ((mean.array() / (1 - std::pow(beta1, step))) /
-                               ((square.array() / (1 - std::pow(beta2, step))).sqrt() + 1e-8))
-                                  .matrix();
-    value -= rate * (direction + decay * value);
-  }
-};
 
 /// Training frames as windows: each clip's ends are repeated, what is unknown is 0.
 struct Windows {
@@ -101,7 +82,7 @@ class Reference {
     }
   }
 
-  std::vector<Trained> W, b;
+  std::vector<AdamReference> W, b;
 
  private:
   void shuffle(std::vector<Eigen::Index>& order, std::uint32_t epoch) const {

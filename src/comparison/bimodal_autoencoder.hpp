@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+
+#include "comparison/baseline.hpp"
+#include "comparison/dense_network.hpp"
+#include "mcdbn/base/settings.hpp"
+#include "mcdbn/device/device.hpp"
+
+namespace mcdbn {
+
+/// Chosen by CMU's training walkers, one of them held out (docs/baselines.md).
+struct BimodalAutoencoderSettings {
+  std::size_t track_hidden = 512, pose_hidden = 256, shared = 512;
+  std::size_t pretraining_epochs = 5;
+  double pretraining_rate = 1e-3;
+  std::size_t epochs = 40;
+  std::size_t least_batches = 40;
+  std::size_t batch = 99;
+  double rate = 1e-3;
+  double weight_decay = 1.0;
+  double pose_weight = 1.0;
+  std::uint64_t seed = 1;
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"track-hidden", at_least(1), "units", "of the 2D modality's own layer"},
+          self.track_hidden);
+    visit(Setting{"pose-hidden", at_least(1), "units", "of the 3D modality's own layer"},
+          self.pose_hidden);
+    visit(Setting{"shared", at_least(1), "units", "of the layer that both modalities share"},
+          self.shared);
+    visit(Setting{"pretraining-epochs", at_least(0), "epochs",
+                  "rounds of CD-1 for each RBM that a layer starts as; 0 starts from random "
+                  "weights"},
+          self.pretraining_epochs);
+    visit(Setting{"pretraining-rate", above(0), "", "learning rate of the RBMs"},
+          self.pretraining_rate);
+    visit(Setting{"epochs", at_least(1), "epochs", "rounds of back-propagation"}, self.epochs);
+    visit(Setting{"least-batches", at_least(1), "mini-batches",
+                  "of an epoch, at least: few clips are gone over several times in it"},
+          self.least_batches);
+    visit(Setting{"batch", at_least(3), "windows",
+                  "of a mini-batch: a third with both modalities, a third with each alone"},
+          self.batch);
+    visit(Setting{"rate", above(0), "", "Adam's rate; falls in a line over the second half"},
+          self.rate);
+    visit(
+        Setting{
+            "weight-decay", at_least(0), "",
+            "decoupled decay of the weights, times the rate: what generalizes to unseen people"},
+        self.weight_decay);
+    visit(Setting{"pose-weight", above(0), "",
+                  "of a 3D value's squared error where a 2D value's counts once: there are several "
+                  "times as many of those"},
+          self.pose_weight);
+  }
+};
+
+/// The bimodal deep autoencoder of Ngiam et al. (2011), the paper's [13]: a window of 2D
+/// (track_window.hpp) and the pose each have a layer of sigmoid units, and those share one; from it
+/// both are decoded. Layers start as RBMs. Back-propagation then sees a third of its examples with
+/// both modalities, a third with each alone (the other is zero, its mean), and wants both back: so
+/// the pose can be told from the track.
+class BimodalAutoencoder : public Baseline {
+ public:
+  explicit BimodalAutoencoder(Device& device, const BimodalAutoencoderSettings& settings = {});
+  ~BimodalAutoencoder() override;
+
+  std::string name() const override { return "bimodal_autoencoder"; }
+  void fit(const std::vector<MatrixF>& tracks, const std::vector<MatrixF>& poses) override;
+  MatrixF predict(const MatrixF& track) const override;
+
+  /// bimodal_network.hpp says which is which. Empty before fit().
+  std::vector<DenseLayer> layers() const;
+
+ private:
+  Device* device_;
+  BimodalAutoencoderSettings settings_;
+  Eigen::Index track_dimension_ = 0;
+  std::unique_ptr<class BimodalNetwork> network_;
+};
+
+}  // namespace mcdbn

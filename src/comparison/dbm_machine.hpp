@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+
+#include "device/gemm.hpp"
+#include "mcdbn/device/parameters.hpp"
+
+namespace mcdbn {
+
+/// A deep Boltzmann machine of two modalities (Srivastava and Salakhutdinov 2014): Gaussian visible
+/// units v of variance 1 and binary units h for each, and binary units z above both. In arrays of
+/// two the 2D modality comes first.
+///
+///     E = Σ_m [ ½‖v_m − a_m‖² − v_m·W_m·h_mᵀ − b_m·h_mᵀ − h_m·U_m·zᵀ ] − c·zᵀ
+///
+/// All methods work on rows of one mini-batch, enqueue and return.
+class DbmMachine {
+ public:
+  struct Shape {
+    std::array<std::size_t, 2> visible, hidden;
+    std::size_t joint = 0;
+  };
+
+  /// One modality's parameters in place.
+  struct Pathway {
+    Matrix W, U, a, b;
+    Pathway(const Parameters& parameters, std::size_t modality);
+  };
+
+  /// Units of every layer: of data, of chains, or their means. Those that are drawn beside their
+  /// probabilities have a matrix for each.
+  struct Units {
+    Units(Device& device, const Shape& shape, std::size_t rows);
+    std::array<Matrix, 2> visible, hidden;
+    Matrix joint;
+    std::array<Matrix, 2> hidden_draws;
+    std::array<Matrix, 2> drive;  ///< scale · v·W + b, the visible units' part of the hidden ones'
+  };
+
+  /// W_track, a_track, …, c. Weights from N(0, 0.01²), biases zero.
+  DbmMachine(Device& device, const Shape& shape, RandomKey key);
+
+  const Shape& shape() const { return shape_; }
+  const Parameters& parameters() const { return parameters_; }
+  Device& device() const { return parameters_.device(); }
+  /// After weights changed.
+  void refresh_transposed();
+
+  /// drive = scale · v·W + b. Greedy stages double what comes from below, as there is nothing above
+  /// yet.
+  void drive_hidden(std::size_t m, Units& units, float scale = 1.0F) const;
+  /// p(h_m = 1 | v_m, z) with drive(); to hidden. With a key, draws to hidden_draws too.
+  void infer_hidden(std::size_t m, Units& units, const RandomKey* draws = nullptr) const;
+  /// The same without z: σ(drive).
+  void infer_hidden_from_below(std::size_t m, Units& units, const RandomKey* draws = nullptr) const;
+  /// p(z = 1 | h) of these hidden units; to joint. With a key the draws take its place.
+  void infer_joint(const std::array<Matrix, 2>& hidden, Units& units,
+                   const RandomKey* draws = nullptr) const;
+  /// The mean of v_m given these hidden units; to visible. With a key a draw takes its place.
+  void infer_visible(std::size_t m, const Matrix& hidden, Units& units,
+                     const RandomKey* draws = nullptr) const;
+  /// What h_m is given z alone, twice over: in the greedy stage of the top nothing is below.
+  void infer_hidden_from_above(std::size_t m, Units& units) const;
+
+  /// Mean field with v_m clamped for both (`absent` 2) or one of the modalities; the other's starts
+  /// at its visible bias. @param steps of hidden, joint and absent visible units
+  void mean_field(Units& units, std::size_t absent, std::size_t steps) const;
+  static constexpr std::size_t kNoneAbsent = 2;
+
+  /// One sweep of the chains: h given v and z, then v and z given h. Uses four phases from
+  /// draws.phase on.
+  void gibbs_sweep(Units& chains, RandomKey draws) const;
+
+  /// gradient = scale · (∂E/∂θ over the rows) + beta · gradient, h and z being means.
+  void add_energy_gradient(const Units& units, float scale, float beta,
+                           const Parameters& gradients) const;
+
+ private:
+  Shape shape_;
+  Parameters parameters_;
+  std::array<Pathway, 2> pathways_;
+  Matrix c_;
+  std::array<Matrix, 2> W_transposed_, U_transposed_;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,48 @@
+#include "comparison/multimodal_dbm.hpp"
+
+#include "base/random_streams.hpp"
+#include "comparison/clip_pairs.hpp"
+#include "comparison/dbm_training.hpp"
+#include "comparison/track_window.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr std::uint16_t kWeightPhase = 0x7100;
+
+}  // namespace
+
+MultimodalDbm::MultimodalDbm(Device& device, const MultimodalDbmSettings& settings)
+    : device_(&device), settings_(settings) {
+  check_settings(settings_);
+}
+
+MultimodalDbm::~MultimodalDbm() = default;
+
+void MultimodalDbm::fit(const std::vector<MatrixF>& tracks, const std::vector<MatrixF>& poses) {
+  WindowPairs pairs = window_pairs(tracks, poses);
+  const std::array<MatrixF, 2> data = {std::move(pairs.windows), std::move(pairs.poses)};
+  const DbmMachine::Shape shape{
+      {static_cast<std::size_t>(data[0].cols()), static_cast<std::size_t>(data[1].cols())},
+      {settings_.track_hidden, settings_.pose_hidden},
+      settings_.joint};
+  machine_ = std::make_unique<DbmMachine>(
+      *device_, shape,
+      RandomKey{settings_.seed, 0, random_streams::kBoltzmannMachine, kWeightPhase});
+  DbmTraining(*machine_, settings_, data).run();
+  if (!machine_->parameters().all().to_host().allFinite())
+    throw Error("multimodal_dbm: training diverged; a lower `rate` may help");
+  track_dimension_ = tracks.front().cols();
+}
+
+MatrixF MultimodalDbm::predict(const MatrixF& track) const {
+  check_track(track, track_dimension_);
+  if (track.rows() == 0) return MatrixF(0, static_cast<Eigen::Index>(machine_->shape().visible[1]));
+  DbmMachine::Units units(*device_, machine_->shape(), static_cast<std::size_t>(track.rows()));
+  units.visible[0].upload(track_windows(track));
+  machine_->mean_field(units, 1, settings_.inference_steps);
+  return units.visible[1].to_host();
+}
+
+}  // namespace mcdbn

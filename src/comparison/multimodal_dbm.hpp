@@ -1,0 +1,85 @@
+#pragma once
+
+#include <memory>
+
+#include "comparison/baseline.hpp"
+#include "mcdbn/base/settings.hpp"
+#include "mcdbn/device/device.hpp"
+
+namespace mcdbn {
+
+/// Chosen by CMU's training walkers, one of them held out (docs/baselines.md).
+struct MultimodalDbmSettings {
+  std::size_t track_hidden = 512, pose_hidden = 256, joint = 256;
+  std::size_t pretraining_epochs = 20;
+  std::size_t epochs = 60;
+  std::size_t least_batches = 40;
+  std::size_t batch = 100;
+  double pretraining_rate = 1e-3, rate = 1e-3;
+  double momentum = 0.5;
+  double weight_decay = 2e-4;
+  std::size_t mean_field_steps = 10;
+  std::size_t gibbs_sweeps = 5;
+  std::size_t inference_steps = 50;
+  std::uint64_t seed = 1;
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"track-hidden", at_least(1), "units", "of the 2D modality's own layer"},
+          self.track_hidden);
+    visit(Setting{"pose-hidden", at_least(1), "units", "of the 3D modality's own layer"},
+          self.pose_hidden);
+    visit(Setting{"joint", at_least(1), "units", "of the layer above both"}, self.joint);
+    visit(Setting{"pretraining-epochs", at_least(0), "epochs",
+                  "rounds of CD-1 for each modality's layer, and then for the joint one"},
+          self.pretraining_epochs);
+    visit(Setting{"epochs", at_least(0), "epochs", "rounds of joint training"}, self.epochs);
+    visit(Setting{"least-batches", at_least(1), "mini-batches",
+                  "of an epoch, at least: few clips are gone over several times in it"},
+          self.least_batches);
+    visit(Setting{"batch", at_least(1), "windows", "of a mini-batch; as many chains run on"},
+          self.batch);
+    visit(Setting{"pretraining-rate", above(0), "",
+                  "learning rate of the modalities' own layers; the joint one's is ten times that"},
+          self.pretraining_rate);
+    visit(Setting{"rate", above(0), "", "of joint training; falls in a line to a fiftieth"},
+          self.rate);
+    visit(Setting{"momentum", share_below_one(), "",
+                  "share of a step that goes on in the next: evens out what draws do to it"},
+          self.momentum);
+    visit(Setting{"weight-decay", at_least(0), "",
+                  "decay of the weights, times the rate: keeps chains moving"},
+          self.weight_decay);
+    visit(Setting{"mean-field-steps", at_least(1), "steps", "of the data's hidden units"},
+          self.mean_field_steps);
+    // Each has random numbers of its own.
+    visit(Setting{"gibbs-sweeps", within(1, 1000), "sweeps",
+                  "of the chains in each mini-batch: more keep nearer to the model"},
+          self.gibbs_sweeps);
+    visit(Setting{"inference-steps", at_least(1), "steps",
+                  "of mean field by which the absent pose is inferred"},
+          self.inference_steps);
+  }
+};
+
+/// The multimodal deep Boltzmann machine of Srivastava and Salakhutdinov (2012, 2014), the paper's
+/// [15], on a window of 2D (track_window.hpp) and the pose (dbm_machine.hpp). Layers are trained
+/// greedily by CD-1, then all jointly: the data's statistics by mean field, the model's by
+/// persistent chains. The pose is inferred by mean field with the window clamped.
+class MultimodalDbm : public Baseline {
+ public:
+  explicit MultimodalDbm(Device& device, const MultimodalDbmSettings& settings = {});
+  ~MultimodalDbm() override;
+
+  std::string name() const override { return "multimodal_dbm"; }
+  void fit(const std::vector<MatrixF>& tracks, const std::vector<MatrixF>& poses) override;
+  MatrixF predict(const MatrixF& track) const override;
+
+ private:
+  Device* device_;
+  MultimodalDbmSettings settings_;
+  Eigen::Index track_dimension_ = 0;
+  std::unique_ptr<class DbmMachine> machine_;
+};
+
+}  // namespace mcdbn
