@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
@@ -120,6 +120,18 @@ void add_test_options(CLI::App& command, EvaluateOptions& options) {
       .add_option("--actions", options.actions,
                   "together, or by-folder: each folder's name is an action")
       ->check(CLI::IsMember({"together", "by-folder"}));
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--baselines",
+          [&options](const std::vector<std::string>& words) {
+            options.run.baselines = baselines_of(words);
+          },
+          "Simpler methods to score beside the model: usual, all (related systems too, which take "
+          "minutes), none, or names: " +
+              fmt::format("{}", fmt::join(all_baselines(), ",")))
+      ->delimiter(',')
+      ->default_str("usual")
+      ->type_name("NAME,...");
   command.add_flag("--include-training", options.run.include_training,
                    "Accept clips that were trained on");
   command.add_flag("--keep-first-frame", options.run.keep_first_frame,

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "comparison/baseline.hpp"
-#include "comparison/mlp_window.hpp"
 #include "corpus/people.hpp"
 #include "evaluation/bone_length.hpp"
 #include "evaluation/foot_slide.hpp"
@@ -157,20 +155,17 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
     tracks.push_back(std::move(clip.track_features));
     poses.push_back(std::move(clip.pose_features));
   }
-  auto baselines = default_baselines();
   const bool has_views = !options.view_tracks.empty();
-  baselines.push_back(std::make_unique<MlpWindow>(
-      model.network.mrbm.device(),
-      has_views ? MlpWindow::Settings::for_views() : MlpWindow::Settings()));
-  for (std::size_t i = 0; i < baselines.size(); ++i) {
-    const std::string name = baselines[i]->name();
-    progress.show("baseline " + name, Progress::kBaselines, i, baselines.size());
-    if (has_views && i + 1 == baselines.size())
-      baselines[i]->fit(options.view_tracks, options.view_poses);
+  for (std::size_t i = 0; i < options.baselines.size(); ++i) {
+    const std::string& name = options.baselines[i];
+    progress.show("baseline " + name, Progress::kBaselines, i, options.baselines.size());
+    const auto baseline = make_baseline(name, model.network.mrbm.device(), has_views);
+    if (has_views && baseline->learns_from_views())
+      baseline->fit(options.view_tracks, options.view_poses);
     else
-      baselines[i]->fit(tracks, poses);
+      baseline->fit(tracks, poses);
     for (ClipResult& result : results) {
-      const auto predict = [&](const MatrixF& track) { return baselines[i]->predict(track); };
+      const auto predict = [&](const MatrixF& track) { return baseline->predict(track); };
       result.others[name] = answer(model, options, result.truth,
                                    predict(seen_features(model, options, result.truth, predict)));
     }
@@ -226,7 +221,7 @@ std::vector<ClipResult> run_test(const Model& model,
     results.push_back(std::move(result));
   }
   regenerate_clips(model, options, progress, results);
-  if (options.baselines) run_baselines(model, options, progress, results);
+  if (!options.baselines.empty()) run_baselines(model, options, progress, results);
   return results;
 }
 

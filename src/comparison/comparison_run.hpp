@@ -1,6 +1,7 @@
 // The room comparison: baselines, the run that scores the model beside them, and sweeps.
 // It uses motion_model, evaluation.
-// Add here: a baseline: a class behind Baseline and a line in baseline.cpp.
+// Add here: a baseline: a class behind Baseline, a line in baseline.cpp, its name and a sentence in
+// evaluation/method_names.cpp, and its section in docs/baselines.md.
 #pragma once
 
 #include <functional>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "camera/track_noise.hpp"
+#include "comparison/baseline.hpp"
 #include "corpus/encoded_clip.hpp"
 #include "evaluation/clip_score.hpp"
 #include "evaluation/report_clip.hpp"
@@ -23,15 +25,16 @@ namespace mcdbn {
 struct TestRunOptions {
   CameraPlacement camera;
   RegenerationOptions regeneration;
-  /// What the MLP is fitted on where there are any, in place of the training clips: the views that
-  /// the model's fine-tuning saw, [frames x dimension] each, so that both learnt from the same.
+  /// What baselines that learn from views (the MLP) are fitted on where there are any, in place of
+  /// the training clips: the views that the model's fine-tuning saw, [frames x dimension] each, so
+  /// that both learnt from the same.
   std::vector<MatrixF> view_tracks, view_poses;
   std::optional<TrackFitSettings> fit =
       TrackFitSettings{};  ///< of every method's answer; unset: none
   TrackDamage damage;      ///< done to the test clips' tracks before anyone sees them
   bool keep_first_frame = false;
   bool include_training = false;  ///< else a clip that was trained on is refused
-  bool baselines = true;
+  std::vector<std::string> baselines = usual_baselines();  ///< as baselines_of says; may be none
   /// Called now and then with what is being done and how much of the run is done; may throw to
   /// stop.
   std::function<void(const std::string& what, double fraction)> progress;

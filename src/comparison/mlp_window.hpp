@@ -36,6 +36,7 @@ class MlpWindow : public Baseline {
   std::string name() const override { return "mlp_window"; }
   void fit(const std::vector<MatrixF>& tracks, const std::vector<MatrixF>& poses) override;
   MatrixF predict(const MatrixF& track) const override;
+  bool learns_from_views() const override { return true; }
 
   /// The first layer's input is as wide as the device pads it. Empty before fit().
   const std::vector<DenseLayer>& layers() const { return layers_; }

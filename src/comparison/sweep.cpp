@@ -117,7 +117,7 @@ void Sweep::score(const TrainingConfig& config, const Watch& watch, ordered_json
   const TrainedRun trained = trained_run(device_, clips_, config, folder, watch, true);
   TestRunOptions options;
   options.camera = trained.model.modalities.camera;
-  options.baselines = false;
+  options.baselines.clear();
   options.fit.reset();  // it is networks that are compared, not what the track makes of them
   const auto results = run_test(trained.model, test_, options);
   std::vector<ClipScore> scores;

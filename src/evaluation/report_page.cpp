@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/text_file.hpp"
+#include "evaluation/method_names.hpp"
 #include "evaluation/page_figures.hpp"
 #include "evaluation/page_files.hpp"
 #include "evaluation/page_motion.hpp"
@@ -71,11 +72,23 @@ ordered_json figures_of_scores() {
   return list;
 }
 
+/// What the page calls each method, by the summary's name for it.
+ordered_json methods_json(const EvaluationReport& report) {
+  ordered_json methods = ordered_json::object();
+  for (const MethodReport& method : overall_methods(report)) {
+    const MethodName name = method_name(method.name);
+    methods[method.name == kMeanField ? "model_mean_field" : method.name] = {
+        {"title", name.title}, {"sentence", name.sentence}};
+  }
+  return methods;
+}
+
 ordered_json page_data(const EvaluationReport& report) {
   PageMotion motion = page_motion(report.clips, kPageBudget_bytes);
-  return {{"summary", summary_json(report)},      {"scores", figures_of_scores()},
-          {"figures", page_figures(report)},      {"tables", tables_json(report)},
-          {"omission", omission(report, motion)}, {"clips", std::move(motion.clips)}};
+  return {{"summary", summary_json(report)}, {"scores", figures_of_scores()},
+          {"methods", methods_json(report)}, {"figures", page_figures(report)},
+          {"tables", tables_json(report)},   {"omission", omission(report, motion)},
+          {"clips", std::move(motion.clips)}};
 }
 
 /// `text` with every {{file}} replaced by that file, and {{data}} by the data.

@@ -1,26 +1,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "evaluation/evaluation_report.hpp"
+#include "evaluation/method_names.hpp"
 
 namespace mcdbn {
 namespace {
 
 using Kind = Verdict::Kind;
-
-std::string spoken(const std::string& method) {
-  static const std::map<std::string, std::string> names = {
-      {"mean_pose", "the constant mean pose"},
-      {"hold_last_frame", "one pose held throughout"},
-      {"nearest_neighbour", "the nearest neighbour"},
-      {"ridge_window", "ridge regression"},
-      {"mlp_window", "the MLP"}};
-  const auto found = names.find(method);
-  return found == names.end() ? method : found->second;
-}
 
 const MethodReport* find(const std::vector<MethodReport>& methods, const std::string& name) {
   for (const MethodReport& method : methods)
@@ -57,7 +46,7 @@ Verdict against(const EvaluationReport& report, const ClipScore& answer,
   const std::string count =
       fmt::format("nearer on {} of {} clips", clips_nearer_than(report.clips, baseline.name),
                   report.clips.size());
-  const std::string name = spoken(baseline.name);
+  const std::string_view name = method_name(baseline.name).spoken;
   if (nearer && follows)
     return {Kind::good, fmt::format("The model beats {}: {}; {}.", name, figures, count)};
   if (nearer)
@@ -97,7 +86,7 @@ void add_action_losses(std::vector<Verdict>& list, const ActionReport& action) {
     if (other.name != kMeanField && other.mean.error.mpjpe_mm <= answer.error.mpjpe_mm)
       list.push_back({Kind::bad, fmt::format("On {}, {} is nearer to the truth: {:.1f} mm against "
                                              "the model's {:.1f} mm.",
-                                             action.name, spoken(other.name),
+                                             action.name, method_name(other.name).spoken,
                                              other.mean.error.mpjpe_mm, answer.error.mpjpe_mm)});
 }
 

@@ -51,7 +51,7 @@ json by_library(const Call& call, const std::optional<Views>& views = {}) {
   options.damage = call.damage;
   options.keep_first_frame = call.keep_first_frame;
   options.include_training = call.include_training;
-  options.baselines = views.has_value();
+  if (!views) options.baselines.clear();
   if (views) {
     options.view_tracks = views->tracks;
     options.view_poses = views->poses;
@@ -187,6 +187,18 @@ TEST_CASE("evaluate: every option changes what its help says") {
        }},
       {"--model", [&] { CHECK(summary.at("model_file") == "model.safetensors"); }},
       {"--json", [&] { CHECK(summary.is_object()); }},
+      {"--baselines",
+       [&] {
+         // Two of those that are usual, by name and in the report's order, and one that is not.
+         const json some =
+             by_program(all, "--baselines twin_gaussian_process,ridge_window --include-training");
+         REQUIRE(some.at("baselines").size() == 2);
+         CHECK(some.at("baselines").contains("ridge_window"));
+         CHECK(some.at("baselines").contains("twin_gaussian_process"));
+         CHECK(by_program(all, "--baselines none --include-training").at("baselines").empty());
+         CHECK(summary.at("baselines").size() == 5);
+         CHECK(refused("--include-training --baselines ridge", 2));
+       }},
       {"--protocol", [&] { CHECK(refused("--protocol other", 2)); }},
       {"--platform", [&] { CHECK(refused("--platform no-such-name", 4)); }},
       {"--device", [&] { CHECK(refused("--device no-such-name", 4)); }},

@@ -55,7 +55,7 @@ struct Scene {
 TestRunOptions plain_options(const Scene& scene) {
   TestRunOptions options;
   options.camera = scene.test_view;
-  options.baselines = false;
+  options.baselines.clear();
   options.fit.reset();
   options.regeneration.run_in = 4;
   return options;
@@ -202,7 +202,7 @@ TEST_CASE("a test run's baselines learn from the training clips and answer as th
   on_every_device([&](Device& device) {
     const Model model = scene.model(device);
     TestRunOptions options = plain_options(scene);
-    options.baselines = true;
+    options.baselines = usual_baselines();
     options.damage = {.noise_px = 2, .missing_share = 0.02, .hidden_s = 0};
     std::vector<MatrixF> tracks, poses;
     for (const auto& file : scene.training) {
@@ -215,8 +215,11 @@ TEST_CASE("a test run's baselines learn from the training clips and answer as th
     options.view_tracks = {random_matrix(11, static_cast<std::size_t>(tracks[0].cols()), 5)};
     options.view_poses = {random_matrix(11, static_cast<std::size_t>(poses[0].cols()), 6)};
     const auto results = run_test(model, scene.tests, options);
-    auto baselines = default_baselines();
-    for (auto& baseline : baselines) baseline->fit(tracks, poses);
+    std::vector<std::unique_ptr<Baseline>> baselines;
+    for (const char* name : {"mean_pose", "hold_last_frame", "nearest_neighbour", "ridge_window"}) {
+      baselines.push_back(make_baseline(name, device, true));
+      baselines.back()->fit(tracks, poses);
+    }
     baselines.push_back(std::make_unique<MlpWindow>(device, MlpWindow::Settings::for_views()));
     baselines.back()->fit(options.view_tracks, options.view_poses);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -244,7 +247,7 @@ TEST_CASE("without views the perceptron learns from the training clips, at its f
     TestRunOptions options = plain_options(scene);
     options.camera = scene.model_view;
     options.include_training = true;
-    options.baselines = true;
+    options.baselines = usual_baselines();
     const auto before = device.launch_count();
     const auto results = run_test(model, {scene.training[0]}, options);
     // 40 epochs of at least 40 mini-batches, each of more than ten launches; with views it would be
@@ -302,7 +305,7 @@ TEST_CASE("a leading calibration pose is kept in test and training clips alike, 
     CHECK(run_test(model, {test}, options)[0].truth.motion.frames() == 40);
     // The mean pose is that of all training frames that were kept.
     model.training_clips = {identify_clip(file)};
-    options.baselines = true;
+    options.baselines = usual_baselines();
     options.view_tracks = {random_matrix(
         3, static_cast<std::size_t>(scene.modalities.track_scale.output_dimension()), 5)};
     options.view_poses = {random_matrix(
@@ -332,7 +335,7 @@ TEST_CASE("training clips that are gone matter to the baselines alone; a run say
     CHECK(shown[0].second == 0.0);
     CHECK(shown[1].first == "regenerating");
     CHECK(shown[1].second == doctest::Approx(0.1));
-    options.baselines = true;
+    options.baselines = usual_baselines();
     try {
       run_test(model, {scene.tests[1]}, options);
       FAIL("not refused");

@@ -2,8 +2,7 @@
 const report = JSON.parse(document.getElementById("data").textContent);
 const byId = id => document.getElementById(id);
 const {summary} = report;
-const NAMES = {model: "model", model_mean_field: "model, mean field", mean_pose: "constant mean pose",
-  hold_last_frame: "one pose held", nearest_neighbour: "nearest neighbour", ridge_window: "ridge regression", mlp_window: "MLP"};
+const titleOf = name => report.methods[name]?.title ?? name;
 const answer = summary.model_mean_field ?? summary.model;
 
 function showAbout() {
@@ -30,7 +29,7 @@ function showCards() {
     const own = answer[figure].toFixed(digits), theirs = rival?.[1][figure].toFixed(digits);
     const wins = rival && sign * (answer[figure] - rival[1][figure]) < 0;
     const [verdict, word] = own === theirs ? ["note", "level with"] : wins ? ["good", "beats"] : ["bad", "behind"];
-    byId("cards").append(card(title, own, unit, rival && `${word} ${NAMES[rival[0]] ?? rival[0]}: ${theirs}`, verdict));
+    byId("cards").append(card(title, own, unit, rival && `${word} ${titleOf(rival[0])}: ${theirs}`, verdict));
   };
   add("Mean joint error (MPJPE)", "mpjpe_mm", 1, "mm", 1);
   add("Correlation per channel", "pcc_channel", 3, "PCC", -1);
@@ -48,12 +47,14 @@ function showComparison() {
   const rows = [["model", summary.model], ...(summary.model_mean_field ? [["model_mean_field", summary.model_mean_field]] : []),
     ...Object.entries(summary.baselines)];
   const bars = figure => rows.filter(([, score]) => score[figure] !== null)
-    .map(([name, score]) => ({label: name === "model" && summary.model_mean_field ? "model, samples" : NAMES[name] ?? name,
+    .map(([name, score]) => ({label: name === "model" && summary.model_mean_field ? "model, samples" : titleOf(name),
       value: score[figure], model: name.startsWith("model")}));
   byId("comparison").append(barChart("Mean joint error in mm, shorter is better", bars("mpjpe_mm"), 1),
     barChart("PCC per channel, longer is better", bars("pcc_channel"), 3),
     barChart("Acceleration error in m/s², shorter is better",
-      bars("acceleration_error_mm_s2").map(bar => ({...bar, value: bar.value / 1000})), 2));
+      bars("acceleration_error_mm_s2").map(bar => ({...bar, value: bar.value / 1000})), 2),
+    element("dl", {class: "methods"}, ...rows.filter(([name]) => report.methods[name]?.sentence)
+      .flatMap(([name]) => [element("dt", {}, titleOf(name)), element("dd", {}, report.methods[name].sentence)])));
 }
 
 function showFigures() {
