@@ -61,6 +61,15 @@ kernel void log_sigmoid_difference(global const float* x, int x_ld, global const
 }
 #endif
 
+#if SAMPLE == 0
+// out[r] = weight where x[r] < y[r], else 0; a NaN counts as not lower. global: (rows)
+kernel void weigh_lower(global const float* x, global const float* y, int ld, float weight,
+                        global float* out, int out_ld) {
+  const int row = get_global_id(0);
+  out[row * out_ld] = x[row * ld] < y[row * ld] ? weight : 0.0f;
+}
+#endif
+
 #if SAMPLE == 1
 // One temperature of annealed importance sampling (Salakhutdinov and Murray 2008, eq 16 to 18): rows
 // move on from β to β'. x = b̂ + v·W; d is the machine's visible bias less the base's.

@@ -68,6 +68,17 @@ kernel void scaled_difference(global const float* x, int x_offset, int x_ld, glo
          out_offset + row * out_ld + column, out);
 }
 
+// out = x, each row times its weight, the first column of `weights`
+kernel void scale_rows(global const float* x, int x_offset, int x_ld, global const float* weights,
+                       int weights_offset, int weights_ld, int columns, global float* out,
+                       int out_offset, int out_ld) {
+  const int column = get_global_id(0) * VEC;
+  const int row = get_global_id(1);
+  if (column >= columns) return;
+  storeN(weights[weights_offset + row * weights_ld] * loadN(x_offset + row * x_ld + column, x),
+         out_offset + row * out_ld + column, out);
+}
+
 #if SAMPLE == 1
 // Drop-out: keeps an entry, divided by the share that is kept, or makes it zero. Runs of `alike` rows
 // share their draws.

@@ -4,7 +4,7 @@
 
 #include "base/random_streams.hpp"
 #include "device/pointwise.hpp"
-#include "mcdbn/machines/mrbm.hpp"
+#include "mcdbn/motion_model/training_sources.hpp"
 
 namespace mcdbn {
 namespace {

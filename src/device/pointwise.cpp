@@ -65,6 +65,15 @@ void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& ou
          scale, out.matrix->buffer(), out.offset(), out.stride());
 }
 
+void scale_rows(const Rows& x, const Rows& weights, const Rows& out) {
+  require(same_shape(x, out) && weights.count == x.count && weights.columns == 1,
+          "scale: shapes differ");
+  Device& device = out.matrix->device();
+  launch(device, units_kernel(device, "scale_rows"), pointwise_size(out), x.matrix->buffer(),
+         x.offset(), x.stride(), weights.matrix->buffer(), weights.offset(), weights.stride(),
+         to_int(out.columns), out.matrix->buffer(), out.offset(), out.stride());
+}
+
 void dropout(const Rows& c, float kept_share, const RandomKey& key, std::size_t alike) {
   require(kept_share > 0.0F && kept_share <= 1.0F, "dropout: the kept share is not in (0, 1]");
   require(alike > 0, "dropout: runs of no rows");

@@ -10,7 +10,7 @@
 #include "learning/divergence_guard.hpp"
 #include "learning/history_noise.hpp"
 #include "learning/minibatch.hpp"
-#include "learning/multi_prediction.hpp"
+#include "learning/mrbm_rule.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -282,11 +282,11 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
 Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
                 const LearningSettings& learning, std::uint16_t stream,
                 const EpochObserver& observer) {
-  const MultiPredictionSettings& settings = learning.mrbm;
+  const MrbmSettings& settings = learning.mrbm;
   Mrbm mrbm(device, initial);
   MinibatchSchedule schedule(device, paired_rows(codes, learning.look_ahead), learning.batch,
                              learning.least_batches);
-  MultiPrediction multi_prediction(mrbm, schedule.batch(), settings);
+  const std::unique_ptr<LearningRule> rule = make_mrbm_rule(mrbm, schedule.batch(), settings);
   DivergenceGuard guard(
       "mrbm", fmt::format("lower `mrbm.rate` (now {:g}) or `mrbm.initial-deviation` (now {:g})",
                           settings.rate, settings.initial_deviation));
@@ -294,7 +294,7 @@ Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmPara
   std::vector<std::pair<const Matrix*, int>> sequences;
   for (std::size_t m = 0; m < codes.size(); ++m) sequences.emplace_back(&codes[m].values, ahead[m]);
   const std::vector<MatrixF> some = some_codes(codes, learning);
-  run_epochs({"mrbm", settings.epochs, multi_prediction, std::move(sequences),
+  run_epochs({"mrbm", settings.epochs, *rule, std::move(sequences),
               [&] { return mrbm_health(mrbm.to_host(), some); }},
              schedule, guard, key_of(learning, stream, 0, 0), observer);
   return mrbm;

@@ -6,6 +6,7 @@
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
 #include "learning/contrastive_divergence.hpp"
+#include "learning/mrbm_rule.hpp"
 #include "machines/mean_field.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -27,20 +28,13 @@ std::vector<std::size_t> all_but(std::size_t modality, std::size_t modalities) {
   return others;
 }
 
-/// Flat, then falling, so that the last epochs average out the noise.
-double falling_rate(double rate, double progress) {
-  constexpr double kFlat = 0.5, kEnd = 0.02;
-  return progress < kFlat ? rate : rate * (1.0 - (1.0 - kEnd) * (progress - kFlat) / (1.0 - kFlat));
-}
-
 }  // namespace
 
-MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch,
-                                 const MultiPredictionSettings& settings, OptimizerKind optimizer)
+MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
+                                 OptimizerKind optimizer)
     : MultiPrediction(mrbm, batch, settings, choose_tile(mrbm, batch), optimizer) {}
 
-MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch,
-                                 const MultiPredictionSettings& settings,
+MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
                                  std::optional<RowTile> tile, OptimizerKind optimizer)
     : mrbm_(mrbm),
       settings_(settings),
@@ -80,10 +74,7 @@ void MultiPrediction::make_matrices() {
 
 void MultiPrediction::learn(std::span<const Rows> visible, const LearningStep& step,
                             LossAccumulator& losses) {
-  const UpdateRule rule =
-      UpdateRule::adam(static_cast<float>(falling_rate(settings_.rate, step.progress)),
-                       static_cast<float>(settings_.weight_decay));
-  this->step({visible.begin(), visible.end()}, rule, losses);
+  this->step({visible.begin(), visible.end()}, mrbm_update_rule(settings_, step.progress), losses);
 }
 
 void MultiPrediction::step(const std::vector<Rows>& codes, const UpdateRule& rule,

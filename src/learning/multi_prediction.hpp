@@ -19,10 +19,10 @@ namespace mcdbn {
 class MultiPrediction : public LearningRule {
  public:
   /// @throws ConfigError without a mean-field step
-  MultiPrediction(Mrbm& mrbm, std::size_t batch, const MultiPredictionSettings& settings,
+  MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
                   OptimizerKind optimizer = OptimizerKind::adam);
   /// With a tile of the caller's, or without the fused kernels.
-  MultiPrediction(Mrbm& mrbm, std::size_t batch, const MultiPredictionSettings& settings,
+  MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
                   std::optional<RowTile> tile, OptimizerKind optimizer = OptimizerKind::adam);
 
   std::size_t loss_count() const override { return mrbm_.modality_count(); }
@@ -58,7 +58,7 @@ class MultiPrediction : public LearningRule {
   static constexpr std::size_t kPieceRows = 1024;
 
   Mrbm& mrbm_;
-  MultiPredictionSettings settings_;
+  MrbmSettings settings_;
   std::size_t steps_, batch_;
   std::optional<RowTile> tile_;
   std::size_t block_;  ///< rows of one mean-field step in the stacks: the batch, or whole blocks

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/body_size.hpp"
 #include "motion/resample.hpp"
 
@@ -28,7 +29,7 @@ MatrixD root_path(const MatrixD& root, const Eigen::Matrix3d& camera_from_world,
 std::vector<Motion> generate_clip(const Model& model, const Motion& seed,
                                   const GenerationOptions& options, GenerationHealth* health) {
   const Modalities& modalities = model.modalities;
-  const Cdbn& cdbn = model.network.pose;
+  const Cdbn& cdbn = model.network.cdbns[kPose];
   const Motion at_rate = resample(seed, modalities.fps);
   if (at_rate.frames() < static_cast<int>(seed_frames(cdbn)))
     throw InputError(fmt::format(

@@ -71,7 +71,7 @@ Step run_step(Device& device, const Problem& problem, const std::optional<RowTil
   const IndexBuffer index(device, problem.index);
   Mrbm mrbm(device, problem.start);
   const std::size_t batch = problem.test.batch;
-  const MultiPredictionSettings settings{.mean_field_steps = problem.test.steps};
+  const MrbmSettings settings{.mean_field_steps = problem.test.steps};
   Mrbm still(device, problem.start);
   MultiPrediction gradient(still, batch, settings, tile, OptimizerKind::none);
   MultiPrediction multi_prediction(mrbm, batch, settings, tile);

@@ -265,7 +265,7 @@ TEST_CASE("steps of multi-prediction, each by its own rule, are the double refer
     const MrbmWanted want = wanted(scene);
     on_every_device([&](Device& device) {
       Mrbm fused(device, scene.start), composed(device, scene.start);
-      const MultiPredictionSettings settings{.mean_field_steps = kMeanFieldSteps};
+      const MrbmSettings settings{.mean_field_steps = kMeanFieldSteps};
       MultiPrediction fused_trainer(fused, kBatch, settings);
       MultiPrediction composed_trainer(composed, kBatch, settings, std::nullopt);
       check_multi_prediction(scene, want, fused, fused_trainer);

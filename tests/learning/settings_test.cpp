@@ -73,7 +73,7 @@ TEST_CASE("learning settings: every one has its default, its own name and its ow
 TEST_CASE("learning settings: the list leaves no member out") {
   CHECK(member_count<CdSettings>() == listed_under<LearningSettings>("gaussian."));
   CHECK(member_count<CdSettings>() == listed_under<LearningSettings>("binary."));
-  CHECK(member_count<MultiPredictionSettings>() == listed_under<LearningSettings>("mrbm."));
+  CHECK(member_count<MrbmSettings>() == listed_under<LearningSettings>("mrbm."));
   constexpr std::size_t kGroups = 4;
   CHECK(member_count<LearningSettings>() - kGroups ==
         listed_under<LearningSettings>("") - listed_under<LearningSettings>("gaussian.") -

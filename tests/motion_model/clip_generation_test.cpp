@@ -60,7 +60,7 @@ TEST_CASE("generate_clip: what the network makes of the seed at the model's rate
       const Motion at_rate = resample(seed, 30);
       const Eigen::Matrix3d camera = camera_rotation(35, 12);
       const auto poses =
-          generate(model.network.pose, {scene.modalities.encode_pose(at_rate, camera)}, options);
+          generate(model.network.cdbns[1], {scene.modalities.encode_pose(at_rate, camera)}, options);
       REQUIRE(got.size() == 2);
       CHECK(largest(got[0].channels - got[1].channels) > 1e-3);
       for (std::size_t i = 0; i < got.size(); ++i) {
@@ -85,7 +85,7 @@ TEST_CASE("generate_clip: the root goes on from the seed's end, as height and ve
     const GenerationOptions options = some_options();
     const Eigen::Matrix3d camera = camera_rotation(35, 12);
     const auto poses =
-        generate(model.network.pose, {scene.modalities.encode_pose(seed, camera)}, options);
+        generate(model.network.cdbns[1], {scene.modalities.encode_pose(seed, camera)}, options);
     const double units = file_units_per_metre(seed.skeleton);
     const auto motions = generate_clip(model, seed, options);
     for (std::size_t i = 0; i < motions.size(); ++i) {

@@ -147,12 +147,12 @@ TEST_CASE("histories of A's and B's own, and a learnt deviation, are saved and l
     shape.own_order_B = 0;
     stack[1].B = stack[1].B.topRows(0).eval();
     stack[1].shape = shape;
-    model.network.track.layers.clear();
-    for (const CrbmParameters& p : stack) model.network.track.layers.emplace_back(device, p);
+    model.network.cdbns[0].layers.clear();
+    for (const CrbmParameters& p : stack) model.network.cdbns[0].layers.emplace_back(device, p);
     save_model(folder / "one", model);
     const Model loaded = load_model(device, folder / "one");
-    check_layers(loaded.network.track.layers, stack);
-    check_layers(loaded.network.pose.layers, example.pose);
+    check_layers(loaded.network.cdbns[0].layers, stack);
+    check_layers(loaded.network.cdbns[1].layers, example.pose);
   });
 }
 

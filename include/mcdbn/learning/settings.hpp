@@ -52,18 +52,24 @@ struct CdSettings {
   }
 };
 
-/// Multi-prediction training of the MRBM (eq 42).
-struct MultiPredictionSettings {
+/// How the MRBM is trained: MinVI (eq 42) by multi-prediction or by CD-PercLoss, or the joint
+/// likelihood by contrastive divergence.
+struct MrbmSettings {
   double rate = 3e-4;
   double weight_decay = 0.0;
   double initial_deviation = 0.01;
   std::size_t mean_field_steps = 5;
   std::size_t epochs = 1;
+  bool joint_likelihood = false, perceptron_loss = false;
+  std::size_t gibbs_steps = 1;
+  bool persistent = false, sample_visible = false;
+  bool adam = true;
+  double momentum = 0.9;
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     visit(Setting{"rate", above(0), "",
-                  "Adam's rate; falls in a line to a fiftieth over the second half"},
+                  "learning rate; falls in a line to a fiftieth over the second half"},
           self.rate);
     visit(
         Setting{
@@ -78,6 +84,25 @@ struct MultiPredictionSettings {
           self.mean_field_steps);
     visit(Setting{"epochs", at_least(1), "epochs", "rounds over the codes; without fine-tuning 30"},
           self.epochs);
+    visit(Setting{"joint-likelihood", on_or_off(), "",
+                  "learns the joint likelihood by contrastive divergence, in place of MinVI"},
+          self.joint_likelihood);
+    visit(Setting{"perceptron-loss", on_or_off(), "",
+                  "MinVI by CD-PercLoss, in place of multi-prediction"},
+          self.perceptron_loss);
+    visit(Setting{"gibbs-steps", within(1, 1000), "steps",
+                  "k of the chains of joint-likelihood and perceptron-loss"},
+          self.gibbs_steps);
+    visit(Setting{"persistent", on_or_off(), "",
+                  "joint-likelihood: chains go on from one mini-batch to the next"},
+          self.persistent);
+    visit(Setting{"sample-visible", on_or_off(), "",
+                  "draws the codes in those chains, as the model says, where their means do"},
+          self.sample_visible);
+    visit(Setting{"adam", on_or_off(), "", "Adam; off: gradient descent with momentum"}, self.adam);
+    visit(Setting{"momentum", share_below_one(), "",
+                  "share of a step that goes on in the next; Adam's first decay"},
+          self.momentum);
   }
 };
 
@@ -154,7 +179,7 @@ struct LearningSettings {
 
   CdSettings gaussian;
   CdSettings binary{.gibbs_steps = 1, .rate = 1e-2, .rate_A = 1e-3, .rate_B = 1e-3};
-  MultiPredictionSettings mrbm;
+  MrbmSettings mrbm;
   FineTuningSettings fine_tuning;
 
   /// The paper's architecture for the greedy stages alone, at rates and for epochs that train it:

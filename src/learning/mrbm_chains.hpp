@@ -1,0 +1,65 @@
+#pragma once
+
+#include "device/optimizer.hpp"
+#include "learning/learning_rule.hpp"
+#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/machines/mrbm.hpp"
+
+namespace mcdbn {
+
+/// What rules that learn an MRBM from Gibbs chains share: a mini-batch of every modality, chains
+/// that start from it, and the gradient of the free energies' difference. The rules are
+/// JointLikelihood and PerceptronLoss.
+///
+/// As in contrastive divergence, hidden units are sampled, visible ones are means unless the
+/// settings want them sampled, and the last hidden step keeps probabilities. One product after the
+/// other.
+class MrbmChains : public LearningRule {
+ public:
+  std::size_t loss_count() const override { return mrbm_.modality_count(); }
+  /// One mini-batch by the rule that the settings say. Adds to `losses` the mean squared error of a
+  /// unit between the data and the chain's end, in slot m that of the modality m.
+  /// @param visible the codes of each modality, indexed  @throws ShapeError
+  void learn(std::span<const Rows> visible, const LearningStep& step,
+             LossAccumulator& losses) override;
+
+  /// The gradient of the last step, downhill, where the optimizer is none; for tests.
+  MrbmParameters gradients();
+
+  /// Draws of visible units: kVisiblePhase + step · modalities + modality; of hidden ones: step.
+  static constexpr std::uint16_t kVisiblePhase = 0x1000;
+
+ protected:
+  MrbmChains(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings, OptimizerKind optimizer);
+
+  /// Adds the gradients of a mini-batch whose data are in data_.
+  virtual void add_gradients(const RandomKey& key, LossAccumulator& losses) = 0;
+
+  /// p(h = 1 | data) and draws of it.
+  void hidden_of_data(const RandomKey& key);
+  /// `gibbs-steps` from hidden_sample_ on: the free modalities' units and hidden_ at the end; the
+  /// other modalities stay the data. @param draw_last leaves draws of the last in hidden_sample_
+  void run(std::span<const std::size_t> free, const RandomKey& key, bool draw_last = false);
+  /// Σ over rows of weight · (−∂F/∂θ of the data, +∂F/∂θ at the chain's end), downhill.
+  /// @param weights [batch x 1]
+  void add_contrast(std::span<const std::size_t> free, const Matrix& weights);
+  /// The data, but for the free modalities the chain's units.
+  std::vector<Rows> units(std::span<const std::size_t> free) const;
+  std::vector<Rows> data() const { return units({}); }
+
+  Mrbm& mrbm_;
+  MrbmSettings settings_;
+  std::size_t batch_;
+  std::vector<Matrix> data_, visible_;           // [batch x visible] of each modality
+  Matrix hidden_data_, hidden_, hidden_sample_;  // [batch x hidden]
+
+ private:
+  void add_side(const std::vector<Rows>& units, const Matrix& hidden, const Matrix& weights,
+                float sign);
+
+  Optimizer optimizer_;
+  MrbmMatrices gradient_;  // the optimizer's
+  Matrix weighted_;        // [batch x hidden]
+};
+
+}  // namespace mcdbn

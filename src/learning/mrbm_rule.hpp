@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "device/optimizer.hpp"
+#include "learning/learning_rule.hpp"
+#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/machines/mrbm.hpp"
+
+namespace mcdbn {
+
+/// The rule that the settings say: MultiPrediction, JointLikelihood or PerceptronLoss.
+/// @throws ConfigError if they say two
+std::unique_ptr<LearningRule> make_mrbm_rule(Mrbm& mrbm, std::size_t batch,
+                                             const MrbmSettings& settings);
+
+OptimizerKind optimizer_of(const MrbmSettings& settings);
+/// Flat, then falling to a fiftieth over the second half, so that the last epochs average out the
+/// noise. @param progress 0 … 1, of all mini-batches
+UpdateRule mrbm_update_rule(const MrbmSettings& settings, double progress);
+
+}  // namespace mcdbn

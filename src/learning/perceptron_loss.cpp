@@ -1,0 +1,31 @@
+#include "learning/perceptron_loss.hpp"
+
+#include "learning/mrbm_rule.hpp"
+#include "machines/mrbm_energy.hpp"
+
+namespace mcdbn {
+
+PerceptronLoss::PerceptronLoss(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
+                               std::optional<OptimizerKind> optimizer)
+    : MrbmChains(mrbm, batch, settings, optimizer.value_or(optimizer_of(settings))),
+      weights_(mrbm.device(), batch, 1),
+      data_energy_(Matrix::like(weights_)),
+      end_energy_(Matrix::like(weights_)) {}
+
+void PerceptronLoss::add_gradients(const RandomKey& key, LossAccumulator& losses) {
+  for (std::size_t m = 0; m < data_.size(); ++m) {
+    const std::size_t free[] = {m};
+    RandomKey own = key;
+    own.stream = static_cast<std::uint16_t>(key.stream + m);
+    hidden_of_data(own);
+    run(free, own);
+    losses.add_squared_error(m, data_[m], visible_[m],
+                             1.0F / static_cast<float>(batch_ * data_[m].columns()));
+    free_energy_given_others(mrbm_, m, data(), data_energy_);
+    free_energy_given_others(mrbm_, m, units(free), end_energy_);
+    weigh_lower(end_energy_, data_energy_, 1.0F / static_cast<float>(batch_), weights_);
+    add_contrast(free, weights_);
+  }
+}
+
+}  // namespace mcdbn

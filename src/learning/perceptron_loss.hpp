@@ -1,0 +1,24 @@
+#pragma once
+
+#include "learning/mrbm_chains.hpp"
+
+namespace mcdbn {
+
+/// MinVI by CD-PercLoss (Mnih, Larochelle and Hinton 2011; reference [49] of the paper, section
+/// III.D): for each modality a chain starts from the data with all others clamped, and where it
+/// ends at a lower free energy than the data's, max(0, F(data) − F(end)) is taken down; rows whose
+/// data already lie lower teach nothing.
+class PerceptronLoss : public MrbmChains {
+ public:
+  /// @param optimizer unset: what the settings say
+  PerceptronLoss(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
+                 std::optional<OptimizerKind> optimizer = {});
+
+ protected:
+  void add_gradients(const RandomKey& key, LossAccumulator& losses) override;
+
+ private:
+  Matrix weights_, data_energy_, end_energy_;  // [batch x 1]
+};
+
+}  // namespace mcdbn
