@@ -12,6 +12,7 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/track.hpp"
 #include "mcdbn/formats/track_file.hpp"
+#include "mcdbn/machines/machine_file.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
 
 namespace mcdbn::cli {
@@ -52,6 +53,7 @@ json describe(const fs::path& path) {
                          [](unsigned char letter) { return std::tolower(letter); });
   if (extension == ".bvh") return describe_clip(path);
   if (extension == ".safetensors") {
+    if (is_machine_file(path)) return describe_machine(path);
     json description = describe_model(path);
     description["kind"] = "trained model";
     return description;
@@ -80,8 +82,10 @@ void print_for_people(const json& description) {
 void add_info_command(CLI::App& app, CommandContext& context) {
   auto path = std::make_shared<fs::path>();
   CLI::App* command =
-      app.add_subcommand("info", "Describes a BVH clip, a 2D track or a trained model");
-  command->add_option("file", *path, "BVH, track CSV or model")->required()->type_name("FILE");
+      app.add_subcommand("info", "Describes a BVH clip, a 2D track, a trained model or a machine");
+  command->add_option("file", *path, "BVH, track CSV, model or machine")
+      ->required()
+      ->type_name("FILE");
   add_json_option(*command, context);
   command->footer("Example:\n  mcdbn-cl info walk.bvh");
   command->callback([&context, path] {

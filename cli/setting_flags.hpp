@@ -47,4 +47,17 @@ CLI::Option* add_setting_flag(CLI::App& command, const std::string& flag, const 
                          });
 }
 
+/// A flag for every setting; the member's value is the default.
+template <typename Settings>
+void add_setting_flags(CLI::App& command, Settings& settings) {
+  visit_settings(settings, [&](const Setting& setting, auto& member) {
+    const std::string flag = flag_of(setting.name);
+    if constexpr (std::is_same_v<std::decay_t<decltype(member)>, bool>)
+      add_switch_flag(command, flag, setting, member,
+                      [&member](const nlohmann::json& value) { member = value; });
+    else
+      add_setting_flag(command, flag, setting, member);
+  });
+}
+
 }  // namespace mcdbn::cli

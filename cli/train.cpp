@@ -7,11 +7,10 @@
 
 #include "commands.hpp"
 #include "comparison/sweep.hpp"
-#include "interrupt.hpp"
+#include "epoch_progress.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/motion_model/training_run.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
-#include "progress.hpp"
 #include "setting_flags.hpp"
 #include "training_options.hpp"
 
@@ -24,16 +23,6 @@ struct TrainOptions {
   std::filesystem::path sweep;
   TrainingOptions settings;
 };
-
-/// Shows each epoch, and stops the training on SIGINT.
-EpochObserver shown_on(ProgressLine& progress, const InterruptGuard& interrupt) {
-  return [&](const EpochReport& report) {
-    interrupt.check();
-    progress.show(fmt::format("{} epoch {}/{}  loss {:.4f}  {:.0f} windows/s", report.stage,
-                              report.epoch, report.epochs, report.loss, report.windows_per_s),
-                  report.overall_progress);
-  };
-}
 
 std::vector<LoadedClip> read_clips(const std::vector<std::filesystem::path>& files,
                                    const TrainingConfig& config) {

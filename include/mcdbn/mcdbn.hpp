@@ -34,6 +34,7 @@
 #include "mcdbn/learning/fine_tuning.hpp"
 #include "mcdbn/learning/greedy_schedule.hpp"
 #include "mcdbn/learning/layer_health.hpp"
+#include "mcdbn/learning/machine_fit.hpp"
 #include "mcdbn/learning/sequence_loss.hpp"
 #include "mcdbn/learning/sequence_source.hpp"
 #include "mcdbn/learning/settings.hpp"

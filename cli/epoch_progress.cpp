@@ -1,0 +1,16 @@
+#include "epoch_progress.hpp"
+
+#include <fmt/format.h>
+
+namespace mcdbn::cli {
+
+EpochObserver shown_on(ProgressLine& progress, const InterruptGuard& interrupt) {
+  return [&](const EpochReport& report) {
+    interrupt.check();
+    progress.show(fmt::format("{} epoch {}/{}  loss {:.4f}  {:.0f} windows/s", report.stage,
+                              report.epoch, report.epochs, report.loss, report.windows_per_s),
+                  report.overall_progress);
+  };
+}
+
+}  // namespace mcdbn::cli

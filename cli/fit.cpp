@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "commands.hpp"
+#include "epoch_progress.hpp"
+#include "learning/metrics_log.hpp"
+#include "matrix_options.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/learning/machine_fit.hpp"
+#include "setting_flags.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+/// What --machine names.
+struct MachineKind {
+  const char* name;
+  VisibleKind visible;
+  bool has_history, is_stack;
+};
+
+constexpr std::array kKinds{
+    MachineKind{"rbm", VisibleKind::binary, false, false},
+    MachineKind{"gaussian-rbm", VisibleKind::gaussian, false, false},
+    MachineKind{"crbm", VisibleKind::gaussian, true, false},
+    MachineKind{"binary-crbm", VisibleKind::binary, true, false},
+    MachineKind{"dbn", VisibleKind::binary, false, true},
+    MachineKind{"gaussian-dbn", VisibleKind::gaussian, false, true},
+    MachineKind{"cdbn", VisibleKind::gaussian, true, true},
+    MachineKind{"binary-cdbn", VisibleKind::binary, true, true},
+};
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (const MachineKind& kind : kKinds) names.emplace_back(kind.name);
+  return names;
+}
+
+struct FitOptions {
+  MatrixInput data;
+  std::filesystem::path output;
+  std::string machine;
+  bool standardize = false;
+  MachineSettings settings;
+  const CLI::Option *order = nullptr, *layers = nullptr;  ///< whether they were said
+
+  const MachineKind& kind() const {
+    return *std::find_if(kKinds.begin(), kKinds.end(),
+                         [&](const MachineKind& one) { return machine == one.name; });
+  }
+};
+
+void check_flags(const FitOptions& options) {
+  const MachineKind& kind = options.kind();
+  const auto refuse = [&](const CLI::Option* flag, const char* what) {
+    if (flag->count() > 0)
+      throw ConfigError(
+          fmt::format("{}: --machine {} has no {}", flag->get_name(), kind.name, what));
+  };
+  if (!kind.has_history) refuse(options.order, "history");
+  if (!kind.is_stack) refuse(options.layers, "layers but one");
+  if (options.standardize && kind.visible == VisibleKind::binary)
+    throw ConfigError(
+        fmt::format("--standardize: --machine {} wants values from 0 to 1 as they are", kind.name));
+  if (options.output.extension() != ".safetensors")
+    throw ConfigError(
+        fmt::format("--output {}: a machine's file is a .safetensors", options.output.string()));
+}
+
+/// What a machine can learn from: numbers throughout, from 0 to 1 where its units are binary.
+void check_values(const MatrixF& values, VisibleKind kind, const std::filesystem::path& file) {
+  for (Eigen::Index r = 0; r < values.rows(); ++r)
+    for (Eigen::Index c = 0; c < values.cols(); ++c) {
+      const float x = values(r, c);
+      if (!std::isfinite(x))
+        throw InputError(fmt::format("{}: row {}, column {} is {}; a fit wants numbers throughout",
+                                     file.string(), r + 1, c + 1, x));
+      if (kind == VisibleKind::binary && (x < 0.0F || x > 1.0F))
+        throw InputError(fmt::format(
+            "{}: row {}, column {} is {}; binary units want values from 0 to 1 (a Gaussian "
+            "machine takes any)",
+            file.string(), r + 1, c + 1, x));
+    }
+}
+
+void check_lengths(const std::vector<MatrixF>& data, std::size_t order,
+                   const std::filesystem::path& first) {
+  for (const MatrixF& values : data)
+    if (values.rows() > static_cast<Eigen::Index>(order)) return;
+  throw InputError(fmt::format("{}: no file has more than {} rows, the history of the machine",
+                               first.string(), order));
+}
+
+void run_fit(const CommandContext& context, const FitOptions& options) {
+  check_flags(options);
+  options.settings.validate();
+  const MachineKind& kind = options.kind();
+  const std::size_t order = kind.has_history ? options.settings.order : 0,
+                    layers = kind.is_stack ? options.settings.layers : 1;
+  std::vector<MatrixF> data = options.data.read();
+  for (std::size_t i = 0; i < data.size(); ++i)
+    check_values(data[i], kind.visible, options.data.files[i]);
+  check_lengths(data, order * layers, options.data.files.front());
+  std::vector<ColumnScale> scales;
+  if (options.standardize) {
+    scales.push_back(ColumnScale::of(data));
+    for (MatrixF& values : data) values = scales.front().apply(values);
+  }
+  Device device = Device::open({context.platform, context.device});
+  const Sequences sequences = Sequences::from_host(device, data);
+  spdlog::info("{} files, {} rows of {} values on {}", data.size(), sequences.values.rows(),
+               sequences.values.columns(), device.info().name);
+  std::filesystem::path metrics_file = options.output;
+  MetricsLog metrics(metrics_file.replace_extension(".metrics.jsonl"));
+  const InterruptGuard interrupt;
+  ProgressLine progress(context.quiet);
+  const EpochObserver show = shown_on(progress, interrupt);
+  const Cdbn stack = fit_stack(device, sequences, kind.visible, order, layers, options.settings,
+                               [&](const EpochReport& report) {
+                                 metrics.add(report);
+                                 show(report);
+                               });
+  nlohmann::json config = settings_record(options.settings);
+  config["machine"] = kind.name;
+  SavedMachine saved{stack, std::move(scales), std::move(config)};
+  if (!kind.is_stack) saved.machine = stack.layers.front();
+  save_machine(options.output, saved);
+  spdlog::info("{}: fitted in {:.1f} s", options.output.string(), progress.elapsed_s());
+}
+
+}  // namespace
+
+void add_fit_command(CLI::App& app, CommandContext& context) {
+  auto options = std::make_shared<FitOptions>();
+  CLI::App* command = app.add_subcommand("fit", "Fits a single machine to matrices of any data");
+  add_matrix_input(*command, options->data, "data",
+                   "Matrices, one row a case or a frame; each file is a sequence of its own")
+      ->required();
+  command
+      ->add_option("--machine", options->machine,
+                   "rbm, gaussian-rbm: no history; crbm (Gaussian), binary-crbm: with one; dbn, "
+                   "gaussian-dbn, cdbn, binary-cdbn: stacks of them, named by the lowest layer")
+      ->required()
+      ->check(CLI::IsMember(kind_names()));
+  command
+      ->add_option("-o,--output", options->output,
+                   "File to write, machine.safetensors; beside it machine.metrics.jsonl")
+      ->required()
+      ->type_name("FILE");
+  command->add_flag("--standardize", options->standardize,
+                    "Scale each column to mean 0 and deviation 1, which Gaussian units want; kept "
+                    "in the file, and undone on output");
+  add_setting_flags(*command, options->settings);
+  options->order = command->get_option("--order");
+  options->layers = command->get_option("--layers");
+  add_device_options(*command, context);
+  add_quiet_option(*command, context);
+  command->footer(
+      "Example:\n  mcdbn-cl fit digits.npy --machine rbm --hidden 256 -o digits.safetensors\n"
+      "  mcdbn-cl fit a.csv b.csv --machine crbm --order 5 --standardize -o walk.safetensors");
+  command->callback(
+      [&context, options] { context.run = [&context, options] { run_fit(context, *options); }; });
+}
+
+}  // namespace mcdbn::cli

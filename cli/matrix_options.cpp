@@ -1,0 +1,88 @@
+#include "matrix_options.hpp"
+
+#include <fmt/format.h>
+
+#include <iostream>
+
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/base/matrix_file.hpp"
+
+namespace mcdbn::cli {
+
+std::vector<MatrixF> MatrixInput::read() const {
+  std::vector<MatrixF> data;
+  for (const std::filesystem::path& file : files) {
+    data.push_back(read_matrix(file, tensor));
+    if (data.back().cols() != data.front().cols())
+      throw InputError(fmt::format("{}: {} columns, {} in {}", file.string(), data.back().cols(),
+                                   data.front().cols(), files.front().string()));
+  }
+  return data;
+}
+
+CLI::Option* add_matrix_input(CLI::App& command, MatrixInput& input, const std::string& name,
+                              const std::string& help) {
+  command.add_option("--tensor", input.tensor,
+                     "Name of the tensor to read of .safetensors files with several");
+  return command.add_option(name, input.files, help)->type_name("FILE");
+}
+
+void add_matrix_output(CLI::App& command, std::filesystem::path& output, const char* help) {
+  command.add_option("-o,--output", output, help)->type_name("FILE");
+}
+
+void check_matrix_output(const std::filesystem::path& output) {
+  if (!output.empty() && !is_matrix_file(output))
+    throw ConfigError(
+        fmt::format("--output {}: give a .npy, a .csv or a .safetensors", output.string()));
+}
+
+void put_matrix(const std::filesystem::path& output, const MatrixF& values) {
+  if (output.empty())
+    write_csv(std::cout, values);
+  else
+    write_matrix(output, values);
+}
+
+void add_machine_option(CLI::App& command, std::filesystem::path& model) {
+  command.add_option("--model", model, "Machine that `mcdbn-cl fit` wrote")
+      ->required()
+      ->type_name("FILE");
+}
+
+Cdbn stack_of(const SavedMachine& saved, const std::filesystem::path& file) {
+  if (const Crbm* crbm = std::get_if<Crbm>(&saved.machine)) return {{*crbm}};
+  if (const Cdbn* cdbn = std::get_if<Cdbn>(&saved.machine)) return *cdbn;
+  throw InputError(fmt::format("{}: an MRBM; this command takes one modality", file.string()));
+}
+
+std::vector<MatrixF> scaled(const SavedMachine& saved, std::vector<MatrixF> data,
+                            std::size_t visible, const MatrixInput& files) {
+  for (MatrixF& values : data) {
+    if (values.cols() != static_cast<Eigen::Index>(visible))
+      throw InputError(fmt::format("{}: {} columns; the machine has {} visible units",
+                                   files.files.front().string(), values.cols(), visible));
+    if (!saved.scales.empty()) values = saved.scales.front().apply(values);
+  }
+  return data;
+}
+
+MatrixF unscaled(const SavedMachine& saved, const MatrixF& values) {
+  return saved.scales.empty() ? values : saved.scales.front().undo(values);
+}
+
+MatrixF stacked(const std::vector<MatrixF>& sequences, std::size_t first) {
+  const auto from = static_cast<Eigen::Index>(first);
+  Eigen::Index rows = 0;
+  for (const MatrixF& values : sequences) rows += std::max<Eigen::Index>(values.rows() - from, 0);
+  MatrixF all(rows, sequences.empty() ? 0 : sequences.front().cols());
+  Eigen::Index at = 0;
+  for (const MatrixF& values : sequences) {
+    const Eigen::Index count = std::max<Eigen::Index>(values.rows() - from, 0);
+    all.middleRows(at, count) = values.bottomRows(count);
+    at += count;
+  }
+  return all;
+}
+
+}  // namespace mcdbn::cli

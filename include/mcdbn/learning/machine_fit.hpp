@@ -1,0 +1,51 @@
+#pragma once
+
+#include "mcdbn/learning/epoch_report.hpp"
+#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/machines/cdbn.hpp"
+
+namespace mcdbn {
+
+/// How a machine of its own is fitted, whatever it is: what does not concern it says nothing.
+struct MachineSettings {
+  std::uint64_t seed = 1;
+  std::size_t order = 3;
+  std::size_t hidden = 100;
+  std::size_t layers = 2;
+  std::size_t batch = 100;
+  std::size_t least_batches = 1;
+  CdSettings gaussian = LearningSettings::greedy().gaussian;
+  CdSettings binary = LearningSettings::greedy().binary;
+
+  /// @throws ConfigError naming the setting that is out of range
+  void validate() const { check_settings(*this); }
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"seed", at_least(0), "", "of every random number"}, self.seed);
+    visit(Setting{"order", at_least(1), "frames",
+                  "history that a machine with one sees, in every layer"},
+          self.order);
+    visit(Setting{"hidden", at_least(1), "units", "hidden units, in every layer"}, self.hidden);
+    // As many layers have random numbers of their own (greedy_schedule.cpp).
+    visit(Setting{"layers", within(1, 64), "machines", "of a stack, each on the code of the last"},
+          self.layers);
+    visit(Setting{"batch", at_least(1), "rows", "of a mini-batch"}, self.batch);
+    visit(Setting{"least-batches", at_least(1), "mini-batches",
+                  "of an epoch, at least: few rows are gone over several times in it"},
+          self.least_batches);
+    visit_group("gaussian", self.gaussian, visit);
+    visit_group("binary", self.binary, visit);
+  }
+};
+
+/// A stack, fitted layer by layer by contrastive divergence (Algorithm 2); one layer is an RBM or a
+/// CRBM, an order of 0 makes it a DBN. Stages are called layer.0, layer.1 …
+/// @param kind of the lowest layer's visible units; those above see the code, which is binary
+/// @param observer hears of each epoch; may throw to stop
+/// @throws DivergenceError saying what to lower; ShapeError if no row has a history
+Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind, std::size_t order,
+               std::size_t layers, const MachineSettings& settings,
+               const EpochObserver& observer = {});
+
+}  // namespace mcdbn

@@ -1,0 +1,107 @@
+// A machine fitted by itself: what it learns, and that each layer is what train_crbm makes of it.
+
+#include "mcdbn/learning/machine_fit.hpp"
+
+#include <doctest/doctest.h>
+
+#include "device/every_device.hpp"
+#include "machines/in_double.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/learning/greedy_schedule.hpp"
+#include "reference/crbm_enumeration.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+constexpr VisibleKind kGaussian = VisibleKind::gaussian, kBinary = VisibleKind::binary;
+
+MachineSettings small_settings() {
+  MachineSettings settings;
+  settings.seed = 5;
+  settings.hidden = 4;
+  settings.batch = 10;
+  settings.gaussian.epochs = 2;
+  settings.binary.epochs = 3;
+  settings.binary.rate = 0.02;
+  return settings;
+}
+
+Sequences clips(Device& device, std::size_t columns) {
+  return Sequences::from_host(device,
+                              {random_matrix(30, columns, 1), random_matrix(17, columns, 2)});
+}
+
+}  // namespace
+
+TEST_CASE("each layer of a stack is trained on the code beneath, with numbers of its own") {
+  on_every_device([](Device& device) {
+    const MachineSettings settings = small_settings();
+    const Sequences data = clips(device, 3);
+    const Cdbn stack = fit_stack(device, data, kGaussian, 2, 2, settings);
+    REQUIRE(stack.layers.size() == 2);
+    LearningSettings learning;
+    learning.seed = 5;
+    learning.batch = 10;
+    learning.least_batches = 1;
+    const auto check = [&](std::size_t layer, const Sequences& visible, VisibleKind kind,
+                           const CdSettings& rule) {
+      const auto stream = static_cast<std::uint16_t>(layer);
+      const CrbmParameters start = CrbmParameters::random(
+          {visible.values.columns(), 4, 2, kind}, rule.initial_deviation, {5, 0, stream, 0x7100});
+      const CrbmParameters want =
+          train_crbm(device, visible, start, rule, learning, stream).to_host();
+      const CrbmParameters got = stack.layers[layer].to_host();
+      CHECK(got.shape == want.shape);
+      CHECK(got.W == want.W);
+      CHECK(got.B == want.B);
+      CHECK(got.visible_mean == want.visible_mean);
+    };
+    check(0, data, kGaussian, settings.gaussian);
+    check(1, up_pass(stack.layers[0], data), kBinary, settings.binary);
+  });
+}
+
+TEST_CASE("fitting an RBM raises its exact likelihood, and progress ends at one") {
+  on_every_device([](Device& device) {
+    // Two patterns and a little noise.
+    MatrixF rows(200, 6);
+    for (Eigen::Index r = 0; r < rows.rows(); ++r)
+      for (Eigen::Index c = 0; c < 6; ++c) rows(r, c) = (c < 3) == (r % 2 == 0) ? 1.0F : 0.0F;
+    for (Eigen::Index r = 0; r < rows.rows(); r += 7) rows(r, r % 6) = 1.0F - rows(r, r % 6);
+    MachineSettings settings = small_settings();
+    settings.binary.rate = 0.1;
+    settings.binary.epochs = 60;
+    std::vector<double> progress;
+    std::vector<std::string> stages;
+    const auto observer = [&](const EpochReport& report) {
+      progress.push_back(report.overall_progress);
+      stages.push_back(report.stage);
+    };
+    const Cdbn rbm =
+        fit_stack(device, Sequences::from_host(device, {rows}), kBinary, 0, 1, settings, observer);
+    CHECK(progress.size() == 60);
+    CHECK(progress.back() == 1.0);
+    CHECK(stages.front() == "layer.0");
+    const reference::CrbmBatch batch{rows.cast<double>(), MatrixD(rows.rows(), 0)};
+    const double fitted = reference::log_likelihood(in_double(rbm.layers[0].to_host()), batch);
+    CHECK(fitted > -2.6);   // independent even units have −6·log 2 = −4.16
+    CHECK(fitted < -0.69);  // no model of two patterns does better than log ½
+    MachineSettings two = small_settings();
+    progress.clear();
+    fit_stack(device, clips(device, 3), kGaussian, 1, 2, two, observer);
+    CHECK(progress == std::vector<double>{0.25, 0.5, 0.5 + 0.5 / 3, 0.5 + 1.0 / 3, 1.0});
+    CHECK(stages.back() == "layer.1");
+  });
+}
+
+TEST_CASE("fit: too short data and settings out of range are refused") {
+  on_every_device([](Device& device) {
+    const Sequences data = clips(device, 3);
+    CHECK_THROWS_AS(fit_stack(device, data, kGaussian, 30, 1, small_settings()), ShapeError);
+    MachineSettings settings = small_settings();
+    settings.binary.rate = 0;
+    CHECK_THROWS_AS(fit_stack(device, data, kBinary, 0, 1, settings), ConfigError);
+  });
+}
