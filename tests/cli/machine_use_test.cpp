@@ -1,0 +1,294 @@
+// sample, score and transform: what they make of a fitted machine, and what each option changes.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/text_file.hpp"
+#include "fitted_machines.hpp"
+#include "library_calls.hpp"
+#include "mcdbn/base/matrix_file.hpp"
+#include "mcdbn/machines/energy.hpp"
+#include "mcdbn/machines/partition.hpp"
+#include "mcdbn/machines/sampling.hpp"
+#include "tiny_pipeline.hpp"
+
+using namespace mcdbn::test;
+using mcdbn::MatrixF;
+using mcdbn::read_matrix;
+using mcdbn::Sequences;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+Sequences on_device(const std::vector<MatrixF>& clips) {
+  return Sequences::from_host(usual_device(), clips);
+}
+
+/// The rows of two clips from `first` on.
+MatrixF rows_of(const Sequences& two, Eigen::Index first) {
+  const auto clips = two.to_host();
+  const Eigen::Index count = clips[0].rows() - first;
+  MatrixF rows(2 * count, clips[0].cols());
+  rows << clips[0].bottomRows(count), clips[1].bottomRows(count);
+  return rows;
+}
+
+mcdbn::Cdbn stack_of(const mcdbn::SavedMachine& saved) {
+  if (const auto* stack = std::get_if<mcdbn::Cdbn>(&saved.machine)) return *stack;
+  return {{std::get<mcdbn::Crbm>(saved.machine)}};
+}
+
+json parsed(const std::string& call) {
+  return json::parse(output_of(call));
+}
+
+}  // namespace
+
+TEST_CASE("transform: the hidden probabilities, and the reconstruction in the data's own units") {
+  if (!have_device()) return;
+  const FittedMachines& machines = FittedMachines::instance();
+  for (const std::string kind : {"rbm", "crbm", "cdbn"}) {
+    CAPTURE(kind);
+    const auto saved = loaded(machines.model(kind));
+    MatrixF data = read_matrix(machines.data_of(kind));
+    if (!saved.scales.empty()) data = saved.scales[0].apply(data);
+    const mcdbn::Cdbn stack = stack_of(saved);
+    const auto history = static_cast<Eigen::Index>(stack.total_order());
+    const Sequences twice = on_device({data, data});
+    const std::string call = fmt::format("transform --quiet --model {0} {1} {1}",
+                                         machines.model(kind), machines.data_of(kind));
+    CHECK(printed(call) == rows_of(stack.up_pass(twice), history));
+    const std::size_t steps = kind == "cdbn" ? 3 : 1;
+    const MatrixF again = rows_of(mcdbn::reconstruct(stack, twice, steps), history);
+    CHECK(printed(fmt::format("{} --inverse --steps {}", call, steps)) ==
+          (saved.scales.empty() ? again : saved.scales[0].undo(again)));
+  }
+}
+
+TEST_CASE("transform: every option changes what its help says") {
+  if (!have_device()) return;
+  const FittedMachines& machines = FittedMachines::instance();
+  const ScratchFolder folder;
+  const std::string use = "transform --model " + machines.model("crbm");
+  const std::string call = use + " " + machines.values();
+  std::vector<OptionRow> rows = refused_device_rows(call);
+  rows.push_back({"--model", [&] {
+                    check_refused("transform --model absent.safetensors x.npy", 3, "absent");
+                  }});
+  rows.push_back({"data", [&] {
+                    const std::string wide = folder.write("wide.csv", "1,2\n").string();
+                    check_refused(use + " " + wide, 3,
+                                  "2 columns; the machine has 5 visible units");
+                  }});
+  const CliResult plain = run_cli(call);
+  const MatrixF code = read_matrix(folder.write("plain.csv", plain.standard_output));
+  rows.push_back({"--output", [&] {
+                    const std::string file = (folder / "code.npy").string();
+                    CHECK(output_of(call + " -o " + file).empty());
+                    CHECK(read_matrix(file) == code);
+                    check_refused(call + " -o code.txt", 2, "--output code.txt");
+                  }});
+  rows.push_back({"--quiet", [&] {
+                    CHECK(plain.standard_error.find("the first 2 rows of each file are history") !=
+                          std::string::npos);
+                    CHECK(run_cli(call + " --quiet").standard_error.empty());
+                  }});
+  rows.push_back({"--tensor", [&] { check_refused(call + " --tensor", 2, "--tensor"); }});
+  // What these do has a test case of its own.
+  rows.push_back({"--inverse", [] {}});
+  rows.push_back({"--steps", [&] { check_refused(call + " --steps 2", 2, "--inverse"); }});
+  check_options("transform", rows);
+}
+
+TEST_CASE("score: what it prints is the library's, row by row in its file") {
+  if (!have_device()) return;
+  const FittedMachines& machines = FittedMachines::instance();
+  const ScratchFolder folder;
+  const std::string file = (folder / "rows.npy").string();
+  const json report =
+      parsed(fmt::format("score --model {} {} --json --seed 4 --log-partition --chains 50 "
+                         "--temperatures 20 -o {}",
+                         machines.model("rbm"), machines.bits(), file));
+  const auto rbm = std::get<mcdbn::Crbm>(loaded(machines.model("rbm")).machine);
+  const Sequences data = on_device({read_matrix(machines.bits())});
+  const MatrixF energy = mcdbn::free_energy(rbm, data).values.to_host(),
+                pseudo = mcdbn::pseudo_log_likelihood(rbm, data, 4).values.to_host(),
+                again = mcdbn::reconstruct(rbm, data).values.to_host();
+  const auto partition = mcdbn::log_partition(rbm, {.temperatures = 20, .chains = 50, .seed = 4});
+  const MatrixF errors = (again - data.values.to_host()).cwiseAbs2().rowwise().mean();
+  const double log_likelihood = -energy.cast<double>().mean() - partition.value;
+  const MatrixF table = read_matrix(file);
+  REQUIRE(table.rows() == 60);
+  REQUIRE(table.cols() == 4);
+  CHECK(table.col(0) == energy.col(0));
+  CHECK((table.col(1) - errors).cwiseAbs().maxCoeff() < 1e-6F);
+  CHECK(table.col(2) == pseudo.col(0));
+  CHECK(table.cast<double>().col(3).mean() == doctest::Approx(log_likelihood));
+  CHECK(report.at("rows") == 60);
+  CHECK(report.at("log_partition") == partition.value);
+  CHECK(report.at("log_partition_error") == partition.standard_error);
+  CHECK(report.at("free_energy") == doctest::Approx(energy.cast<double>().mean()));
+  CHECK(report.at("reconstruction_error") == doctest::Approx(errors.mean()));
+  CHECK(report.at("pseudo_log_likelihood") == doctest::Approx(pseudo.cast<double>().mean()));
+  CHECK(report.at("log_likelihood") == doctest::Approx(log_likelihood));
+}
+
+TEST_CASE("score: the log-likelihood of scaled data is that of the data as they are") {
+  if (!have_device()) return;
+  const FittedMachines& machines = FittedMachines::instance();
+  const std::string model = machines.model("gaussian-rbm");
+  const json report = parsed(fmt::format("score --model {} {} --json --log-partition --chains 9",
+                                         model, machines.values()));
+  const double scale = loaded(model).scales[0].deviation.cast<double>().array().log().sum();
+  CHECK(scale > 1.0);
+  CHECK(report.at("log_likelihood").get<double>() ==
+        doctest::Approx(-report.at("free_energy").get<double>() -
+                        report.at("log_partition").get<double>() - scale));
+  CHECK_FALSE(report.contains("pseudo_log_likelihood"));
+}
+
+TEST_CASE("score: every option changes what its help says") {
+  if (!have_device()) return;
+  const FittedMachines& machines = FittedMachines::instance();
+  const ScratchFolder folder;
+  const std::string use = "score --model " + machines.model("rbm");
+  const std::string call = use + " " + machines.bits();
+  const std::string annealed = call + " --json --log-partition --chains 9 --temperatures 9";
+  const json plain = parsed(annealed);
+  const auto changes = [&](const std::string& option, const char* name) {
+    return [&, option, name] { CHECK(parsed(annealed + option).at(name) != plain.at(name)); };
+  };
+  std::vector<OptionRow> rows = refused_device_rows(call);
+  rows.push_back({"--model", [&] { check_refused("score x.npy", 2, "--model"); }});
+  rows.push_back({"data", [&] {
+                    check_refused(use, 2, "data");
+                    CHECK(parsed(call + " " + machines.bits() + " --json").at("rows") == 120);
+                  }});
+  rows.push_back({"--tensor", [&] { check_refused(call + " --tensor", 2, "--tensor"); }});
+  rows.push_back({"--log-partition", [&] {
+                    const std::string other = "score --log-partition --model ";
+                    check_refused(other + machines.model("cdbn") + " " + machines.values(), 2,
+                                  "--log-partition: a stack");
+                    check_refused(other + machines.model("crbm") + " " + machines.values(), 2,
+                                  "--log-partition: a machine with a history");
+                  }});
+  rows.push_back({"--temperatures", changes("9", "log_partition")});  // 99
+  rows.push_back({"--chains", [&] {
+                    CHECK(parsed(call + " --json --log-partition --temperatures 9 --chains 8")
+                              .at("log_partition") != plain.at("log_partition"));
+                  }});
+  rows.push_back({"--seed", changes(" --seed 2", "pseudo_log_likelihood")});
+  rows.push_back(
+      {"--output", [&] { check_refused(call + " -o rows.txt", 2, "--output rows.txt"); }});
+  rows.push_back({"--json", [&] {
+                    const std::string text = output_of(call);
+                    CHECK(text.starts_with("rows                    60\nfree_energy"));
+                    CHECK(text.find("log_partition") == std::string::npos);
+                    CHECK(plain.at("rows") == 60);
+                  }});
+  check_options("score", rows);
+}
+
+TEST_CASE("sample: free chains and what is given, in the data's own units") {
+  if (!have_device()) return;
+  const FittedMachines& machines = FittedMachines::instance();
+  const auto rbm = std::get<mcdbn::Crbm>(loaded(machines.model("rbm")).machine);
+  const auto start = mcdbn::Matrix::filled_with_row(rbm.visible_mean, 9);
+  CHECK(printed(fmt::format("sample --quiet --model {} --count 9 --steps 5 --seed 3",
+                            machines.model("rbm"))) ==
+        mcdbn::sample(rbm, start, {.steps = 5, .seed = 3}).to_host());
+
+  // A CRBM goes on from two rows of its data.
+  const MatrixF data = read_matrix(machines.values());
+  MatrixF given = data.topRows(4);
+  given.bottomRows(2).setConstant(std::numeric_limits<float>::quiet_NaN());
+  given(3, 1) = data(3, 1);
+  const ScratchFolder folder;
+  const std::string file = (folder / "given.csv").string();
+  mcdbn::write_matrix(file, given);
+  const auto saved = loaded(machines.model("crbm"));
+  const MatrixF scaled = saved.scales[0].apply(given);
+  const auto want = mcdbn::sample_given(std::get<mcdbn::Crbm>(saved.machine),
+                                        on_device({scaled, scaled}), {.steps = 5, .seed = 3});
+  const MatrixF got =
+      printed(fmt::format("sample --quiet --model {} --given {} --count 2 --steps 5 --seed 3",
+                          machines.model("crbm"), file));
+  CHECK(got == saved.scales[0].undo(want.values.to_host()));
+  CHECK(std::abs(got(7, 1) - data(3, 1)) < 1e-4F);
+  CHECK(got.row(2) != got.row(6));
+}
+
+TEST_CASE("sample: every option changes what its help says") {
+  if (!have_device()) return;
+  const FittedMachines& machines = FittedMachines::instance();
+  const ScratchFolder folder;
+  const std::string use = "sample --model " + machines.model("rbm");
+  const std::string call = use + " --count 20 --steps 5";
+  const CliResult plain = run_cli(call);
+  const auto changes = [&](const std::string& option) {
+    return [&, option] {
+      const CliResult result = run_cli(call + option);
+      CHECK(result.exit_code == 0);
+      CHECK(result.standard_output != plain.standard_output);
+    };
+  };
+  std::vector<OptionRow> rows = refused_device_rows(call);
+  rows.push_back({"--model", [&] { check_refused("sample", 2, "--model"); }});
+  rows.push_back({"--tensor", [&] { check_refused(call + " --tensor", 2, "--tensor"); }});
+  rows.push_back({"--given", [&] {
+                    check_refused("sample --model " + machines.model("crbm"), 2, "--given: wanted");
+                  }});
+  rows.push_back({"--count", [&] {
+                    CHECK(count_lines(plain.standard_output) == 20);
+                    check_refused(use + " --count 0", 2, "--count");
+                  }});
+  rows.push_back({"--steps", changes("0")});  // 50
+  rows.push_back({"--seed", changes(" --seed 2")});
+  rows.push_back({"--means", changes(" --means")});
+  rows.push_back(
+      {"--no-means", [&] { CHECK(output_of(call + " --no-means") == plain.standard_output); }});
+  rows.push_back({"--output", [&] {
+                    const std::string file = (folder / "x.csv").string();
+                    CHECK(output_of(call + " -o " + file).empty());
+                    CHECK(mcdbn::read_text_file(file) == plain.standard_output);
+                    check_refused(call + " -o x.txt", 2, "--output x.txt");
+                  }});
+  rows.push_back({"--quiet", [&] {
+                    CHECK(plain.standard_error.find("20 chains of 5 steps") != std::string::npos);
+                    CHECK(run_cli(call + " --quiet").standard_error.empty());
+                  }});
+  check_options("sample", rows);
+}
+
+TEST_CASE("NumPy reads what is written and writes what is read") {
+  const fs::path python = MCDBN_PYTHON;
+  if (!fs::exists(python)) {
+    MESSAGE("SKIPPED NumPy: scripts/install_dependencies --test installs it");
+    return;
+  }
+  const FittedMachines& machines = FittedMachines::instance();
+  const ScratchFolder folder;
+  const fs::path script = folder.write(
+      "numpy_files.py",
+      fmt::format("import os, numpy\n"
+                  "bits = numpy.load('{}')\n"
+                  "assert bits.dtype == numpy.float32 and bits.shape == (60, 5)\n"
+                  "assert set(bits.flat) == {{0, 1}}\n"
+                  "os.chdir('{}')\n"
+                  "numpy.save('columns.npy', numpy.asfortranarray(bits.astype(numpy.float64)))\n"
+                  "numpy.save('bool.npy', bits.astype(bool))\n"
+                  "numpy.save('int.npy', bits.astype(numpy.int64))\n"
+                  "numpy.savetxt('text.csv', bits, delimiter=',', header='a,b,c,d,e')\n",
+                  machines.bits(), folder.write("at", "").parent_path().string()));
+  const CliResult ran = run_program(python, script.string());
+  CAPTURE(ran.standard_error);
+  REQUIRE(ran.exit_code == 0);
+  for (const char* name : {"columns.npy", "bool.npy", "int.npy", "text.csv"}) {
+    CAPTURE(name);
+    CHECK(read_matrix(folder / name) == read_matrix(machines.bits()));
+  }
+}
