@@ -119,7 +119,7 @@ class Trainer {
 
 BimodalAutoencoder::BimodalAutoencoder(Device& device, const BimodalAutoencoderSettings& settings)
     : device_(&device), settings_(settings) {
-  check_settings(settings_);
+  settings_.validate();
 }
 
 BimodalAutoencoder::~BimodalAutoencoder() = default;

@@ -11,16 +11,19 @@ namespace mcdbn {
 
 /// Chosen by CMU's training walkers, one of them held out (docs/baselines.md).
 struct BimodalAutoencoderSettings {
-  std::size_t track_hidden = 512, pose_hidden = 256, shared = 512;
-  std::size_t pretraining_epochs = 5;
+  std::size_t track_hidden = 256, pose_hidden = 128, shared = 256;
+  std::size_t pretraining_epochs = 20;
   double pretraining_rate = 1e-3;
-  std::size_t epochs = 40;
+  std::size_t epochs = 20;
   std::size_t least_batches = 40;
   std::size_t batch = 99;
   double rate = 1e-3;
-  double weight_decay = 1.0;
+  double weight_decay = 3.0;
   double pose_weight = 1.0;
   std::uint64_t seed = 1;
+
+  /// @throws ConfigError naming the setting that is out of range
+  void validate() const { check_settings(*this); }
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
@@ -54,6 +57,7 @@ struct BimodalAutoencoderSettings {
                   "of a 3D value's squared error where a 2D value's counts once: there are several "
                   "times as many of those"},
           self.pose_weight);
+    visit(Setting{"seed", at_least(0), "", "of every random number"}, self.seed);
   }
 };
 

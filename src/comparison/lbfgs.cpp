@@ -18,17 +18,16 @@ struct Step {
 /// −H·gradient, H the inverse Hessian that the steps make (two-loop recursion).
 VectorXd downhill(const std::deque<Step>& steps, const VectorXd& gradient) {
   VectorXd direction = -gradient;
-  std::vector<double> shares(steps.size());
-  for (std::size_t i = steps.size(); i-- > 0;) {
-    shares[i] = steps[i].x.dot(direction) / steps[i].curvature;
-    direction -= shares[i] * steps[i].gradient;
+  if (steps.empty()) return direction / std::max(1.0, gradient.norm());
+  std::vector<double> shares;  // of the last step first
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+    shares.push_back(step->x.dot(direction) / step->curvature);
+    direction -= shares.back() * step->gradient;
   }
-  if (!steps.empty())
-    direction *= steps.back().curvature / steps.back().gradient.squaredNorm();
-  else
-    direction /= std::max(1.0, gradient.norm());
-  for (std::size_t i = 0; i < steps.size(); ++i)
-    direction += (shares[i] - steps[i].gradient.dot(direction) / steps[i].curvature) * steps[i].x;
+  direction *= steps.back().curvature / steps.back().gradient.squaredNorm();
+  auto share = shares.rbegin();
+  for (const Step& step : steps)
+    direction += (*share++ - step.gradient.dot(direction) / step.curvature) * step.x;
   return direction;
 }
 

@@ -15,7 +15,7 @@ constexpr std::uint16_t kWeightPhase = 0x7100;
 
 MultimodalDbm::MultimodalDbm(Device& device, const MultimodalDbmSettings& settings)
     : device_(&device), settings_(settings) {
-  check_settings(settings_);
+  settings_.validate();
 }
 
 MultimodalDbm::~MultimodalDbm() = default;

@@ -10,18 +10,21 @@ namespace mcdbn {
 
 /// Chosen by CMU's training walkers, one of them held out (docs/baselines.md).
 struct MultimodalDbmSettings {
-  std::size_t track_hidden = 512, pose_hidden = 256, joint = 256;
-  std::size_t pretraining_epochs = 20;
-  std::size_t epochs = 60;
+  std::size_t track_hidden = 256, pose_hidden = 128, joint = 128;
+  std::size_t pretraining_epochs = 5;
+  std::size_t epochs = 30;
   std::size_t least_batches = 40;
   std::size_t batch = 100;
   double pretraining_rate = 1e-3, rate = 1e-3;
   double momentum = 0.5;
   double weight_decay = 2e-4;
-  std::size_t mean_field_steps = 10;
-  std::size_t gibbs_sweeps = 5;
+  std::size_t mean_field_steps = 5;
+  std::size_t gibbs_sweeps = 2;
   std::size_t inference_steps = 50;
   std::uint64_t seed = 1;
+
+  /// @throws ConfigError naming the setting that is out of range
+  void validate() const { check_settings(*this); }
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
@@ -59,6 +62,7 @@ struct MultimodalDbmSettings {
     visit(Setting{"inference-steps", at_least(1), "steps",
                   "of mean field by which the absent pose is inferred"},
           self.inference_steps);
+    visit(Setting{"seed", at_least(0), "", "of every random number"}, self.seed);
   }
 };
 

@@ -75,7 +75,7 @@ VectorXd TwinGaussianProcess::regression() const {
 
 TwinGaussianProcesses::TwinGaussianProcesses(const TwinGaussianProcessSettings& settings)
     : settings_(settings) {
-  check_settings(settings_);
+  settings_.validate();
 }
 
 void TwinGaussianProcesses::fit(const std::vector<MatrixF>& tracks,

@@ -9,10 +9,13 @@ namespace mcdbn {
 
 /// Chosen by CMU's training walkers, one of them held out (docs/baselines.md).
 struct TwinGaussianProcessSettings {
-  std::size_t neighbours = 200;
-  double track_width = 0.5, pose_width = 0.5;
-  double track_noise = 1e-3, pose_noise = 1e-3;
+  std::size_t neighbours = 300;
+  double track_width = 1.0, pose_width = 1.0;
+  double track_noise = 1e-3, pose_noise = 1.0;
   std::size_t steps = 50;
+
+  /// @throws ConfigError naming the setting that is out of range
+  void validate() const { check_settings(*this); }
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {

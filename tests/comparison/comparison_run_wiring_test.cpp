@@ -240,6 +240,37 @@ TEST_CASE("a test run's baselines learn from the training clips and answer as th
   });
 }
 
+TEST_CASE("a test run scores the baselines that are asked for, which learn from the clips") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const Model model = scene.model(device);
+    TestRunOptions options = plain_options(scene);
+    options.baselines = {"mean_pose", "twin_gaussian_process"};
+    std::vector<MatrixF> tracks, poses;
+    for (const auto& file : scene.training) {
+      const EncodedClip clip = encode_clip(file, scene.modalities, scene.model_view, false);
+      tracks.push_back(clip.track_features);
+      poses.push_back(clip.pose_features);
+    }
+    // These are the perceptron's.
+    options.view_tracks = {random_matrix(11, static_cast<std::size_t>(tracks[0].cols()), 5)};
+    options.view_poses = {random_matrix(11, static_cast<std::size_t>(poses[0].cols()), 6)};
+    std::vector<std::string> shown;
+    options.progress = [&](const std::string& what, double) { shown.push_back(what); };
+    const ClipResult result = run_test(model, {scene.tests[1]}, options).at(0);
+    CHECK(result.others.size() == 2);
+    const auto baseline = make_baseline("twin_gaussian_process", device, true);
+    baseline->fit(tracks, poses);
+    check_regeneration(result.others.at("twin_gaussian_process"),
+                       motion_of(scene, result.truth,
+                                 baseline->predict(result.truth.track_features), std::nullopt),
+                       result.truth, scene.modalities);
+    REQUIRE(shown.size() == 4);
+    CHECK(shown[2] == "baseline mean_pose");
+    CHECK(shown[3] == "baseline twin_gaussian_process");
+  });
+}
+
 TEST_CASE("without views the perceptron learns from the training clips, at its full length") {
   const Scene scene;
   on_every_device([&](Device& device) {
