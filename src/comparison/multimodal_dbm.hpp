@@ -20,7 +20,7 @@ struct MultimodalDbmSettings {
   double weight_decay = 2e-4;
   std::size_t mean_field_steps = 5;
   std::size_t gibbs_sweeps = 2;
-  std::size_t inference_steps = 50;
+  std::size_t inference_steps = 10;
   std::uint64_t seed = 1;
 
   /// @throws ConfigError naming the setting that is out of range

@@ -46,7 +46,7 @@ const std::vector<Expected<MultimodalDbmSettings>>& dbm_settings() {
       {"weight-decay", [](C& c) { return at(c.weight_decay); }, "0.0002"},
       {"mean-field-steps", [](C& c) { return at(c.mean_field_steps); }, "5"},
       {"gibbs-sweeps", [](C& c) { return at(c.gibbs_sweeps); }, "2"},
-      {"inference-steps", [](C& c) { return at(c.inference_steps); }, "50"},
+      {"inference-steps", [](C& c) { return at(c.inference_steps); }, "10"},
       {"seed", [](C& c) { return at(c.seed); }, "1"}};
   return settings;
 }
