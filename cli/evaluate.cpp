@@ -45,10 +45,10 @@ void apply_protocol(EvaluateOptions& options) {
 void print_table(const EvaluationReport& report) {
   int frames = 0;
   for (const ReportClip& clip : report.clips) frames += clip.frames();
-  fmt::print("{} clips, {} frames\n{:<20}{:>10}{:>12}{:>11}{:>14}{:>10}\n", report.clips.size(),
+  fmt::print("{} clips, {} frames\n{:<22}{:>10}{:>12}{:>11}{:>14}{:>10}\n", report.clips.size(),
              frames, "", "PCC flat", "PCC channel", "MPJPE mm", "PA-MPJPE mm", "root mm");
   for (const MethodReport& method : overall_methods(report))
-    fmt::print("{:<20}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n", method.name,
+    fmt::print("{:<22}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n", method.name,
                method.mean.pcc_flat, method.mean.pcc_channel, method.mean.error.mpjpe_mm,
                method.mean.error.pa_mpjpe_mm, method.mean.root_mm);
   fmt::print("\n");

@@ -68,7 +68,6 @@ void DbmTraining::clamp(std::size_t m, std::size_t first) {
   gather(Rows::indexed(frames_[m], schedule_.index(), first, schedule_.batch()), data_.visible[m]);
 }
 
-/// At the first windows.
 void DbmTraining::start_chains() {
   for (std::size_t m = 0; m < 2; ++m) {
     clamp(m, 0);

@@ -22,6 +22,8 @@ class DbmTraining {
   void learn_pathway(std::size_t m, std::size_t first, float rate, const RandomKey& draws);
   /// CD-1 for the joint layer on both modalities' hidden units, what comes from above doubled.
   void learn_joint_layer(std::size_t first, float rate, const RandomKey& draws);
+  /// At the first windows.
+  void start_chains();
   /// All layers: mean field on the data against persistent chains.
   void learn_all(std::size_t first, float rate, const RandomKey& draws);
 
@@ -35,7 +37,6 @@ class DbmTraining {
   using Learn = std::function<void(std::size_t first, float progress, const RandomKey& draws)>;
   void run_stage(std::size_t epochs, const Learn& learn);
   void clamp(std::size_t m, std::size_t first);
-  void start_chains();
   /// @param learns whether a parameter is of this stage
   void update(float rate, const std::function<bool(const std::string& name)>& learns);
 

@@ -222,7 +222,7 @@ TEST_CASE("evaluate: what holds where an option is not said, and the text for pe
   const auto check_row = [&](const std::string& name, const json& scores) {
     const auto figure = [&](const char* of) { return scores.at(of).get<double>(); };
     const std::string row = fmt::format(
-        "\n{:<20}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n", name, figure("pcc_flat"),
+        "\n{:<22}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n", name, figure("pcc_flat"),
         figure("pcc_channel"), figure("mpjpe_mm"), figure("pa_mpjpe_mm"), figure("root_mm"));
     CAPTURE(row);
     CHECK(text.standard_output.find(row) != std::string::npos);

@@ -219,6 +219,12 @@ TEST_CASE("pretrained_rbm learns to reconstruct, and its codes are its hidden un
     settings.epochs = 10;
     const PretrainedRbm rbm = pretrained_rbm(device, data, {22, 12, 0}, settings, {3, 0, 7, 0});
     const CrbmParameters& p = rbm.parameters;
+    settings.epochs = 0;
+    const auto start = pretrained_rbm(device, data, {22, 12, 0}, settings, {3, 0, 7, 0});
+    CHECK(start.parameters.W == CrbmParameters::random({22, 12, 0}, 0.01, {3, 0, 7, 0x7100}).W);
+    settings.epochs = 1;
+    CHECK(pretrained_rbm(device, data, {22, 12, 0}, settings, {3, 0, 7, 0}).parameters.W !=
+          start.parameters.W);
     const MatrixD codes = BimodalReference::sigmoid((data * p.W).cast<double>().rowwise() +
                                                     RowVectorD(p.b.row(0).cast<double>()));
     CHECK((rbm.codes.cast<double>() - codes).cwiseAbs().maxCoeff() < 1e-5);

@@ -210,6 +210,49 @@ TEST_CASE("multimodal DBM: mean field is the reference's, one modality absent or
   });
 }
 
+TEST_CASE("multimodal DBM: a sweep draws h, then v and z from those, each by its own numbers") {
+  on_every_device([](Device& device) {
+    const DbmMachine machine = some_machine(device);
+    const Reference r = reference_of(machine.parameters());
+    DbmMachine::Units chains(device, kShape, 20);
+    const std::array<MatrixF, 2> v = {random_clip(20, 3, 1), random_clip(20, 2, 2)};
+    for (std::size_t m = 0; m < 2; ++m) chains.visible[m].upload(v[m]);
+    const MatrixF z = (random_clip(20, 2, 3).array() > 0).cast<float>();
+    chains.joint.upload(z);
+    machine.gibbs_sweep(chains, {5, 6, 9, 40});
+    const auto drawn = [](const MatrixD& probability, std::uint16_t phase) {
+      return MatrixD(MatrixD::NullaryExpr(
+          probability.rows(), probability.cols(), [&](Eigen::Index row, Eigen::Index column) {
+            return static_cast<double>(random_uniform(
+                       {5, 6, 9, phase}, static_cast<std::uint32_t>(row),
+                       static_cast<std::uint32_t>(column))) < probability(row, column)
+                       ? 1.0
+                       : 0.0;
+          }));
+    };
+    std::array<MatrixD, 2> h;
+    for (std::size_t m = 0; m < 2; ++m) {
+      h[m] = drawn(
+          sigmoid((v[m].cast<double>() * r.W[m] + z.cast<double>() * r.U[m].transpose()).rowwise() +
+                  RowVectorD(r.b[m].row(0))),
+          static_cast<std::uint16_t>(40 + m));
+      CHECK(chains.hidden_draws[m].to_host().cast<double>() == h[m]);
+    }
+    for (std::size_t m = 0; m < 2; ++m) {
+      MatrixD want = (h[m] * r.W[m].transpose()).rowwise() + RowVectorD(r.a[m].row(0));
+      for (Eigen::Index row = 0; row < want.rows(); ++row)
+        for (Eigen::Index column = 0; column < want.cols(); ++column)
+          want(row, column) +=
+              random_normal({5, 6, 9, static_cast<std::uint16_t>(42 + m)},
+                            static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(column));
+      CHECK((chains.visible[m].to_host().cast<double>() - want).cwiseAbs().maxCoeff() < 1e-4);
+    }
+    const MatrixD joint =
+        sigmoid((h[0] * r.U[0] + h[1] * r.U[1]).rowwise() + RowVectorD(r.c.row(0)));
+    CHECK(chains.joint.to_host().cast<double>() == drawn(joint, 44));
+  });
+}
+
 TEST_CASE("multimodal DBM: chains reach the distribution that enumeration gives") {
   on_every_device([](Device& device) {
     const DbmMachine machine = some_machine(device);

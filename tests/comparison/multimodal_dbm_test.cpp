@@ -202,6 +202,40 @@ TEST_CASE("multimodal DBM: each stage moves its own parameters alone, by rate an
   });
 }
 
+TEST_CASE("multimodal DBM: a run is its stages one after another, chains start at the data") {
+  on_every_device([](Device& device) {
+    Scene whole(device), pieces(device);
+    for (Scene* scene : {&whole, &pieces}) {
+      scene->settings.batch = 3;
+      scene->settings.pretraining_epochs = 1;
+      scene->settings.epochs = 2;
+      scene->settings.pretraining_rate = 0.01;
+      scene->settings.rate = 0.1;
+    }
+    DbmTraining(whole.machine, whole.settings, whole.data).run();
+    DbmTraining training(pieces.machine, pieces.settings, pieces.data);
+    RandomKey key{1, 0, 0x4d70, 0};
+    const auto shuffle = [&] { training.schedule().shuffle({1, key.step, 0x4d70, 0x7000}); };
+    for (std::size_t m = 0; m < 2; ++m) {
+      shuffle();
+      for (std::size_t i = 0; i < 2; ++i, ++key.step) training.learn_pathway(m, 3 * i, 0.01F, key);
+    }
+    shuffle();
+    for (std::size_t i = 0; i < 2; ++i, ++key.step)
+      training.learn_joint_layer(3 * i, 10 * 0.01F, key);
+    training.start_chains();
+    CHECK(training.chains().visible[0].to_host().row(2).cwiseAbs().maxCoeff() > 0);
+    CHECK(training.chains().joint.to_host().minCoeff() > 0);
+    for (int step = 0; step < 4; ++step, ++key.step) {
+      if (step % 2 == 0) shuffle();
+      training.learn_all(step % 2 == 0 ? 0 : 3,
+                         0.1F * (1.0F - 0.98F * static_cast<float>(step) / 4.0F), key);
+    }
+    CHECK(whole.machine.parameters().all().to_host() ==
+          pieces.machine.parameters().all().to_host());
+  });
+}
+
 TEST_CASE("multimodal_dbm tells the pose of another clip, far better than the mean") {
   std::vector<MatrixF> tracks, poses, other_tracks, other_poses;
   for (const float phase : {0.0F, 2.0F}) add_clip(tracks, poses, 100, phase);

@@ -237,7 +237,11 @@ TEST_CASE("the page stays within its budget, and says what it leaves out") {
   const std::string page = report_page(report);
   CHECK(page.size() < 5'000'000);
   CHECK(page.find("To keep this page small the viewer shows") != std::string::npos);
-  CHECK(report_page(small_report()).find("To keep this page small") == std::string::npos);
+  const std::string small = report_page(small_report());
+  CHECK(small.find("To keep this page small") == std::string::npos);
+  // What a method is, in words, and of those that are shown alone.
+  CHECK(small.find("A linear map from 11 frames of 2D to the pose.") != std::string::npos);
+  CHECK(small.find("Boltzmann") == std::string::npos);
 }
 
 }  // namespace mcdbn
