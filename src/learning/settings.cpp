@@ -39,10 +39,10 @@ LearningSettings LearningSettings::paper() {
 LearningSettings LearningSettings::generation() {
   LearningSettings settings = greedy();
   settings.order = 8;
+  settings.hidden = 600;
   settings.layers = 1;
   settings.gaussian.gibbs_steps = 1;
   settings.gaussian.rate = settings.gaussian.rate_B = 3e-3;
-  settings.gaussian.weight_decay = 5e-4;
   settings.gaussian.history_noise = 1.0;
   return settings;
 }

@@ -97,12 +97,11 @@ TEST_CASE(
 
 TEST_CASE("learning settings: the generation preset is one layer by CD-1 with noise on histories") {
   CHECK(changed_by(LearningSettings::generation()) == Values{{"order", "8"},
-                                                             {"hidden", "300"},
+                                                             {"hidden", "600"},
                                                              {"mrbm-hidden", "300"},
                                                              {"gaussian.gibbs-steps", "1"},
                                                              {"gaussian.rate", "0.003"},
                                                              {"gaussian.rate-B", "0.003"},
-                                                             {"gaussian.weight-decay", "0.0005"},
                                                              {"gaussian.history-noise", "1"},
                                                              {"gaussian.epochs", "100"},
                                                              {"binary.epochs", "50"},
