@@ -12,16 +12,29 @@
 //   visible, hidden                    the same at the chain's end
 //   visible_change, hidden_change      data − end; dynamic biases while the chain runs
 //   loss[row]                          Σ (v data − v end)²
+// SAMPLE_VISIBLE=1 draws the visible units of every step, too (eq 6, 10), with phases from
+// VISIBLE_PHASE on. PERSISTENT=1 takes the first step's hidden units from `particles` [blocks · ROWS x
+// H_LD], one row for each of the mini-batch, and leaves those of the last step there; where `fresh`,
+// the chains start from the data.
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 GAUSSIAN=0,1 GROUP=1,64 SAMPLE=
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
+//   VEC=1,16 GROUP=1,64 GAUSSIAN=0,1 SAMPLE_VISIBLE=0,1 PERSISTENT=0,1
 //   VISIBLE=1,97 HIDDEN=1,97 ORDER_A=0,1,5 ORDER_B=0,5 GAUSSIAN=0,1
 
 #undef SAMPLE
 #define SAMPLE 1
 #include "tile.clh"
 #include "crbm_shape.clh"
+
+#ifndef SAMPLE_VISIBLE
+#define SAMPLE_VISIBLE 0
+#endif
+#ifndef PERSISTENT
+#define PERSISTENT 0
+#endif
+#define VISIBLE_PHASE 0x1000
 
 // v ← the frames `back` before those of the block's rows
 INLINE void take_frames(local float* v, global const float* frames, const int at[ROWS], int back) {
@@ -44,12 +57,50 @@ INLINE void store_change(floatN end[ROWS][COLUMNS], const int count, global cons
     }
 }
 
+#if SAMPLE_VISIBLE
+// Visible means in columns column … column + VEC of v become draws.
+INLINE void draw_visible(local float* v, int column, int row0, uint4 random) {
+#if GAUSSIAN
+  const floatN mask = column_mask(column, VISIBLE);
+  for (int group = row0 / 4; group <= (row0 + ROWS - 1) / 4; ++group) {
+    uintN words[4];
+    uintN other_words[4];
+    draw_four_rows(words, column, (uint)group, random);
+    draw_four_rows(other_words, column, (uint)group, (uint4)(random.xyz, random.w | 0x8000u));
+#pragma unroll
+    for (int word = 0; word < 4; ++word) {
+      const int r = 4 * group + word - row0;
+      if (r < 0 || r >= ROWS) continue;
+      const floatN mean = loadN(r * V_LD + column, v);
+      storeN(mask * normal_draw(mean, words[word], other_words[word]), r * V_LD + column, v);
+    }
+  }
+#else
+  draw_rows(v, V_LD, column, row0, 1.0f, random);
+#endif
+}
+#endif
+
+// The inverse of keep_tile.
+INLINE void load_kept_tile(floatN sum[ROWS][COLUMNS], const int count, local const float* x,
+                           const int ld, int column) {
+#pragma unroll
+  for (int r = 0; r < ROWS; ++r)
+#pragma unroll
+    for (int c = 0; c < count; ++c) sum[r][c] = loadN(r * ld + column + c * VEC, x);
+}
+
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
     global const float* frames, global const int* index, int first, int shift, int rows,
     global const float* parameters, int8 parameters_at, global const float* w_transposed,
     global float* visible_data, global float* visible, global float* visible_change,
     global float* hidden_data, global float* hidden, global float* hidden_change,
-    global float* loss, int gibbs_steps, uint4 random) {
+    global float* loss, int gibbs_steps, uint4 random
+#if PERSISTENT
+    ,
+    global float* particles, int fresh
+#endif
+) {
   local float v[ROWS * V_LD];
   local float s[ROWS * H_LD];
   global const float* w = parameters + parameters_at.s0;
@@ -66,6 +117,9 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
   hidden_data += row0 * H_LD;
   hidden += row0 * H_LD;
   hidden_change += row0 * H_LD;
+#if PERSISTENT
+  particles += row0 * H_LD;
+#endif
   floatN sum[ROWS][COLUMNS];
 
   // â and b̂ (eq 16, 17), one frame of the history after the other
@@ -109,6 +163,12 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
         apply_sigmoid(sum, count, column, VISIBLE);
 #endif
         keep_tile(sum, count, v, V_LD, column);
+#if SAMPLE_VISIBLE
+        for (int c = 0; c < count; ++c)
+          draw_visible(v, column + c * VEC, row0,
+                       (uint4)(random.xyz, random.w + (uint)(VISIBLE_PHASE + step)));
+        load_kept_tile(sum, count, v, V_LD, column);
+#endif
         if (last) {
           store_tile(sum, count, visible, V_LD, column);
           store_change(sum, count, visible_data, visible_change, V_LD, column);
@@ -123,13 +183,28 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
       if (last) {
         store_tile(sum, count, hidden, H_LD, column);
         store_change(sum, count, hidden_data, hidden_change, H_LD, column);
+      } else if (step == 0) {
+        store_tile(sum, count, hidden_data, H_LD, column);
+      }
+#if PERSISTENT
+      if (step == 0 && !fresh) {
+        load_tile(sum, count, particles, H_LD, column);
+        keep_tile(sum, count, s, H_LD, column);
       } else {
-        if (step == 0) store_tile(sum, count, hidden_data, H_LD, column);
+#else
+      if (!last) {
+#endif
         keep_tile(sum, count, s, H_LD, column);
         for (int c = 0; c < count; ++c)
           draw_rows(s, H_LD, column + c * VEC, row0, 1.0f,
                     (uint4)(random.xyz, random.w + (uint)step));
       }
+#if PERSISTENT
+      if (last) {
+        load_kept_tile(sum, count, s, H_LD, column);
+        store_tile(sum, count, particles, H_LD, column);
+      }
+#endif
     });
     SYNC();
   }

@@ -10,7 +10,7 @@
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 TILE_ROWS=4,8,16 GAUSSIAN= SAMPLE=
-//   VISIBLE=1,97 HIDDEN=1,97 ORDER_A=0,1,5 ORDER_B=0,5 OPTIMIZER=none,momentum,adam
+//   VISIBLE=1,97 HIDDEN=1,97 ORDER_A=0,1,5 ORDER_B=0,5 OPTIMIZER=none,momentum,adam,momentum_l1,adam_l1
 
 #include "units.clh"
 #include "crbm_shape.clh"

@@ -3,7 +3,7 @@
 // global: (floats / VEC)
 //
 // Variants that `scripts/lint kernels` compiles:
-//   VEC=1,4,8,16 SCALED=,1 OPTIMIZER=none,momentum,adam SAMPLE=
+//   VEC=1,4,8,16 SCALED=,1 OPTIMIZER=none,momentum,adam,momentum_l1,adam_l1 SAMPLE=
 
 #include "units.clh"
 #include "optimizer.clh"
@@ -43,6 +43,16 @@ kernel void limit_scale(global const float* squares, int count, float longest, g
   for (int i = 0; i < count; ++i) sum += squares[i];
   const float length = sqrt(sum);
   scale[0] = length > longest ? longest / length : 1.0f;
+}
+
+// Fast weights (Tieleman and Hinton 2009), the floats from `first` on: fast ← kept · fast − rate · gradient;
+// sum = parameter + fast
+kernel void fast_update(global float* fast, global float* sum, global const float* parameters,
+                        global const float* gradients, int first, float kept, float rate) {
+  const int at = first + get_global_id(0) * VEC;
+  const floatN moved = kept * loadN(at, fast) - rate * loadN(at, gradients);
+  storeN(moved, at, fast);
+  storeN(loadN(at, parameters) + moved, at, sum);
 }
 
 // average += share · (parameter − average)

@@ -79,6 +79,17 @@ kernel void scale_rows(global const float* x, int x_offset, int x_ld, global con
          out_offset + row * out_ld + column, out);
 }
 
+// x[r, c] ← x[r, c] · factor[c], or divided by it
+kernel void scale_columns(global float* x, int offset, int ld, int columns,
+                          global const float* factor, int divides) {
+  const int column = get_global_id(0) * VEC;
+  const int at = offset + (int)get_global_id(1) * ld + column;
+  if (column >= columns) return;
+  // What is divided by is 1 in the padding.
+  const floatN by = loadN(column, factor) + (1.0f - column_mask(column, columns));
+  storeN(divides ? loadN(at, x) / by : loadN(at, x) * by, at, x);
+}
+
 #if SAMPLE == 1
 // Drop-out: keeps an entry, divided by the share that is kept, or makes it zero. Runs of `alike` rows
 // share their draws.

@@ -28,12 +28,12 @@ Optimizer::Optimizer(const Parameters& parameters, OptimizerKind kind)
     states_ = Matrix(parameters.device(), states_of(kind), parameters.all().columns());
 }
 
-const char* Optimizer::define() const {
+const char* Optimizer::define(bool with_l1) const {
   switch (kind_) {
     case OptimizerKind::momentum:
-      return "momentum";
+      return with_l1 ? "momentum_l1" : "momentum";
     case OptimizerKind::adam:
-      return "adam";
+      return with_l1 ? "adam_l1" : "adam";
     default:
       return "none";
   }
@@ -44,7 +44,7 @@ cl_float8 Optimizer::argument(const UpdateRule& rule) const {
     return static_cast<float>(1.0 - std::pow(static_cast<double>(beta), steps_));
   };
   return {{rule.rate, rule.momentum, rule.weight_decay, rule.beta2, rule.epsilon,
-           correction_of(rule.momentum), correction_of(rule.beta2), 0.0F}};
+           correction_of(rule.momentum), correction_of(rule.beta2), rule.l1}};
 }
 
 Matrix& Optimizer::gradients() {
@@ -73,15 +73,16 @@ void Optimizer::update(const std::function<UpdateRule(const ParameterShape&)>& r
     const LaunchSize work{{vectors_of(device, entry.floats()), 1}};
     const UpdateRule rule = rule_of(entry);
     const cl_float8 taken = argument(entry.is_weight ? rule : rule.without_decay());
+    const char* optimizer = define(entry.is_weight && rule.l1 > 0.0F);
     const auto run = [&](cl::Kernel& kernel, const auto&... scale) {
       launch(device, kernel, work, parameters_.all().buffer(), gradients().buffer(), state_buffer(),
              size(), to_int(entry.first), taken, scale...);
     };
     if (gradient_scale)
-      run(optimizer_kernel(device, "update_parameters", {{"OPTIMIZER", define()}, {"SCALED", 1}}),
+      run(optimizer_kernel(device, "update_parameters", {{"OPTIMIZER", optimizer}, {"SCALED", 1}}),
           gradient_scale->buffer());
     else
-      run(optimizer_kernel(device, "update_parameters", {{"OPTIMIZER", define()}}));
+      run(optimizer_kernel(device, "update_parameters", {{"OPTIMIZER", optimizer}}));
   }
 }
 
@@ -102,6 +103,19 @@ void GradientLimit::measure(const Matrix& gradients, float longest) {
   }
   launch(device, optimizer_kernel(device, "limit_scale"), {}, squares_.buffer(), slot, longest,
          scale_.buffer());
+}
+
+void fast_update(Matrix& fast, Matrix& sum, const Parameters& parameters, const Matrix& gradients,
+                 float kept, const std::function<float(const ParameterShape&)>& rate_of) {
+  for (const Matrix* other : {static_cast<const Matrix*>(&sum), &parameters.all(), &gradients})
+    require(same_shape(fast, *other), "fast weights: shapes differ");
+  Device& device = fast.device();
+  for (const Parameters::Entry& entry : parameters.entries())
+    if (entry.floats() > 0)
+      launch(device, optimizer_kernel(device, "fast_update"),
+             {{vectors_of(device, entry.floats()), 1}}, fast.buffer(), sum.buffer(),
+             parameters.all().buffer(), gradients.buffer(), to_int(entry.first), kept,
+             rate_of(entry));
 }
 
 void average_update(Matrix& average, const Matrix& parameters, float share) {

@@ -19,6 +19,7 @@ struct UpdateRule {
   float weight_decay = 0.0F;  ///< Adam's is decoupled; times the rate in both
   float beta2 = 0.999F;       ///< Adam's
   float epsilon = 1e-8F;      ///< Adam's
+  float l1 = 0.0F;            ///< pulls towards zero, whatever the size; times the rate in both
 
   /// With β1 = 0.9 (Kingma and Ba 2015).
   static UpdateRule adam(float rate = 1e-3F, float weight_decay = 0.0F) {
@@ -27,7 +28,7 @@ struct UpdateRule {
   /// For biases.
   UpdateRule without_decay() const {
     UpdateRule rule = *this;
-    rule.weight_decay = 0.0F;
+    rule.weight_decay = rule.l1 = 0.0F;
     return rule;
   }
 };
@@ -42,8 +43,8 @@ class Optimizer {
 
   OptimizerKind kind() const { return kind_; }
   const Parameters& parameters() const { return parameters_; }
-  /// Value of -DOPTIMIZER.
-  const char* define() const;
+  /// Value of -DOPTIMIZER. @param with_l1 for rules that have some
+  const char* define(bool with_l1 = false) const;
   /// A new step begins: Adam's corrections count them.
   void next_step() { ++steps_; }
   /// The kernels' `rule` at this step.
@@ -89,6 +90,12 @@ class GradientLimit {
   Parameters parameters_;
   Matrix squares_, scale_;
 };
+
+/// Fast weights (Tieleman and Hinton 2009): fast ← kept·fast − rate·gradient; sum = parameter +
+/// fast. @param fast, sum, gradients [1 x floats], laid out as the parameters are
+/// @param rate_of what an entry takes  @throws ShapeError
+void fast_update(Matrix& fast, Matrix& sum, const Parameters& parameters, const Matrix& gradients,
+                 float kept, const std::function<float(const ParameterShape&)>& rate_of);
 
 /// average += share · (parameter − average): a moving average of what training passes through.
 /// Both of one shape. @throws ShapeError

@@ -45,7 +45,8 @@ void gather_two(const Rows& x, const Rows& y, const Matrix& buffer, std::size_t 
                 std::size_t second) {
   const std::size_t x_stride = padded(x.columns), y_stride = padded(y.columns);
   require(x.index != nullptr && y.index != nullptr && x.count == y.count &&
-              first + x.count * x_stride <= second && second + y.count * y_stride <= buffer.element_count(),
+              first + x.count * x_stride <= second &&
+              second + y.count * y_stride <= buffer.element_count(),
           "gather: wants indices, and room for the rows");
   if (x.count == 0) return;
   Device& device = buffer.device();
@@ -72,6 +73,14 @@ void scale_rows(const Rows& x, const Rows& weights, const Rows& out) {
   launch(device, units_kernel(device, "scale_rows"), pointwise_size(out), x.matrix->buffer(),
          x.offset(), x.stride(), weights.matrix->buffer(), weights.offset(), weights.stride(),
          to_int(out.columns), out.matrix->buffer(), out.offset(), out.stride());
+}
+
+void scale_columns(const Rows& rows, const Matrix& factor, bool divides) {
+  require(!rows.index && factor.rows() == 1 && factor.columns() == rows.columns,
+          "scale_columns: shapes differ");
+  Device& device = rows.matrix->device();
+  launch(device, units_kernel(device, "scale_columns"), pointwise_size(rows), rows.matrix->buffer(),
+         rows.offset(), rows.stride(), to_int(rows.columns), factor.buffer(), divides ? 1 : 0);
 }
 
 void dropout(const Rows& c, float kept_share, const RandomKey& key, std::size_t alike) {

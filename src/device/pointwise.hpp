@@ -18,6 +18,8 @@ void gather_two(const Rows& x, const Rows& y, const Matrix& buffer, std::size_t 
 void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& out);
 /// out = x with each row times its weight. @param weights [rows x 1]  @param x, out not indexed
 void scale_rows(const Rows& x, const Rows& weights, const Rows& out);
+/// Every row times `factor` [1 x columns], or divided by it; in place, not indexed.
+void scale_columns(const Rows& rows, const Matrix& factor, bool divides = false);
 /// Drop-out, in place: an entry is divided by `kept_share` with that probability, else zero.
 /// @param alike runs of so many rows share their draws
 void dropout(const Rows& c, float kept_share, const RandomKey& key, std::size_t alike = 1);

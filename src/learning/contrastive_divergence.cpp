@@ -2,11 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "device/gemm.hpp"
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
+namespace {
+
+/// What is left of the rates.
+double share_of_rate(const CdSettings& settings, double progress) {
+  const double left =
+      settings.cosine ? 0.5 * (1.0 + std::cos(std::numbers::pi * progress)) : 1.0 - progress;
+  return settings.final_rate + (1.0 - settings.final_rate) * left;
+}
+
+OptimizerKind optimizer_of(const CdSettings& settings) {
+  return settings.adam ? OptimizerKind::adam : OptimizerKind::momentum;
+}
+
+/// Only the composed form knows deviations.
+bool has_deviation(const Crbm& crbm, const CdSettings& settings) {
+  return crbm.has_deviation || settings.deviation_rate > 0.0;
+}
+
+}  // namespace
+
 std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& shape,
                                          std::size_t batch) {
   return choose_row_tile(
@@ -14,38 +38,56 @@ std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& 
       fmt::format("Gibbs chain of {} visible, {} hidden units", shape.visible, shape.hidden));
 }
 
-CdRule cd_rule_for(const CdSettings& settings, std::size_t epoch) {
+CdRule cd_rule_for(const CdSettings& settings, std::size_t epoch, double progress) {
   const auto momentum =
       static_cast<float>(epoch > settings.momentum_from_epoch ? settings.momentum : 0.0);
   const auto decay = static_cast<float>(settings.weight_decay);
+  const double share = share_of_rate(settings, progress);
+  const auto rule_of = [&](double rate) {
+    UpdateRule rule{static_cast<float>(share * rate), momentum, decay};
+    rule.l1 = static_cast<float>(settings.l1);
+    return rule;
+  };
   CdRule rule;
   rule.gibbs_steps = settings.gibbs_steps;
-  rule.W = {static_cast<float>(settings.rate), momentum, decay};
-  rule.A = {static_cast<float>(settings.rate_A), momentum, decay};
-  rule.B = {static_cast<float>(settings.rate_B), momentum, decay};
+  rule.W = rule_of(settings.rate);
+  rule.A = rule_of(settings.rate_A);
+  rule.B = rule_of(settings.rate_B);
+  rule.sample_visible = settings.sample_visible;
+  rule.sparsity_target = static_cast<float>(settings.sparsity_target);
+  rule.sparsity_strength = static_cast<float>(settings.sparsity_strength);
+  rule.fast_rate = static_cast<float>(settings.fast_rate);
+  rule.deviation_rate = static_cast<float>(share * settings.deviation_rate);
   return rule;
 }
 
 ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch,
-                                             const CdSettings& settings, OptimizerKind optimizer)
+                                             const CdSettings& settings,
+                                             std::optional<OptimizerKind> optimizer)
     : ContrastiveDivergence(crbm, largest_batch,
                             choose_chain_tile(crbm.device(), crbm.shape(), largest_batch), settings,
                             optimizer) {}
 
 ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch,
                                              std::optional<RowTile> tile,
-                                             const CdSettings& settings, OptimizerKind optimizer)
+                                             const CdSettings& settings,
+                                             std::optional<OptimizerKind> optimizer)
     : crbm_(crbm),
       settings_(settings),
-      tile_(tile),
-      optimizer_(crbm.parameters(), optimizer),
-      visible_data_(crbm.device(), whole_blocks(largest_batch, tile), crbm.shape().visible),
+      tile_(has_deviation(crbm, settings) ? std::nullopt : tile),
+      optimizer_(crbm.parameters(), optimizer.value_or(optimizer_of(settings))),
+      visible_data_(crbm.device(), whole_blocks(largest_batch, tile_), crbm.shape().visible),
       visible_(Matrix::like(visible_data_)),
       visible_bias_(Matrix::like(visible_data_)),
       hidden_data_(crbm.device(), visible_data_.rows(), crbm.shape().hidden),
       hidden_(Matrix::like(hidden_data_)),
       hidden_bias_(Matrix::like(hidden_data_)),
       row_losses_(crbm.device(), 1, visible_data_.rows()) {
+  const bool is_gaussian_rbm =
+      crbm.shape().order == 0 && crbm.shape().kind == VisibleKind::gaussian;
+  if (has_deviation(crbm, settings) && !is_gaussian_rbm)
+    throw ConfigError("a deviation of its own is for a Gaussian RBM, which has no history");
+  if (settings.deviation_rate > 0.0) crbm.has_deviation = true;
   if (tile_) return;
   hidden_sample_ = Matrix::like(hidden_data_);
   gradient_.emplace(crbm.parameters().in(optimizer_.gradients()));
@@ -54,7 +96,8 @@ ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_bat
 void ContrastiveDivergence::learn(std::span<const Rows> visible, const LearningStep& step,
                                   LossAccumulator& losses) {
   require(visible.size() == 1, "CD: wants one sequence");
-  this->step(visible.front(), cd_rule_for(settings_, step.epoch), step.random, losses);
+  this->step(visible.front(), cd_rule_for(settings_, step.epoch, step.progress), step.random,
+             losses);
 }
 
 void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const RandomKey& key,
@@ -65,18 +108,57 @@ void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const Ran
           "CD: the mini-batch is larger than it was made for");
   require(rule.gibbs_steps > 0, "CD: wants at least one Gibbs step");
   optimizer_.next_step();
-  if (!tile_) {
-    composed_step(rows, rule, key, losses);
-    return;
-  }
-  fused_chain(rows, rule.gibbs_steps, key);
-  fused_update(rows, rule, losses);
+  run_chain(rows, rule, key);
+  if (rule.deviation_rate > 0.0F) learn_deviation(rows.count, rule.deviation_rate);
+  if (rule.sparsity_strength > 0.0F) pull_to_target(rows.count, rule);
+  if (tile_)
+    fused_update(rows, rule, losses);
+  else
+    composed_update(rows, rule, losses);
+  after_update(rule);
 }
 
-void ContrastiveDivergence::composed_step(const Rows& rows, const CdRule& rule,
-                                          const RandomKey& key, LossAccumulator& losses) {
+void ContrastiveDivergence::run_chain(const Rows& rows, const CdRule& rule, const RandomKey& key) {
+  if (tile_) {
+    fused_chain(rows, rule, key);
+    return;
+  }
   clamp_data(rows, key);
-  gibbs_chain(rows.count, rule.gibbs_steps, key);
+  gibbs_chain(crbm_, rows.count, rule, key);
+}
+
+void ContrastiveDivergence::after_update(const CdRule&) {}
+
+void ContrastiveDivergence::pull_to_target(std::size_t count, const CdRule& rule) {
+  constexpr float kActivityKept = 0.9F;
+  const bool is_first = activity_.empty();
+  if (is_first) activity_ = Matrix(crbm_.device(), 1, crbm_.shape().hidden);
+  Device& device = crbm_.device();
+  const int width = vector_width(device);
+  // Composed, nobody needs what the chain's biases were any more.
+  launch(device, device.programs().kernel("unit_statistics.cl", "pull_to_target", {{"VEC", width}}),
+         {{hidden_data_.stride() / static_cast<std::size_t>(width), 1}}, hidden_data_.buffer(),
+         hidden_bias_.buffer(), to_int(hidden_data_.stride()), to_int(count),
+         to_int(hidden_data_.columns()), is_first ? 0.0F : kActivityKept, rule.sparsity_target,
+         rule.sparsity_strength, activity_.buffer());
+}
+
+void ContrastiveDivergence::learn_deviation(std::size_t count, float rate) {
+  require(crbm_.has_deviation && !tile_, "CD: the machine was not made for a deviation");
+  GemmOptions down;
+  down.bias = &crbm_.a;
+  gemm(Rows(hidden_data_, 0, count), crbm_.W_transposed, Rows(visible_bias_, 0, count), down);
+  Device& device = crbm_.device();
+  const int width = vector_width(device);
+  launch(device,
+         device.programs().kernel("unit_statistics.cl", "deviation_update", {{"VEC", width}}),
+         {{visible_data_.stride() / static_cast<std::size_t>(width), 1}}, visible_data_.buffer(),
+         visible_bias_.buffer(), to_int(visible_data_.stride()), to_int(count),
+         to_int(visible_data_.columns()), rate, crbm_.visible_deviation.buffer());
+}
+
+void ContrastiveDivergence::composed_update(const Rows& rows, const CdRule& rule,
+                                            LossAccumulator& losses) {
   const Rows data(visible_data_, 0, rows.count), reconstruction(visible_, 0, rows.count);
   losses.add_squared_error(0, data, reconstruction,
                            1.0F / static_cast<float>(rows.count * crbm_.shape().visible));
@@ -89,11 +171,10 @@ void ContrastiveDivergence::composed_step(const Rows& rows, const CdRule& rule,
 
 void ContrastiveDivergence::clamp_data(const Rows& rows, const RandomKey& key) {
   const Rows data(visible_data_, 0, rows.count);
-  const Rows visible_bias(visible_bias_, 0, rows.count), hidden_bias(hidden_bias_, 0, rows.count);
   const Rows hidden_sample(hidden_sample_, 0, rows.count);
   gather(rows, data);
-  crbm_.dynamic_visible_bias(rows, visible_bias);
-  crbm_.dynamic_hidden_bias(rows, hidden_bias);
+  if (crbm_.has_deviation) scale_columns(data, crbm_.visible_deviation, true);
+  dynamic_biases(crbm_, rows);
   GemmOptions hidden;
   hidden.bias = &hidden_bias_;
   hidden.activation = Activation::sigmoid;
@@ -103,23 +184,38 @@ void ContrastiveDivergence::clamp_data(const Rows& rows, const RandomKey& key) {
   gemm(data, crbm_.W, Rows(hidden_data_, 0, rows.count), hidden);
 }
 
-void ContrastiveDivergence::gibbs_chain(std::size_t count, std::size_t gibbs_steps, RandomKey key) {
+void ContrastiveDivergence::dynamic_biases(const Crbm& machine, const Rows& rows) {
+  machine.dynamic_visible_bias(rows, Rows(visible_bias_, 0, rows.count));
+  machine.dynamic_hidden_bias(rows, Rows(hidden_bias_, 0, rows.count));
+}
+
+void ContrastiveDivergence::gibbs_chain(const Crbm& machine, std::size_t count, const CdRule& rule,
+                                        RandomKey key, bool draw_last) {
   const Rows visible_rows(visible_, 0, count), hidden_sample(hidden_sample_, 0, count);
+  const bool is_binary = machine.shape().kind == VisibleKind::binary;
   GemmOptions visible;
   visible.bias = &visible_bias_;
-  if (crbm_.shape().kind == VisibleKind::binary) visible.activation = Activation::sigmoid;
-  for (std::size_t k = 1; k <= gibbs_steps; ++k) {
-    gemm(hidden_sample, crbm_.W_transposed, visible_rows, visible);
+  if (is_binary) visible.activation = Activation::sigmoid;
+  if (rule.sample_visible) {
+    visible.sampling = is_binary ? Sampling::bernoulli : Sampling::gaussian;
+    visible.sample = &visible_rows;  // in place of the means
+  }
+  const std::uint16_t first_phase = key.phase;
+  for (std::size_t k = 1; k <= rule.gibbs_steps; ++k) {
+    const auto step = static_cast<std::uint16_t>(first_phase + k);
+    key.phase = static_cast<std::uint16_t>(kVisiblePhase + step);
+    visible.random = key;
+    gemm(hidden_sample, machine.W_transposed, visible_rows, visible);
     GemmOptions hidden;
     hidden.bias = &hidden_bias_;
     hidden.activation = Activation::sigmoid;
-    if (k < gibbs_steps) {
+    if (k < rule.gibbs_steps || draw_last) {
       hidden.sampling = Sampling::bernoulli;
       hidden.sample = &hidden_sample;
-      key.phase = static_cast<std::uint16_t>(k);
+      key.phase = step;
       hidden.random = key;
     }
-    gemm(visible_rows, crbm_.W, Rows(hidden_, 0, count), hidden);
+    gemm(visible_rows, machine.W, Rows(hidden_, 0, count), hidden);
   }
 }
 

@@ -30,22 +30,30 @@ std::size_t update_work_items(const CrbmShape& shape, const RowTile& tile) {
 
 }  // namespace
 
-void ContrastiveDivergence::fused_chain(const Rows& rows, std::size_t gibbs_steps,
-                                        const RandomKey& key) {
+void ContrastiveDivergence::fused_chain(const Rows& rows, const CdRule& rule, const RandomKey& key,
+                                        const Matrix* particles, bool fresh) {
   const CrbmShape& shape = crbm_.shape();
   Defines defines = with_tile(shape_defines(shape, *tile_), *tile_);
   defines["GAUSSIAN"] = shape.kind == VisibleKind::gaussian ? 1 : 0;
+  if (rule.sample_visible) defines["SAMPLE_VISIBLE"] = 1;
+  if (particles) defines["PERSISTENT"] = 1;
   Device& device = crbm_.device();
   cl::Kernel& kernel =
       device.programs().kernel("contrastive_divergence.cl", "gibbs_chain", defines);
   const auto group = static_cast<std::size_t>(tile_->group);
   const std::size_t blocks = ceil_divide(rows.count, static_cast<std::size_t>(tile_->rows));
-  launch(device, kernel, {{blocks * group, 1}, {group, 1}}, rows.matrix->buffer(),
-         rows.index->buffer(), to_int(rows.index_first), rows.shift, to_int(rows.count),
-         crbm_.parameters().all().buffer(), first_floats(crbm_.parameters()),
-         crbm_.W_transposed.buffer(), visible_data_.buffer(), visible_.buffer(),
-         visible_bias_.buffer(), hidden_data_.buffer(), hidden_.buffer(), hidden_bias_.buffer(),
-         row_losses_.buffer(), to_int(gibbs_steps), random_argument(key));
+  const auto run = [&](const auto&... more) {
+    launch(device, kernel, {{blocks * group, 1}, {group, 1}}, rows.matrix->buffer(),
+           rows.index->buffer(), to_int(rows.index_first), rows.shift, to_int(rows.count),
+           crbm_.parameters().all().buffer(), first_floats(crbm_.parameters()),
+           crbm_.W_transposed.buffer(), visible_data_.buffer(), visible_.buffer(),
+           visible_bias_.buffer(), hidden_data_.buffer(), hidden_.buffer(), hidden_bias_.buffer(),
+           row_losses_.buffer(), to_int(rule.gibbs_steps), random_argument(key), more...);
+  };
+  if (particles)
+    run(particles->buffer(), fresh ? 1 : 0);
+  else
+    run();
 }
 
 void ContrastiveDivergence::fused_update(const Rows& rows, const CdRule& rule,
@@ -53,7 +61,7 @@ void ContrastiveDivergence::fused_update(const Rows& rows, const CdRule& rule,
   const CrbmShape& shape = crbm_.shape();
   Defines defines = shape_defines(shape, *tile_);
   defines["TILE_ROWS"] = tile_->update_rows;
-  defines["OPTIMIZER"] = optimizer_.define();
+  defines["OPTIMIZER"] = optimizer_.define(rule.W.l1 + rule.A.l1 + rule.B.l1 > 0.0F);
   Device& device = crbm_.device();
   cl::Kernel& kernel =
       device.programs().kernel("contrastive_divergence_update.cl", "cd_update", defines);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <memory>
 
 #include "base/random_streams.hpp"
 #include "device/pointwise.hpp"
@@ -11,6 +12,7 @@
 #include "learning/history_noise.hpp"
 #include "learning/minibatch.hpp"
 #include "learning/mrbm_rule.hpp"
+#include "learning/persistent_contrastive_divergence.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -95,6 +97,12 @@ void run_epochs(const Stage& stage, MinibatchSchedule& schedule, DivergenceGuard
     observer(report);
     clock.restart();
   }
+}
+
+std::unique_ptr<LearningRule> cd_rule(Crbm& crbm, std::size_t batch, const CdSettings& settings) {
+  if (settings.persistent)
+    return std::make_unique<PersistentContrastiveDivergence>(crbm, batch, settings);
+  return std::make_unique<ContrastiveDivergence>(crbm, batch, settings);
 }
 
 /// Mean over the rows that have a code. @return [1 x dimension]
@@ -257,10 +265,10 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
   Crbm crbm(device, initial);
   MinibatchSchedule schedule(device, visible.window_rows(shape.order), learning.batch,
                              learning.least_batches);
-  ContrastiveDivergence cd(crbm, schedule.batch(), settings);
+  const auto rule = cd_rule(crbm, schedule.batch(), settings);
   std::optional<HistoryNoise> noise;
   if (settings.history_noise > 0 && shape.order > 0)
-    noise.emplace(device, cd, shape, schedule.batch(), settings.history_noise);
+    noise.emplace(device, *rule, shape, schedule.batch(), settings.history_noise);
   const std::vector<MatrixF> windows =
       observer ? health_windows(visible, shape.order + kFreeRunFrames) : std::vector<MatrixF>{};
   const std::string kind = shape.kind == VisibleKind::gaussian ? "gaussian" : "binary";
@@ -272,7 +280,7 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
                   settings.initial_deviation));
   run_epochs({stage,
               settings.epochs,
-              noise ? static_cast<LearningRule&>(*noise) : cd,
+              noise ? static_cast<LearningRule&>(*noise) : *rule,
               {{&visible.values, 0}},
               [&] { return crbm_health(crbm.to_host(), windows); }},
              schedule, guard, key_of(learning, stream, 0, 0), observer);

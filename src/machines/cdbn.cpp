@@ -1,5 +1,6 @@
 #include "mcdbn/machines/cdbn.hpp"
 
+#include "device/pointwise.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -23,12 +24,18 @@ Sequences up_pass(const Crbm& layer, const Sequences& visible) {
   code.clips = visible.clips;
   code.valid_from = visible.valid_from + order;
   code.values = Matrix(layer.device(), visible.values.rows(), layer.shape().hidden);
+  Matrix values = visible.values;
+  if (layer.has_deviation) {
+    values = Matrix::like(visible.values);
+    values.copy_from(visible.values);
+    scale_columns(values, layer.visible_deviation, true);
+  }
   // Clip by clip: rows without a history of their own clip are left at zero.
   for (const auto& clip : code.clips) {
     if (clip.frames <= code.valid_from) continue;
     const std::size_t first = clip.first + code.valid_from;
     const std::size_t count = clip.frames - code.valid_from;
-    layer.hidden_probabilities(Rows(visible.values, first, count), Rows(code.values, first, count));
+    layer.hidden_probabilities(Rows(values, first, count), Rows(code.values, first, count));
   }
   return code;
 }

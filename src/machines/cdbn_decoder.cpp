@@ -4,6 +4,7 @@
 
 #include "base/random_streams.hpp"
 #include "device/gemm.hpp"
+#include "device/pointwise.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -48,10 +49,19 @@ void CdbnDecoder::decode(std::size_t first, std::size_t last, const Regeneration
   last = std::min(last, frames_);
   if (first >= last) return;
   const auto tiles = fused ? fused_tiles(sampled) : std::nullopt;
-  if (tiles) {
+  if (tiles)
     fused_decode(first, last, options, *tiles);
-    return;
-  }
+  else
+    decode_frames(first, last, options, sampled);
+  const Crbm& lowest = cdbn_.layers.front();
+  if (!lowest.has_deviation) return;
+  for (std::size_t i = 0; i < sequences_; ++i)
+    scale_columns(Rows(states_.front(), i * frames_ + first, last - first),
+                  lowest.visible_deviation);
+}
+
+void CdbnDecoder::decode_frames(std::size_t first, std::size_t last,
+                                const RegenerationOptions& options, bool sampled) {
   if (!sampled) drive_layer(states_.size() - 1, first, last);
   for (std::size_t frame = first; frame < last; ++frame) {
     if (sampled) sample_top_layer(frame, options);

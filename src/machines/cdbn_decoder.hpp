@@ -32,6 +32,8 @@ class CdbnDecoder {
   Rows at(const Matrix& matrix, std::size_t frame) const {
     return Rows::strided(matrix, frame, sequences_, frames_);
   }
+  void decode_frames(std::size_t first, std::size_t last, const RegenerationOptions& options,
+                     bool sampled);
   std::optional<std::vector<RowTile>> fused_tiles(bool sampled) const;
   void fused_decode(std::size_t first, std::size_t last, const RegenerationOptions& options,
                     const std::vector<RowTile>& tiles);

@@ -122,6 +122,8 @@ Crbm::Crbm(const Parameters& parameters, const CrbmShape& shape, const MatrixF& 
           parameters.device(), visible_deviation_row.size() > 0
                                    ? visible_deviation_row
                                    : MatrixF::Ones(1, static_cast<Eigen::Index>(shape.visible)))),
+      has_deviation(visible_deviation_row.size() > 0 &&
+                    (visible_deviation_row.array() != 1.0F).any()),
       shape_(shape),
       parameters_(parameters) {
   refresh_transposed();

@@ -60,8 +60,7 @@ std::string layer_prefix(const std::string& prefix, std::size_t layer) {
 json put_crbm(Safetensors& file, const std::string& prefix, const Crbm& crbm) {
   put(file, prefix, crbm.parameters());
   file.put(prefix + "visible_mean", crbm.visible_mean.to_host());
-  const MatrixF deviation = crbm.visible_deviation.to_host();
-  if ((deviation.array() != 1.0F).any()) file.put(prefix + "visible_deviation", deviation);
+  if (crbm.has_deviation) file.put(prefix + "visible_deviation", crbm.visible_deviation.to_host());
   return shape_json(crbm.shape());
 }
 

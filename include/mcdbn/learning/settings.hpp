@@ -17,6 +17,15 @@ struct CdSettings {
   double initial_deviation = 0.01;
   double history_noise = 0.0;
   std::size_t epochs = 3;
+  bool persistent = false;
+  double fast_rate = 0.0;
+  bool sample_visible = false;
+  double sparsity_target = 0.1, sparsity_strength = 0.0;
+  double l1 = 0.0;
+  bool adam = false;
+  double final_rate = 1.0;
+  bool cosine = false;
+  double deviation_rate = 0.0;
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
@@ -49,6 +58,38 @@ struct CdSettings {
     visit(Setting{"epochs", at_least(1), "epochs",
                   "rounds over the data; without fine-tuning 100, binary 50"},
           self.epochs);
+    visit(
+        Setting{"persistent", on_or_off(), "",
+                "persistent contrastive divergence: chains go on from one mini-batch to the next, "
+                "each under the history of its window"},
+        self.persistent);
+    visit(Setting{"fast-rate", at_least(0), "",
+                  "rate of fast weights, which keep persistent chains moving; 0: none"},
+          self.fast_rate);
+    visit(Setting{"sample-visible", on_or_off(), "",
+                  "draws visible units in the chain, as the model says, where their means do"},
+          self.sample_visible);
+    visit(Setting{"sparsity-target", between(0, 1), "",
+                  "how often a hidden unit should be on, where sparsity-strength counts"},
+          self.sparsity_target);
+    visit(Setting{"sparsity-strength", at_least(0), "",
+                  "how hard hidden units are pulled to that target: keeps all of them in use"},
+          self.sparsity_strength);
+    visit(Setting{"l1", at_least(0), "",
+                  "pull of W, A and B towards zero, times the rate: leaves few weights large"},
+          self.l1);
+    visit(Setting{"adam", on_or_off(), "",
+                  "Adam, whose rates suit every weight, with momentum as its first decay"},
+          self.adam);
+    visit(Setting{"final-rate", within(0, 1), "",
+                  "share of the rates that is left at the end, down to which they fall; 1: they "
+                  "stay"},
+          self.final_rate);
+    visit(Setting{"cosine", on_or_off(), "", "rates fall along a cosine, else in a line"},
+          self.cosine);
+    visit(Setting{"deviation-rate", at_least(0), "",
+                  "rate of the deviation of Gaussian units, without history; 0: it stays"},
+          self.deviation_rate);
   }
 };
 

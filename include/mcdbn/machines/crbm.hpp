@@ -93,6 +93,9 @@ class Crbm : public CrbmMatrices {
   Matrix W_transposed;       ///< [hidden x visible]
   Matrix visible_mean;       ///< [1 x visible], see CrbmParameters
   Matrix visible_deviation;  ///< [1 x visible], see CrbmParameters
+  /// Whether visible_deviation is more than ones, so that who gives frames to the machine divides
+  /// them by it, and multiplies what it gives back.
+  bool has_deviation = false;
 
  private:
   CrbmShape shape_;
