@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "base/settings_table.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "mcdbn/learning/settings.hpp"
@@ -33,6 +35,16 @@ const std::vector<Expected<LearningSettings>>& learning_settings() {
       {"gaussian.initial-deviation", [](C& c) { return at(c.gaussian.initial_deviation); }, "0.01"},
       {"gaussian.history-noise", [](C& c) { return at(c.gaussian.history_noise); }, "0"},
       {"gaussian.epochs", [](C& c) { return at(c.gaussian.epochs); }, "3"},
+      {"gaussian.persistent", [](C& c) { return at(c.gaussian.persistent); }, "false"},
+      {"gaussian.fast-rate", [](C& c) { return at(c.gaussian.fast_rate); }, "0"},
+      {"gaussian.sample-visible", [](C& c) { return at(c.gaussian.sample_visible); }, "false"},
+      {"gaussian.sparsity-target", [](C& c) { return at(c.gaussian.sparsity_target); }, "0.1"},
+      {"gaussian.sparsity-strength", [](C& c) { return at(c.gaussian.sparsity_strength); }, "0"},
+      {"gaussian.l1", [](C& c) { return at(c.gaussian.l1); }, "0"},
+      {"gaussian.adam", [](C& c) { return at(c.gaussian.adam); }, "false"},
+      {"gaussian.final-rate", [](C& c) { return at(c.gaussian.final_rate); }, "1"},
+      {"gaussian.cosine", [](C& c) { return at(c.gaussian.cosine); }, "false"},
+      {"gaussian.deviation-rate", [](C& c) { return at(c.gaussian.deviation_rate); }, "0"},
       {"binary.gibbs-steps", [](C& c) { return at(c.binary.gibbs_steps); }, "1"},
       {"binary.rate", [](C& c) { return at(c.binary.rate); }, "0.01"},
       {"binary.rate-A", [](C& c) { return at(c.binary.rate_A); }, "0.001"},
@@ -43,6 +55,16 @@ const std::vector<Expected<LearningSettings>>& learning_settings() {
       {"binary.initial-deviation", [](C& c) { return at(c.binary.initial_deviation); }, "0.01"},
       {"binary.history-noise", [](C& c) { return at(c.binary.history_noise); }, "0"},
       {"binary.epochs", [](C& c) { return at(c.binary.epochs); }, "3"},
+      {"binary.persistent", [](C& c) { return at(c.binary.persistent); }, "false"},
+      {"binary.fast-rate", [](C& c) { return at(c.binary.fast_rate); }, "0"},
+      {"binary.sample-visible", [](C& c) { return at(c.binary.sample_visible); }, "false"},
+      {"binary.sparsity-target", [](C& c) { return at(c.binary.sparsity_target); }, "0.1"},
+      {"binary.sparsity-strength", [](C& c) { return at(c.binary.sparsity_strength); }, "0"},
+      {"binary.l1", [](C& c) { return at(c.binary.l1); }, "0"},
+      {"binary.adam", [](C& c) { return at(c.binary.adam); }, "false"},
+      {"binary.final-rate", [](C& c) { return at(c.binary.final_rate); }, "1"},
+      {"binary.cosine", [](C& c) { return at(c.binary.cosine); }, "false"},
+      {"binary.deviation-rate", [](C& c) { return at(c.binary.deviation_rate); }, "0"},
       {"mrbm.rate", [](C& c) { return at(c.mrbm.rate); }, "0.0003"},
       {"mrbm.weight-decay", [](C& c) { return at(c.mrbm.weight_decay); }, "0"},
       {"mrbm.initial-deviation", [](C& c) { return at(c.mrbm.initial_deviation); }, "0.01"},
@@ -156,6 +178,16 @@ TEST_CASE("learning settings: what is out of range is refused by its name") {
     refused(name, 1001, "at least 1 and at most 1000");
     accepted(name, 1);
   }
+  for (const std::string kind : {"gaussian", "binary"}) {
+    for (const double value : {0.0, 1.0, -0.1})
+      refused(kind + ".sparsity-target", value, "above 0 and below 1");
+    for (const double value : {-0.1, 1.1})
+      refused(kind + ".final-rate", value, "at least 0 and at most 1");
+    for (const char* name : {".fast-rate", ".sparsity-strength", ".l1", ".deviation-rate"}) {
+      refused(kind + name, -1e-6, "at least 0");
+      accepted(kind + name, 0);
+    }
+  }
   refused("layers", 0, "at least 1 and at most 64");
   refused("layers", 65, "at least 1 and at most 64");
   refused("fine-tuning.window-frames", 1, "at least 2");
@@ -203,4 +235,54 @@ TEST_CASE("learning settings: what no setting says") {
   CHECK(momentum.momentum == 0);
   CHECK(momentum.weight_decay == 0);
   CHECK(CdRule{}.gibbs_steps == 1);
+}
+
+TEST_CASE("learning settings: rates fall to their share along a line or a cosine, or stay") {
+  CdSettings settings;
+  settings.rate = 0.5;
+  settings.rate_A = 0.25;
+  settings.rate_B = 0.125;
+  settings.deviation_rate = 2;
+  const auto check = [&](double progress, double share) {
+    const CdRule rule = cd_rule_for(settings, 1, progress);
+    CHECK(rule.W.rate == doctest::Approx(0.5 * share));
+    CHECK(rule.A.rate == doctest::Approx(0.25 * share));
+    CHECK(rule.B.rate == doctest::Approx(0.125 * share));
+    CHECK(rule.deviation_rate == doctest::Approx(2 * share));
+  };
+  for (const double progress : {0.0, 0.3, 1.0}) check(progress, 1);
+  settings.final_rate = 0.2;
+  check(0, 1);
+  check(0.25, 0.8);
+  check(1, 0.2);
+  settings.cosine = true;
+  check(0, 1);
+  check(0.5, 0.6);
+  check(0.25, 0.2 + 0.8 * 0.5 * (1 + std::sqrt(0.5)));
+  check(1, 0.2);
+}
+
+TEST_CASE("learning settings: a rule of contrastive divergence takes over every option") {
+  CdSettings settings;
+  settings.gibbs_steps = 7;
+  settings.weight_decay = 0.5;
+  settings.momentum = 0.25;
+  settings.l1 = 0.125;
+  settings.sample_visible = true;
+  settings.sparsity_target = 0.75;
+  settings.sparsity_strength = 2;
+  settings.fast_rate = 3;
+  for (const std::size_t epoch : {1U, 6U}) {
+    const CdRule rule = cd_rule_for(settings, epoch);
+    CHECK(rule.gibbs_steps == 7);
+    for (const UpdateRule* one : {&rule.W, &rule.A, &rule.B}) {
+      CHECK(one->weight_decay == 0.5F);
+      CHECK(one->l1 == 0.125F);
+      CHECK(one->momentum == (epoch == 6 ? 0.25F : 0.0F));
+    }
+    CHECK(rule.sample_visible);
+    CHECK(rule.sparsity_target == 0.75F);
+    CHECK(rule.sparsity_strength == 2);
+    CHECK(rule.fast_rate == 3);
+  }
 }

@@ -101,7 +101,7 @@ CdResult contrastive_divergence(const Crbm& model, const CrbmBatch& batch, int k
 void update(Crbm& model, Crbm& velocity, const Crbm& gradient, const UpdateRule& rule_W,
             const UpdateRule& rule_A, const UpdateRule& rule_B) {
   UpdateRule biases = rule_W;
-  biases.weight_decay = 0.0F;
+  biases.weight_decay = biases.l1 = 0.0F;
   momentum_update(model.weights, velocity.weights, gradient.weights, rule_W);
   momentum_update(model.visible_history, velocity.visible_history, gradient.visible_history,
                   rule_A);

@@ -7,7 +7,8 @@ namespace mcdbn::reference {
 void momentum_update(MatrixD& parameter, MatrixD& velocity, const MatrixD& gradient,
                      const UpdateRule& rule) {
   velocity = double{rule.momentum} * velocity +
-             double{rule.rate} * (gradient - double{rule.weight_decay} * parameter);
+             double{rule.rate} * (gradient - double{rule.weight_decay} * parameter -
+                                  double{rule.l1} * parameter.cwiseSign());
   parameter += velocity;
 }
 
@@ -21,7 +22,8 @@ void adam_update(MatrixD& parameter, MatrixD& mean, MatrixD& square, const Matri
   const MatrixD corrected_square = square / (1.0 - std::pow(beta2, step));
   const MatrixD direction =
       corrected_mean.array() / (corrected_square.array().sqrt() + double{rule.epsilon});
-  parameter -= double{rule.rate} * (direction + double{rule.weight_decay} * parameter);
+  parameter -= double{rule.rate} * (direction + double{rule.weight_decay} * parameter +
+                                    double{rule.l1} * parameter.cwiseSign());
 }
 
 }  // namespace mcdbn::reference

@@ -1,0 +1,255 @@
+// Contrastive divergence with each of its options, by the fused kernels and by one product after
+// another, against the double reference with its own draws.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "device/every_device.hpp"
+#include "learning/persistent_contrastive_divergence.hpp"
+#include "learning/within_bounds.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "reference/cd_options_reference.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+/// Four steps of parameters below 2 from sums of at most some twenty products: rounding adds a
+/// hundred times 2^-24 at most, Adam's quotients ten times that. What any option does moves a
+/// parameter by more than 1e-3.
+constexpr double kTolerance = 1e-5;
+constexpr std::size_t kSteps = 4, kBatch = 5, kFrames = 23;
+
+struct Scene {
+  Scene(const CrbmShape& shape, const CdSettings& settings, unsigned seed = 1)
+      : shape(shape), settings(settings), start(CrbmParameters::zeros(shape)), seed(seed) {
+    unsigned next = 10;
+    for (const auto& [matrix, scale] : {std::pair{&start.W, 0.6F},
+                                        {&start.A, 0.3F},
+                                        {&start.B, 0.4F},
+                                        {&start.a, 0.5F},
+                                        {&start.b, 0.5F}})
+      *matrix = random_matrix(static_cast<std::size_t>(matrix->rows()),
+                              static_cast<std::size_t>(matrix->cols()), ++next, scale);
+    frames = random_matrix(kFrames, shape.visible, 6, 1.5F);
+    if (shape.kind == VisibleKind::binary)
+      frames = ((frames.array() / 1.5F + 1.0F) / 2.0F).matrix();
+    for (std::size_t i = 0; i < kSteps * kBatch; ++i)
+      rows.push_back(
+          static_cast<std::int32_t>(shape.order + (7 * i + 3) % (kFrames - shape.order)));
+  }
+
+  RandomKey key(std::size_t step) const { return {seed, static_cast<std::uint32_t>(step), 9, 0}; }
+
+  reference::CrbmBatch batch(std::size_t step) const {
+    const auto order = static_cast<Eigen::Index>(shape.order), visible = frames.cols();
+    reference::CrbmBatch result{MatrixD(kBatch, visible), MatrixD(kBatch, order * visible)};
+    for (std::size_t r = 0; r < kBatch; ++r) {
+      const auto row = static_cast<Eigen::Index>(r);
+      const Eigen::Index t = rows[step * kBatch + r];
+      result.visible.row(row) = frames.row(t).cast<double>();
+      for (Eigen::Index q = 0; q < order; ++q)
+        result.history.block(row, q * visible, 1, visible) =
+            frames.row(t - order + q).cast<double>();
+    }
+    return result;
+  }
+
+  reference::ChainDraws draws(std::size_t step) const {
+    const auto numbers = [this, step](std::uint16_t phase, std::size_t columns, auto&& draw) {
+      RandomKey own = key(step);
+      own.phase = phase;
+      MatrixD all(kBatch, columns);
+      for (Eigen::Index r = 0; r < all.rows(); ++r)
+        for (Eigen::Index c = 0; c < all.cols(); ++c)
+          all(r, c) = draw(own, static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c));
+      return all;
+    };
+    return {[=, this](int k) {
+              return numbers(static_cast<std::uint16_t>(k), shape.hidden, random_uniform);
+            },
+            [=, this](int k) {
+              const auto phase = static_cast<std::uint16_t>(0x1000 + k);
+              return shape.kind == VisibleKind::gaussian
+                         ? numbers(phase, shape.visible, random_normal)
+                         : numbers(phase, shape.visible, random_uniform);
+            }};
+  }
+
+  CdRule rule(std::size_t step) const { return cd_rule_for(settings, 9, 0.2 * step); }
+
+  reference::CdOptions options(std::size_t step) const {
+    const CdRule said = rule(step);
+    return {static_cast<int>(said.gibbs_steps),
+            said.W,
+            said.A,
+            said.B,
+            settings.adam,
+            said.sample_visible,
+            double{said.sparsity_target},
+            double{said.sparsity_strength},
+            settings.persistent,
+            double{said.fast_rate},
+            double{said.deviation_rate}};
+  }
+
+  CrbmShape shape;
+  CdSettings settings;
+  CrbmParameters start;
+  MatrixF frames;
+  std::vector<std::int32_t> rows;
+  unsigned seed;
+};
+
+void check_close(const char* name, const MatrixF& got, const MatrixD& want) {
+  INFO("parameter ", std::string(name));
+  CHECK(reference::misfit(got, want, MatrixD::Constant(want.rows(), want.cols(), kTolerance)) ==
+        "");
+}
+
+template <typename Rule>
+void check(Device& device, const Scene& scene, bool fused) {
+  const Matrix frames = Matrix::from_host(device, scene.frames);
+  const IndexBuffer index(device, scene.rows);
+  Crbm crbm(device, scene.start);
+  const auto tile = choose_chain_tile(device, scene.shape, kBatch);
+  REQUIRE(tile);
+  Rule trainer(crbm, kBatch, fused ? tile : std::nullopt, scene.settings);
+  LossAccumulator losses(device, 1, kBatch);
+  reference::CdTraining want(in_double(scene.start));
+  for (std::size_t step = 0; step < kSteps; ++step) {
+    CAPTURE(step);
+    want.step(scene.batch(step), scene.options(step), scene.draws(step));
+    REQUIRE(want.closest_draw > 5e-5);
+    const auto before = device.launch_count();
+    trainer.step(Rows::indexed(frames, index, step * kBatch, kBatch), scene.rule(step),
+                 scene.key(step), losses);
+    if (trainer.tile())
+      CHECK(device.launch_count() - before == (scene.settings.sparsity_strength > 0 ? 3 : 2));
+    CHECK(std::abs(losses.read_and_reset().at(0) - want.loss) <= 10 * kTolerance);
+    const CrbmParameters got = crbm.to_host();
+    check_close("W", got.W, want.model.weights);
+    check_close("A", got.A, want.model.visible_history);
+    check_close("B", got.B, want.model.hidden_history);
+    check_close("a", got.a, want.model.visible_bias);
+    check_close("b", got.b, want.model.hidden_bias);
+    check_close("deviation", got.visible_deviation, want.deviation);
+    CHECK(crbm.W_transposed.to_host() == got.W.transpose());
+    if constexpr (std::is_same_v<Rule, PersistentContrastiveDivergence>) {
+      const MatrixF particles = trainer.particles().to_host().topRows(kBatch);
+      CHECK((particles.cast<double>() - want.particles).cwiseAbs().maxCoeff() == 0);
+    }
+  }
+  for (const Matrix* matrix :
+       {&crbm.W, &crbm.A, &crbm.B, &crbm.a, &crbm.b, &crbm.W_transposed, &crbm.visible_deviation})
+    if (!matrix->empty()) CHECK(padding_is_zero(*matrix));
+}
+
+/// Rates with which every option counts for something.
+CdSettings settings() {
+  return {.gibbs_steps = 2,
+          .rate = 0.05,
+          .rate_A = 0.02,
+          .rate_B = 0.03,
+          .momentum = 0.7,
+          .weight_decay = 0.05};
+}
+
+const CrbmShape kGaussian{5, 6, 2, VisibleKind::gaussian}, kBinary{7, 4, 1, VisibleKind::binary};
+
+template <typename Rule>
+void check_everywhere(CdSettings changed, bool fused_too = true, unsigned seed = 1) {
+  on_every_device([&](Device& device) {
+    for (const CrbmShape& shape : {kGaussian, kBinary})
+      for (const bool fused : {true, false}) {
+        if (fused && !fused_too) continue;
+        CAPTURE(shape.visible);
+        CAPTURE(fused);
+        check<Rule>(device, Scene(shape, changed, seed), fused);
+      }
+  });
+}
+
+}  // namespace
+
+TEST_CASE("small: CD with drawn visible units is the double reference's with the same draws") {
+  CdSettings changed = settings();
+  changed.sample_visible = true;
+  check_everywhere<ContrastiveDivergence>(changed);
+}
+
+TEST_CASE("small: a target for the hidden units' activity pulls as the double reference does") {
+  CdSettings changed = settings();
+  changed.sparsity_target = 0.2;
+  changed.sparsity_strength = 0.5;
+  check_everywhere<ContrastiveDivergence>(changed);
+}
+
+TEST_CASE("small: L1, Adam and falling rates are the double reference's") {
+  CdSettings changed = settings();
+  changed.l1 = 0.1;
+  changed.final_rate = 0.3;
+  check_everywhere<ContrastiveDivergence>(changed);
+  changed.adam = true;
+  changed.cosine = true;
+  check_everywhere<ContrastiveDivergence>(changed);
+}
+
+TEST_CASE("small: persistent chains go on where they were, as the double reference's do") {
+  CdSettings changed = settings();
+  changed.persistent = true;
+  check_everywhere<PersistentContrastiveDivergence>(changed);
+  changed.sample_visible = true;
+  changed.gibbs_steps = 1;
+  changed.sparsity_strength = 0.3;
+  check_everywhere<PersistentContrastiveDivergence>(changed);
+}
+
+TEST_CASE("small: fast weights move the chains and no parameter, as the double reference's do") {
+  CdSettings changed = settings();
+  changed.persistent = true;
+  changed.fast_rate = 0.2;
+  check_everywhere<PersistentContrastiveDivergence>(changed, false);
+}
+
+TEST_CASE("small: the deviation of Gaussian units is learnt as the double reference learns it") {
+  CdSettings changed = settings();
+  changed.deviation_rate = 0.2;
+  on_every_device([&](Device& device) {
+    check<ContrastiveDivergence>(device, Scene({5, 6, 0, VisibleKind::gaussian}, changed), true);
+    Crbm with_history(device, CrbmParameters::zeros(kGaussian));
+    CHECK_THROWS_AS(ContrastiveDivergence(with_history, kBatch, changed), ConfigError);
+    Crbm binary(device, CrbmParameters::zeros({3, 2, 0, VisibleKind::binary}));
+    CHECK_THROWS_AS(ContrastiveDivergence(binary, kBatch, changed), ConfigError);
+  });
+}
+
+TEST_CASE("the derivative of log p(v) by a deviation is the difference quotient") {
+  // log p(v) = −F(v / σ) − Σ log σ − log Z: Z is that of the scaled units and does not move.
+  Scene scene({3, 4, 0, VisibleKind::gaussian}, settings());
+  const reference::Crbm model = in_double(scene.start);
+  const reference::CrbmBatch batch = scene.batch(0);
+  const auto likelihood = [&](const RowVectorD& log_deviation) {
+    double sum = 0;
+    for (Eigen::Index r = 0; r < batch.visible.rows(); ++r) {
+      const RowVectorD u = batch.visible.row(r).array() / log_deviation.array().exp();
+      const RowVectorD input = model.hidden_bias + u * model.weights;
+      sum += (1.0 + input.array().exp()).log().sum() -
+             0.5 * (u - model.visible_bias).squaredNorm() - log_deviation.sum();
+    }
+    return sum / static_cast<double>(batch.visible.rows());
+  };
+  reference::CdTraining training(model);
+  reference::CdOptions options{1, {}, {}, {}};
+  options.deviation_rate = 1;
+  training.step(batch, options, scene.draws(0));
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    RowVectorD up = RowVectorD::Zero(3), down = up;
+    up(i) = 1e-5;
+    down(i) = -1e-5;
+    CHECK(std::log(training.deviation(i)) ==
+          doctest::Approx((likelihood(up) - likelihood(down)) / 2e-5).epsilon(1e-7));
+  }
+}
