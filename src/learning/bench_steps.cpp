@@ -8,6 +8,7 @@
 #include "learning/contrastive_divergence.hpp"
 #include "learning/minibatch.hpp"
 #include "learning/multi_prediction.hpp"
+#include "learning/persistent_contrastive_divergence.hpp"
 #include "machines/mrbm_chain.hpp"
 #include "mcdbn/machines/generation.hpp"
 #include "mcdbn/machines/regeneration.hpp"
@@ -39,13 +40,15 @@ IndexBuffer scattered_rows(Device& device, std::size_t batch, std::size_t order)
   return {device, rows};
 }
 
+/// @param Rule ContrastiveDivergence, or the persistent one  @param prefix of the layer's name
+template <typename Rule>
 BenchStep crbm_step(Device& device, const CrbmShape& shape, std::size_t batch,
-                    std::size_t gibbs_steps) {
+                    std::size_t gibbs_steps, const std::string& prefix = "") {
   struct State {
     Matrix frames;
     IndexBuffer index;
     Crbm crbm;
-    ContrastiveDivergence cd;
+    Rule cd;
     LossAccumulator losses;
     CdRule rule;
     RandomKey key;
@@ -64,18 +67,19 @@ BenchStep crbm_step(Device& device, const CrbmShape& shape, std::size_t batch,
   const auto order = static_cast<double>(shape.order), k = static_cast<double>(gibbs_steps);
   // Dynamic biases and their gradients; up, k times down and up, two products for W's gradient.
   const double multiply_adds = 2.0 * order * v * (v + h) + (1.0 + 2.0 * k + 2.0) * v * h;
-  return {{{"layer", shape.kind == VisibleKind::gaussian ? "gaussian_crbm" : "binary_crbm"},
-           {"visible", shape.visible},
-           {"order", shape.order},
-           {"hidden", shape.hidden},
-           {"batch", batch},
-           {"k", gibbs_steps}},
-          2.0 * multiply_adds * static_cast<double>(batch),
-          [state, batch] {
-            ++state->key.step;
-            state->cd.step(Rows::indexed(state->frames, state->index, 0, batch), state->rule,
-                           state->key, state->losses);
-          }};
+  return {
+      {{"layer", prefix + (shape.kind == VisibleKind::gaussian ? "gaussian_crbm" : "binary_crbm")},
+       {"visible", shape.visible},
+       {"order", shape.order},
+       {"hidden", shape.hidden},
+       {"batch", batch},
+       {"k", gibbs_steps}},
+      2.0 * multiply_adds * static_cast<double>(batch),
+      [state, batch] {
+        ++state->key.step;
+        state->cd.step(Rows::indexed(state->frames, state->index, 0, batch), state->rule,
+                       state->key, state->losses);
+      }};
 }
 
 /// A whole epoch as `train` runs it, over `frames` windows: shuffle, upload the order, all
@@ -277,10 +281,12 @@ BenchStep generation_step(Device& device, std::size_t gibbs_steps) {
 
 std::vector<BenchStepMaker> crbm_minibatch_steps(std::size_t batch) {
   return {[=](Device& device) {
-            return crbm_step(device, {96, 300, 5, VisibleKind::gaussian}, batch, 5);
+            return crbm_step<ContrastiveDivergence>(device, {96, 300, 5, VisibleKind::gaussian},
+                                                    batch, 5);
           },
           [=](Device& device) {
-            return crbm_step(device, {300, 300, 5, VisibleKind::binary}, batch, 1);
+            return crbm_step<ContrastiveDivergence>(device, {300, 300, 5, VisibleKind::binary},
+                                                    batch, 1);
           }};
 }
 
@@ -288,6 +294,12 @@ std::vector<BenchStepMaker> bench_steps() {
   std::vector<BenchStepMaker> makers;
   for (const std::size_t batch : {100U, 1024U}) {
     for (BenchStepMaker& make : crbm_minibatch_steps(batch)) makers.push_back(std::move(make));
+    for (const auto& [shape, steps] : {std::pair{CrbmShape{96, 300, 5, VisibleKind::gaussian}, 5},
+                                       {CrbmShape{300, 300, 5, VisibleKind::binary}, 1}})
+      makers.emplace_back([=, shape = shape, steps = steps](Device& device) {
+        return crbm_step<PersistentContrastiveDivergence>(
+            device, shape, batch, static_cast<std::size_t>(steps), "persistent_");
+      });
     for (const std::size_t modalities : {2U, 3U})
       makers.emplace_back(
           [=](Device& device) { return mrbm_step(device, modalities, 300, 150, batch, 10); });

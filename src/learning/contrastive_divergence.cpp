@@ -24,9 +24,13 @@ OptimizerKind optimizer_of(const CdSettings& settings) {
   return settings.adam ? OptimizerKind::adam : OptimizerKind::momentum;
 }
 
+bool is_gaussian_rbm(const CrbmShape& shape) {
+  return shape.order == 0 && shape.kind == VisibleKind::gaussian;
+}
+
 /// Only the composed form knows deviations.
 bool has_deviation(const Crbm& crbm, const CdSettings& settings) {
-  return crbm.has_deviation || settings.deviation_rate > 0.0;
+  return crbm.has_deviation || (settings.deviation_rate > 0.0 && is_gaussian_rbm(crbm.shape()));
 }
 
 }  // namespace
@@ -83,11 +87,9 @@ ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_bat
       hidden_(Matrix::like(hidden_data_)),
       hidden_bias_(Matrix::like(hidden_data_)),
       row_losses_(crbm.device(), 1, visible_data_.rows()) {
-  const bool is_gaussian_rbm =
-      crbm.shape().order == 0 && crbm.shape().kind == VisibleKind::gaussian;
-  if (has_deviation(crbm, settings) && !is_gaussian_rbm)
+  if (crbm.has_deviation && !is_gaussian_rbm(crbm.shape()))
     throw ConfigError("a deviation of its own is for a Gaussian RBM, which has no history");
-  if (settings.deviation_rate > 0.0) crbm.has_deviation = true;
+  crbm.has_deviation = has_deviation(crbm, settings);
   if (tile_) return;
   hidden_sample_ = Matrix::like(hidden_data_);
   gradient_.emplace(crbm.parameters().in(optimizer_.gradients()));
@@ -109,7 +111,8 @@ void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const Ran
   require(rule.gibbs_steps > 0, "CD: wants at least one Gibbs step");
   optimizer_.next_step();
   run_chain(rows, rule, key);
-  if (rule.deviation_rate > 0.0F) learn_deviation(rows.count, rule.deviation_rate);
+  if (crbm_.has_deviation && rule.deviation_rate > 0.0F)
+    learn_deviation(rows.count, rule.deviation_rate);
   if (rule.sparsity_strength > 0.0F) pull_to_target(rows.count, rule);
   if (tile_)
     fused_update(rows, rule, losses);
@@ -144,7 +147,6 @@ void ContrastiveDivergence::pull_to_target(std::size_t count, const CdRule& rule
 }
 
 void ContrastiveDivergence::learn_deviation(std::size_t count, float rate) {
-  require(crbm_.has_deviation && !tile_, "CD: the machine was not made for a deviation");
   GemmOptions down;
   down.bias = &crbm_.a;
   gemm(Rows(hidden_data_, 0, count), crbm_.W_transposed, Rows(visible_bias_, 0, count), down);

@@ -41,8 +41,9 @@ std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& 
 /// both draw the same numbers. With a deviation it is the latter.
 class ContrastiveDivergence : public LearningRule {
  public:
-  /// @param optimizer unset: what the settings say  @throws ConfigError if a deviation is to be
-  /// learnt of what is no Gaussian RBM
+  /// @param crbm whose deviation is learnt only if it is a Gaussian RBM
+  /// @param optimizer unset: what the settings say
+  /// @throws ConfigError for a machine with a deviation that is no Gaussian RBM
   ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch, const CdSettings& settings = {},
                         std::optional<OptimizerKind> optimizer = {});
   /// With a tile of the caller's, or without the fused kernels.

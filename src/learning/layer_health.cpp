@@ -70,7 +70,9 @@ std::vector<MatrixF> health_windows(const Sequences& sequences, std::size_t fram
   return windows;
 }
 
-LayerHealth crbm_health(const CrbmParameters& parameters, const std::vector<MatrixF>& windows) {
+LayerHealth crbm_health(const CrbmParameters& parameters, std::vector<MatrixF> windows) {
+  for (MatrixF& window : windows)
+    window.array().rowwise() /= parameters.visible_deviation.row(0).array();
   LayerHealth health;
   health.weight_norm = parameters.W.norm();
   health.weight_norm_A = parameters.A.norm();

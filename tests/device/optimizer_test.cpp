@@ -245,6 +245,65 @@ TEST_CASE(
   });
 }
 
+TEST_CASE("small: L1 pulls a weight towards zero by its rate, a bias not, zero nowhere") {
+  on_every_device([](Device& device) {
+    MatrixF start = random_matrix(7, 17, 1);
+    start(2, 3) = 0.0F;
+    const MatrixF gradient = random_matrix(7, 17, 2), mean = random_matrix(7, 17, 3);
+    UpdateRule rule{.rate = 0.1F, .momentum = 0.6F, .weight_decay = 0.02F};
+    rule.l1 = 0.05F;
+    for (const OptimizerKind kind : {OptimizerKind::momentum, OptimizerKind::adam})
+      for (const bool is_weight : {true, false}) {
+        CAPTURE(is_weight);
+        OneMatrix got(device, start, kind, is_weight);
+        got.set_state(0, mean);
+        got.set_gradient(gradient);
+        got.update(rule);
+        const UpdateRule taken = is_weight ? rule : rule.without_decay();
+        Bounded want = exact(start), first = exact(mean), second = exact(MatrixF::Zero(7, 17));
+        MatrixD plain = start.cast<double>(), plain_first = mean.cast<double>(),
+                plain_second = MatrixD::Zero(7, 17);
+        if (kind == OptimizerKind::momentum) {
+          reference::bounded_momentum_update(want, first, -exact(gradient), taken);
+          reference::momentum_update(plain, plain_first, -gradient.cast<double>(), taken);
+        } else {
+          reference::bounded_adam_update(want, first, second, exact(gradient), taken, 1);
+          reference::adam_update(plain, plain_first, plain_second, gradient.cast<double>(), taken,
+                                 1);
+        }
+        check_value(want, plain);
+        check_within(got.values(), want);
+      }
+  });
+}
+
+TEST_CASE("small: fast weights forget, learn at their own rate and add to the parameters") {
+  on_every_device([](Device& device) {
+    Parameters parameters(
+        device, {{.name = "W", .rows = 5, .columns = 19}, {.name = "A", .rows = 3, .columns = 3}});
+    const Matrix gradients = Matrix::like(parameters.all());
+    Matrix fast = Matrix::like(gradients), sum = Matrix::like(gradients);
+    for (const auto& [name, rows, columns] : {std::tuple{"W", 5U, 19U}, std::tuple{"A", 3U, 3U}}) {
+      parameters.upload(name, random_matrix(rows, columns, 1));
+      parameters.in(fast).upload(name, random_matrix(rows, columns, 2));
+      parameters.in(gradients).upload(name, random_matrix(rows, columns, 3));
+    }
+    fast_update(fast, sum, parameters, gradients, 0.75F,
+                [](const ParameterShape& shape) { return shape.name == "A" ? 0.0F : 0.5F; });
+    for (const std::string name : {"W", "A"}) {
+      const Bounded before = exact(random_matrix(name == "W" ? 5 : 3, name == "W" ? 19 : 3, 2)),
+                    gradient = exact(random_matrix(name == "W" ? 5 : 3, name == "W" ? 19 : 3, 3));
+      const Bounded want = 0.75 * before - (name == "A" ? 0.0 : 0.5) * gradient;
+      check_within(parameters.in(fast).to_host(name), want);
+      check_within(parameters.in(sum).to_host(name), exact(parameters.to_host(name)) + want);
+      CHECK(padding_is_zero(parameters.in(sum).matrix(name)));
+    }
+    CHECK_THROWS_AS(fast_update(fast, sum, parameters, Matrix(device, 1, 16), 0.5F,
+                                [](const ParameterShape&) { return 0.5F; }),
+                    ShapeError);
+  });
+}
+
 TEST_CASE("small: a moving average goes the given share of the way") {
   on_every_device([](Device& device) {
     const MatrixF before = random_matrix(5, 19, 1), parameter = random_matrix(5, 19, 2);

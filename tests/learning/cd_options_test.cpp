@@ -219,10 +219,15 @@ TEST_CASE("small: the deviation of Gaussian units is learnt as the double refere
   changed.deviation_rate = 0.2;
   on_every_device([&](Device& device) {
     check<ContrastiveDivergence>(device, Scene({5, 6, 0, VisibleKind::gaussian}, changed), true);
-    Crbm with_history(device, CrbmParameters::zeros(kGaussian));
-    CHECK_THROWS_AS(ContrastiveDivergence(with_history, kBatch, changed), ConfigError);
-    Crbm binary(device, CrbmParameters::zeros({3, 2, 0, VisibleKind::binary}));
-    CHECK_THROWS_AS(ContrastiveDivergence(binary, kBatch, changed), ConfigError);
+    for (const CrbmShape& shape : {kGaussian, CrbmShape{3, 2, 0, VisibleKind::binary}}) {
+      CrbmParameters p = CrbmParameters::zeros(shape);
+      Crbm without(device, p);
+      CHECK(ContrastiveDivergence(without, kBatch, changed).tile());
+      CHECK_FALSE(without.has_deviation);
+      p.visible_deviation *= 2;
+      Crbm given(device, p);
+      CHECK_THROWS_AS(ContrastiveDivergence(given, kBatch), ConfigError);
+    }
   });
 }
 

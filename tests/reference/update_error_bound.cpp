@@ -3,9 +3,18 @@
 #include <cmath>
 
 namespace mcdbn::reference {
+namespace {
 
-void bounded_momentum_update(Bounded& parameter, Bounded& velocity, const Bounded& gradient,
+/// l1 · sign(parameter), for parameters whose signs no error turns.
+Bounded pull_of(const Bounded& parameter, const UpdateRule& rule) {
+  return double{rule.l1} * Bounded::exact(parameter.value.cwiseSign());
+}
+
+}  // namespace
+
+void bounded_momentum_update(Bounded& parameter, Bounded& velocity, const Bounded& uphill,
                              const UpdateRule& rule) {
+  const Bounded gradient = rule.l1 > 0.0F ? uphill - pull_of(parameter, rule) : uphill;
   velocity = double{rule.momentum} * velocity +
              double{rule.rate} * (gradient - double{rule.weight_decay} * parameter);
   parameter = parameter + velocity;
@@ -22,7 +31,9 @@ void bounded_adam_update(Bounded& parameter, Bounded& mean, Bounded& square,
   const Bounded epsilon = Bounded::exact(
       MatrixD::Constant(square.value.rows(), square.value.cols(), double{rule.epsilon}));
   const Bounded direction = quotient(corrected_mean, square_root(corrected_square) + epsilon);
+  const Bounded pull = double{rule.rate} * pull_of(parameter, rule);
   parameter = parameter - double{rule.rate} * (direction + double{rule.weight_decay} * parameter);
+  if (rule.l1 > 0.0F) parameter = parameter - pull;
 }
 
 }  // namespace mcdbn::reference

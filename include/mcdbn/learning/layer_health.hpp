@@ -27,7 +27,7 @@ inline constexpr std::size_t kHealthWindows = 16;
 std::vector<MatrixF> health_windows(const Sequences& sequences, std::size_t frames);
 
 /// @param windows of order + kFreeRunFrames frames [frames x visible]
-LayerHealth crbm_health(const CrbmParameters& parameters, const std::vector<MatrixF>& windows);
+LayerHealth crbm_health(const CrbmParameters& parameters, std::vector<MatrixF> windows);
 
 /// @param codes of the same frames [rows x visible of the modality]
 LayerHealth mrbm_health(const MrbmParameters& parameters, const std::vector<MatrixF>& codes);

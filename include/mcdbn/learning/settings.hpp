@@ -88,7 +88,7 @@ struct CdSettings {
     visit(Setting{"cosine", on_or_off(), "", "rates fall along a cosine, else in a line"},
           self.cosine);
     visit(Setting{"deviation-rate", at_least(0), "",
-                  "rate of the deviation of Gaussian units, without history; 0: it stays"},
+                  "rate of the deviation of Gaussian units; with a history they have none"},
           self.deviation_rate);
   }
 };
