@@ -14,7 +14,8 @@ RegenerationOptions SamplingOptions::regeneration(const Mcdbn& network, std::uin
                                                   std::size_t usual_samples) const {
   RegenerationOptions options;
   options.samples = samples.value_or(usual_samples);
-  options.temperature = temperature.value_or(options.samples > 1 ? 1.0 : 0.0);
+  options.temperature =
+      temperature.value_or(options.samples > 1 || network.sampling.always ? 1.0 : 0.0);
   options.seed = seed;
   options.sampling = network.sampling;
   if (gibbs_steps || mrbm_gibbs_steps) {
@@ -32,7 +33,7 @@ void add_sampling_options(CLI::App& command, SamplingOptions& options, const cha
       .add_option(
           "--temperature", options.temperature,
           "0: the mean-field answer; towards 1: sampled variations (default: 1 with several "
-          "samples, else 0)")
+          "samples, or if the model was trained to be sampled, else 0)")
       ->check(CLI::Range(0.0, kHottest));
   command
       .add_option(

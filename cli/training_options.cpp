@@ -20,10 +20,12 @@ std::string group_of(const std::string& setting) {
 
 void TrainingOptions::add_to(CLI::App& command) {
   command
-      .add_option("--preset", preset_,
-                  "default; paper: the paper's own figures, which diverge; generation: the greedy "
-                  "stages alone, so that `generate` goes on and on")
-      ->check(CLI::IsMember({"default", "paper", "generation"}))
+      .add_option(
+          "--preset", preset_,
+          "default; paper: the paper's own figures, which diverge; paper-stable: the same at "
+          "rates that do not; generation: the greedy stages alone, so that `generate` goes "
+          "on and on")
+      ->check(CLI::IsMember({"default", "paper", "paper-stable", "generation"}))
       ->capture_default_str();
   command
       .add_option(
@@ -72,6 +74,7 @@ TrainingConfig TrainingOptions::resolve(const std::vector<SaidSetting>& last) co
     return config;
   };
   if (preset_ == "paper") return applied_to(TrainingConfig::paper());
+  if (preset_ == "paper-stable") return applied_to(TrainingConfig::paper_stable());
   if (preset_ == "generation") return applied_to(TrainingConfig::generation());
   const TrainingConfig config = applied_to({});
   return config.fine_tuning.steps > 0 ? config : applied_to(TrainingConfig::greedy());

@@ -343,7 +343,11 @@ Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningS
   Mrbm mrbm = train_mrbm(device, codes,
                          start ? start->mrbm.to_host() : small_weights(shape, codes, learning),
                          learning, random_streams::kMrbm, progress.part(last_cost));
-  return {std::move(cdbns), std::move(mrbm), learning.look_ahead, learning.mrbm.mean_field_steps};
+  const RegenerationSettings& drawn = learning.regeneration;
+  return {std::move(cdbns), std::move(mrbm), learning.look_ahead, learning.mrbm.mean_field_steps,
+          SamplingRule{.gibbs_steps = drawn.gibbs_steps,
+                       .mrbm_gibbs_steps = drawn.mrbm_gibbs_steps,
+                       .always = drawn.sampled}};
 }
 
 }  // namespace mcdbn

@@ -25,14 +25,34 @@ LearningSettings LearningSettings::paper() {
                           .momentum_from_epoch = 0,
                           .weight_decay = 0.0,
                           .initial_deviation = 1.0,
-                          .epochs = 100};
+                          .epochs = 100,
+                          .sample_visible = true};
   settings.gaussian = table2;
   settings.binary = table2;
   settings.mrbm.rate = 0.1;
   settings.mrbm.initial_deviation = 1.0;
+  settings.mrbm.adam = false;
   settings.mrbm_hidden = 150;
   settings.look_ahead = 0;
   settings.least_batches = 1;
+  settings.regeneration = {.gibbs_steps = 3, .mrbm_gibbs_steps = 3, .sampled = true};
+  return settings;
+}
+
+LearningSettings LearningSettings::paper_stable() {
+  LearningSettings settings = paper();
+  const LearningSettings usual = greedy();
+  for (const auto layer : {&LearningSettings::gaussian, &LearningSettings::binary}) {
+    CdSettings& own = settings.*layer;
+    own.rate = (usual.*layer).rate;
+    own.rate_A = (usual.*layer).rate_A;
+    own.rate_B = (usual.*layer).rate_B;
+    own.initial_deviation = (usual.*layer).initial_deviation;
+  }
+  // With momentum 0.9 a step counts ten times: an effective rate of 0.01.
+  settings.mrbm.rate = 1e-3;
+  settings.mrbm.initial_deviation = usual.mrbm.initial_deviation;
+  settings.least_batches = usual.least_batches;
   return settings;
 }
 

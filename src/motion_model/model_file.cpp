@@ -20,7 +20,8 @@ json sampling_json(const SamplingRule& rule) {
   return {{"gibbs_steps", rule.gibbs_steps},
           {"mrbm_gibbs_steps", rule.mrbm_gibbs_steps},
           {"steady", rule.steady},
-          {"scale", rule.scale}};
+          {"scale", rule.scale},
+          {"always", rule.always}};
 }
 
 /// Algorithm 5's rule for models that say none.
@@ -28,7 +29,7 @@ SamplingRule sampling_from(const json& about) {
   if (!about.contains("sampling")) return {};
   const json& entry = about.at("sampling");
   return {entry.at("gibbs_steps"), entry.at("mrbm_gibbs_steps"), entry.at("steady"),
-          entry.at("scale")};
+          entry.at("scale"), entry.value("always", false)};
 }
 
 json parsed_description(const TensorFile& file) {

@@ -14,6 +14,12 @@ TrainingConfig TrainingConfig::paper() {
   return config;
 }
 
+TrainingConfig TrainingConfig::paper_stable() {
+  TrainingConfig config;
+  static_cast<LearningSettings&>(config) = LearningSettings::paper_stable();
+  return config;
+}
+
 TrainingConfig TrainingConfig::generation() {
   TrainingConfig config;
   static_cast<LearningSettings&>(config) = LearningSettings::generation();

@@ -183,6 +183,7 @@ TEST_CASE("--preset and --stages say which stages there are and whose defaults h
   check_settings(settings_of_options(""), TrainingConfig{}, {});
   check_settings(settings_of_options("--preset default"), TrainingConfig{}, {});
   check_settings(settings_of_options("--preset paper"), TrainingConfig::paper(), {});
+  check_settings(settings_of_options("--preset paper-stable"), TrainingConfig::paper_stable(), {});
   check_settings(settings_of_options("--preset generation --hidden 5"),
                  TrainingConfig::generation(), {{"hidden", 5}});
   check_settings(settings_of_options("--stages greedy"), TrainingConfig::greedy(), {});

@@ -119,6 +119,24 @@ TEST_CASE("the paper's own rates and weights make the loss grow, which stops the
   });
 }
 
+TEST_CASE("the paper's preset at rates that do not diverge learns what the other loses") {
+  LearningSettings settings = LearningSettings::paper_stable();
+  settings.batch = 20;
+  settings.gaussian.epochs = 40;
+  const CrbmShape shape{12, 20, settings.order, VisibleKind::gaussian};
+  const RandomKey key{.seed = 1};
+  on_every_device([&](Device& device) {
+    const Sequences frames = Sequences::from_host(device, {waves(90, 12), waves(60, 12)});
+    std::vector<double> losses;
+    train_crbm(device, frames,
+               CrbmParameters::random(shape, settings.gaussian.initial_deviation, key),
+               settings.gaussian, settings, 0,
+               [&](const EpochReport& report) { losses.push_back(report.loss); });
+    CHECK(losses.size() == 40);
+    CHECK(losses.back() < 0.5 * losses.front());
+  });
+}
+
 TEST_CASE("the greedy training names the modality, the kind of layer and the settings to lower") {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   GreedyScene scene = scene_of_different_sizes();

@@ -70,6 +70,17 @@ const std::vector<Expected<LearningSettings>>& learning_settings() {
       {"mrbm.initial-deviation", [](C& c) { return at(c.mrbm.initial_deviation); }, "0.01"},
       {"mrbm.mean-field-steps", [](C& c) { return at(c.mrbm.mean_field_steps); }, "5"},
       {"mrbm.epochs", [](C& c) { return at(c.mrbm.epochs); }, "1"},
+      {"mrbm.joint-likelihood", [](C& c) { return at(c.mrbm.joint_likelihood); }, "false"},
+      {"mrbm.perceptron-loss", [](C& c) { return at(c.mrbm.perceptron_loss); }, "false"},
+      {"mrbm.gibbs-steps", [](C& c) { return at(c.mrbm.gibbs_steps); }, "1"},
+      {"mrbm.persistent", [](C& c) { return at(c.mrbm.persistent); }, "false"},
+      {"mrbm.sample-visible", [](C& c) { return at(c.mrbm.sample_visible); }, "false"},
+      {"mrbm.adam", [](C& c) { return at(c.mrbm.adam); }, "true"},
+      {"mrbm.momentum", [](C& c) { return at(c.mrbm.momentum); }, "0.9"},
+      {"regeneration.gibbs-steps", [](C& c) { return at(c.regeneration.gibbs_steps); }, "1"},
+      {"regeneration.mrbm-gibbs-steps", [](C& c) { return at(c.regeneration.mrbm_gibbs_steps); },
+       "0"},
+      {"regeneration.sampled", [](C& c) { return at(c.regeneration.sampled); }, "false"},
       {"fine-tuning.steps", [](C& c) { return at(c.fine_tuning.steps); }, "3000"},
       {"fine-tuning.from-greedy", [](C& c) { return at(c.fine_tuning.from_greedy); }, "true"},
       {"fine-tuning.windows", [](C& c) { return at(c.fine_tuning.windows); }, "48"},
@@ -96,11 +107,13 @@ TEST_CASE("learning settings: the list leaves no member out") {
   CHECK(member_count<CdSettings>() == listed_under<LearningSettings>("gaussian."));
   CHECK(member_count<CdSettings>() == listed_under<LearningSettings>("binary."));
   CHECK(member_count<MrbmSettings>() == listed_under<LearningSettings>("mrbm."));
-  constexpr std::size_t kGroups = 4;
+  constexpr std::size_t kGroups = 5;
   CHECK(member_count<LearningSettings>() - kGroups ==
         listed_under<LearningSettings>("") - listed_under<LearningSettings>("gaussian.") -
             listed_under<LearningSettings>("binary.") - listed_under<LearningSettings>("mrbm.") -
-            listed_under<LearningSettings>("fine-tuning."));
+            listed_under<LearningSettings>("fine-tuning.") -
+            listed_under<LearningSettings>("regeneration."));
+  CHECK(member_count<RegenerationSettings>() == listed_under<LearningSettings>("regeneration."));
   CHECK(member_count<FineTuningSettings>() == listed_under<LearningSettings>("fine-tuning."));
 }
 
@@ -142,6 +155,10 @@ TEST_CASE("learning settings: the paper's preset has the paper's own figures") {
                  {"mrbm.rate", "0.1"},
                  {"mrbm.epochs", "30"},
                  {"mrbm.initial-deviation", "1"},
+                 {"mrbm.adam", "false"},
+                 {"regeneration.gibbs-steps", "3"},
+                 {"regeneration.mrbm-gibbs-steps", "3"},
+                 {"regeneration.sampled", "true"},
                  {"fine-tuning.steps", "0"},
                  {"binary.gibbs-steps", "5"}};
   for (const std::string kind : {"gaussian", "binary"}) {
@@ -150,14 +167,23 @@ TEST_CASE("learning settings: the paper's preset has the paper's own figures") {
     want[kind + ".weight-decay"] = "0";
     want[kind + ".initial-deviation"] = "1";
     want[kind + ".epochs"] = "100";
+    want[kind + ".sample-visible"] = "true";
   }
   CHECK(changed_by(LearningSettings::paper()) == want);
+  // What does not diverge: rates and first weights as usual, all else the paper's.
+  for (const char* usual : {"least-batches", "gaussian.rate", "gaussian.rate-A", "gaussian.rate-B",
+                            "gaussian.initial-deviation", "binary.rate", "binary.rate-A",
+                            "binary.rate-B", "binary.initial-deviation", "mrbm.initial-deviation"})
+    want.erase(usual);
+  want["mrbm.rate"] = "0.001";
+  CHECK(changed_by(LearningSettings::paper_stable()) == want);
 }
 
 TEST_CASE("learning settings: the defaults and the presets are within range") {
   CHECK_NOTHROW(LearningSettings{}.validate());
   CHECK_NOTHROW(LearningSettings::greedy().validate());
   CHECK_NOTHROW(LearningSettings::paper().validate());
+  CHECK_NOTHROW(LearningSettings::paper_stable().validate());
   CHECK_NOTHROW(LearningSettings::generation().validate());
 }
 

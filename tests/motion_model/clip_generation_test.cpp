@@ -59,8 +59,8 @@ TEST_CASE("generate_clip: what the network makes of the seed at the model's rate
       const auto got = generate_clip(model, seed, options);
       const Motion at_rate = resample(seed, 30);
       const Eigen::Matrix3d camera = camera_rotation(35, 12);
-      const auto poses =
-          generate(model.network.cdbns[1], {scene.modalities.encode_pose(at_rate, camera)}, options);
+      const auto poses = generate(model.network.cdbns[1],
+                                  {scene.modalities.encode_pose(at_rate, camera)}, options);
       REQUIRE(got.size() == 2);
       CHECK(largest(got[0].channels - got[1].channels) > 1e-3);
       for (std::size_t i = 0; i < got.size(); ++i) {

@@ -34,7 +34,8 @@ struct ExampleModel {
     Mcdbn network{std::vector<Cdbn>(2), Mrbm(device, mrbm), 4, 6};
     for (const CrbmParameters& p : track) network.cdbns[0].layers.emplace_back(device, p);
     for (const CrbmParameters& p : pose) network.cdbns[1].layers.emplace_back(device, p);
-    network.sampling = {.gibbs_steps = 5, .mrbm_gibbs_steps = 3, .steady = true, .scale = 0.7};
+    network.sampling = {
+        .gibbs_steps = 5, .mrbm_gibbs_steps = 3, .steady = true, .scale = 0.7, .always = true};
     network.fills_gaps = false;
     return {std::move(network),
             modalities(),

@@ -45,10 +45,11 @@ class SmallRun {
   }
 
   Mcdbn start(Device& device) const {
-    return random_start(device,
-                        {{"track", static_cast<std::size_t>(data->tracks.front().cols()), VisibleKind::gaussian},
-                         {"pose", static_cast<std::size_t>(data->poses.front().cols()), VisibleKind::gaussian}},
-                        config);
+    return random_start(
+        device,
+        {{"track", static_cast<std::size_t>(data->tracks.front().cols()), VisibleKind::gaussian},
+         {"pose", static_cast<std::size_t>(data->poses.front().cols()), VisibleKind::gaussian}},
+        config);
   }
 
   ScratchFolder folder;

@@ -30,10 +30,11 @@ struct SmallTraining {
     return make_augmented_views(load_clips(walks.files()), data.modalities, with);
   }
   Mcdbn start(Device& device, const TrainingConfig& with) const {
-    return random_start(device,
-                        {{"track", static_cast<std::size_t>(data.tracks.front().cols()), VisibleKind::gaussian},
-                         {"pose", static_cast<std::size_t>(data.poses.front().cols()), VisibleKind::gaussian}},
-                        with);
+    return random_start(
+        device,
+        {{"track", static_cast<std::size_t>(data.tracks.front().cols()), VisibleKind::gaussian},
+         {"pose", static_cast<std::size_t>(data.poses.front().cols()), VisibleKind::gaussian}},
+        with);
   }
 
  private:

@@ -203,6 +203,26 @@ struct FineTuningSettings {
   }
 };
 
+/// How the network draws where it is not asked otherwise (Algorithm 5; SamplingRule). Fine-tuning
+/// sets its own.
+struct RegenerationSettings {
+  std::size_t gibbs_steps = 1, mrbm_gibbs_steps = 0;
+  bool sampled = false;
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"gibbs-steps", within(0, 1000), "steps",
+                  "k of the decoder's samples; 0: mean field"},
+          self.gibbs_steps);
+    visit(Setting{"mrbm-gibbs-steps", within(0, 1000), "steps",
+                  "k of the chain that infers each sample's code; 0: one mean field for all"},
+          self.mrbm_gibbs_steps);
+    visit(Setting{"sampled", on_or_off(), "",
+                  "a single answer is drawn, too, where mean field is more exact"},
+          self.sampled);
+  }
+};
+
 /// The network's size and how it is learnt, whatever the data are: the paper's Table 2 and section
 /// V, and what it leaves out.
 struct LearningSettings {
@@ -222,13 +242,17 @@ struct LearningSettings {
   CdSettings binary{.gibbs_steps = 1, .rate = 1e-2, .rate_A = 1e-3, .rate_B = 1e-3};
   MrbmSettings mrbm;
   FineTuningSettings fine_tuning;
+  RegenerationSettings regeneration;
 
   /// The paper's architecture for the greedy stages alone, at rates and for epochs that train it:
   /// two CRBMs of order 5 and 300 units in each CDBN.
   static LearningSettings greedy();
-  /// The paper's own figures (Table 2, section V.C): rate 0.1, momentum 0.9, weights from N(0, 1),
-  /// MRBM of 150, no look-ahead. Diverges: the guard says so.
+  /// The paper's own figures (Table 2, section V.C): rate 0.1 and momentum 0.9 throughout, weights
+  /// from N(0, 1), MRBM of 150, no look-ahead, k = 5 sampled steps in training and 3 in
+  /// regeneration. Diverges: the guard says so.
   static LearningSettings paper();
+  /// The nearest to it that trains: rates and first weights that do not diverge, all else the same.
+  static LearningSettings paper_stable();
   /// For free-running generation: the greedy stages with one layer a CDBN, by CD-1 with noise on
   /// the histories (docs/generation.md).
   static LearningSettings generation();
@@ -257,6 +281,7 @@ struct LearningSettings {
     visit_group("binary", self.binary, visit);
     visit_group("mrbm", self.mrbm, visit);
     visit_group("fine-tuning", self.fine_tuning, visit);
+    visit_group("regeneration", self.regeneration, visit);
   }
 };
 

@@ -23,6 +23,8 @@ struct SamplingRule {
   /// throughout and does not shake.
   bool steady = false;
   double scale = 1.0;  ///< what temperature 1 stands for (calibrated_sampling)
+  /// A single answer is drawn too, at temperature 1, unless another is asked for.
+  bool always = false;
 };
 
 /// The multimodal conditional deep belief network (section IV.A, Fig. 6): a CDBN for each modality

@@ -41,9 +41,10 @@ struct TrainingConfig : CorpusSettings, LearningSettings {
   /// instead of 23.6 mm, and the one held out did better to the end.
   std::size_t hold_out_among = 20;
 
-  /// With LearningSettings::greedy or paper.
+  /// With LearningSettings::greedy, paper or paper_stable.
   static TrainingConfig greedy();
   static TrainingConfig paper();
+  static TrainingConfig paper_stable();
   /// With LearningSettings::generation, on every frame of the clips' own rates up to 120 a second.
   static TrainingConfig generation();
   /// @throws ConfigError naming the setting that is out of range
