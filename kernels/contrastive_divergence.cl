@@ -81,6 +81,7 @@ INLINE void draw_visible(local float* v, int column, int row0, uint4 random) {
 }
 #endif
 
+#if SAMPLE_VISIBLE || PERSISTENT
 // The inverse of keep_tile.
 INLINE void load_kept_tile(floatN sum[ROWS][COLUMNS], const int count, local const float* x,
                            const int ld, int column) {
@@ -89,6 +90,7 @@ INLINE void load_kept_tile(floatN sum[ROWS][COLUMNS], const int count, local con
 #pragma unroll
     for (int c = 0; c < count; ++c) sum[r][c] = loadN(r * ld + column + c * VEC, x);
 }
+#endif
 
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
     global const float* frames, global const int* index, int first, int shift, int rows,
