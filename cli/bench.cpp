@@ -122,11 +122,12 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
   const auto options = std::make_shared<BenchOptions>();
   command
       ->add_option("--only", options->layers,
-                   "Layers to measure (default: all but epoch): gaussian_crbm, binary_crbm, mrbm, "
-                   "mrbm_chain, gemm, regeneration, generation, epoch (a thousand to a million "
-                   "frames)")
-      ->check(CLI::IsMember({"gaussian_crbm", "binary_crbm", "mrbm", "mrbm_chain", "gemm",
-                             "regeneration", "generation", "epoch"}))
+                   "Layers to measure (default: all but epoch): gaussian_crbm, binary_crbm, "
+                   "persistent_gaussian_crbm, persistent_binary_crbm, mrbm, mrbm_chain, gemm, "
+                   "regeneration, generation, epoch (a thousand to a million frames)")
+      ->check(CLI::IsMember({"gaussian_crbm", "binary_crbm", "persistent_gaussian_crbm",
+                             "persistent_binary_crbm", "mrbm", "mrbm_chain", "gemm", "regeneration",
+                             "generation", "epoch"}))
       ->type_name("LAYER");
   command->add_flag("--tune", options->tune,
                     "First find what suits the device best and keep it in the user's cache folder");

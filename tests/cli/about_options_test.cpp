@@ -40,6 +40,8 @@ std::vector<BenchRow> bench_rows() {
   for (const int batch : {100, 1024}) {
     crbm("gaussian_crbm", 96, 5, batch);
     crbm("binary_crbm", 300, 1, batch);
+    crbm("persistent_gaussian_crbm", 96, 5, batch);
+    crbm("persistent_binary_crbm", 300, 1, batch);
     json mrbm = {{"visible", 600}, {"hidden", 150}, {"batch", batch}, {"steps", 10}};
     mrbm["layer"] = "mrbm";
     rows.push_back({mrbm, batch * 2.0 * (6 * 10 - 1) * 300 * 150});

@@ -8,7 +8,9 @@
 #include "device/every_device.hpp"
 #include "learning/persistent_contrastive_divergence.hpp"
 #include "learning/within_bounds.hpp"
+#include "machines/cdbn_decoder.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/learning/greedy_schedule.hpp"
 #include "reference/cd_options_reference.hpp"
 
 using namespace mcdbn;
@@ -228,6 +230,54 @@ TEST_CASE("small: the deviation of Gaussian units is learnt as the double refere
       Crbm given(device, p);
       CHECK_THROWS_AS(ContrastiveDivergence(given, kBatch), ConfigError);
     }
+  });
+}
+
+TEST_CASE(
+    "small: a layer divides frames by its deviation on the way up, and multiplies them down") {
+  on_every_device([](Device& device) {
+    const Scene scene({5, 6, 0, VisibleKind::gaussian}, settings());
+    CrbmParameters p = scene.start;
+    p.visible_deviation = (2.0F + random_matrix(1, 5, 77).array()).matrix();
+    const Crbm plain(device, scene.start), scaled(device, p);
+    MatrixF divided = scene.frames;
+    divided.array().rowwise() /= p.visible_deviation.row(0).array();
+    const MatrixF got =
+        up_pass(scaled, Sequences::from_host(device, {scene.frames})).values.to_host();
+    const MatrixF want = up_pass(plain, Sequences::from_host(device, {divided})).values.to_host();
+    CHECK((got - want).cwiseAbs().maxCoeff() < 1e-6F);
+    const Matrix code = Matrix::from_host(device, want);
+    const auto decoded = [&](const Crbm& layer, bool fused) {
+      const Cdbn cdbn{{layer}};
+      CdbnDecoder decoder(cdbn, code, 1);
+      decoder.decode(2, kFrames, {}, fused);
+      return MatrixF(decoder.visible().to_host().bottomRows(kFrames - 2));
+    };
+    for (const bool fused : {true, false}) {
+      MatrixF multiplied = decoded(plain, fused);
+      multiplied.array().rowwise() *= p.visible_deviation.row(0).array();
+      CHECK((decoded(scaled, fused) - multiplied).cwiseAbs().maxCoeff() < 1e-6F);
+    }
+  });
+}
+
+TEST_CASE("a layer is trained by the rule that its settings say") {
+  on_every_device([](Device& device) {
+    const Scene scene(kBinary, settings());
+    const auto trained = [&](bool persistent) {
+      LearningSettings learning;
+      learning.batch = 4;
+      learning.least_batches = 3;
+      CdSettings own = settings();
+      own.epochs = 1;
+      own.persistent = persistent;
+      return train_crbm(device, Sequences::from_host(device, {scene.frames}), scene.start, own,
+                        learning, 3)
+          .to_host()
+          .W;
+    };
+    CHECK(trained(true) == trained(true));
+    CHECK(trained(true) != trained(false));
   });
 }
 
