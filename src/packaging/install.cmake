@@ -1,11 +1,14 @@
-# Installs library, headers, the CMake package mcdbn (target mcdbn::mcdbn) and a pkg-config file.
+# Installs the libraries, headers, the CMake package mcdbn (components kernels, machines, mcdbn) and a
+# pkg-config file of the whole.
 set(MCDBN_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/mcdbn)
 
-install(TARGETS mcdbn EXPORT mcdbn-targets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+foreach(component kernels machines mcdbn)
+  install(TARGETS mcdbn_library_${component} EXPORT mcdbn-${component}-targets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT mcdbn-${component}-targets NAMESPACE mcdbn:: DESTINATION ${MCDBN_PACKAGE_DIR})
+endforeach()
 install(DIRECTORY include/mcdbn DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT mcdbn-targets NAMESPACE mcdbn:: DESTINATION ${MCDBN_PACKAGE_DIR})
 
 configure_package_config_file(src/packaging/mcdbn-config.cmake.in
                               ${CMAKE_BINARY_DIR}/generated/mcdbn-config.cmake

@@ -15,3 +15,23 @@ function(mcdbn_room name)
   mcdbn_precompile(mcdbn_${name} mcdbn_base)
   set(MCDBN_ROOMS ${MCDBN_ROOMS} ${name} PARENT_SCOPE)
 endfunction()
+
+# mcdbn_library(NAME ROOMS ROOM… PUBLIC TARGET… PRIVATE TARGET…): what is installed as mcdbn::NAME, made of
+# these rooms.
+function(mcdbn_library name)
+  cmake_parse_arguments(LIBRARY "" "" "ROOMS;PUBLIC;PRIVATE" ${ARGN})
+  set(target mcdbn_library_${name})
+  add_library(${target})
+  add_library(mcdbn::${name} ALIAS ${target})
+  foreach(room ${LIBRARY_ROOMS})
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:mcdbn_${room}>)
+  endforeach()
+  string(REPLACE mcdbn_mcdbn mcdbn output mcdbn_${name})
+  set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX POSITION_INDEPENDENT_CODE ON
+                                             OUTPUT_NAME ${output} EXPORT_NAME ${name}
+                                             ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include>
+                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${target} PUBLIC ${LIBRARY_PUBLIC} PRIVATE ${LIBRARY_PRIVATE})
+endfunction()
