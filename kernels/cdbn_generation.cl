@@ -8,14 +8,14 @@
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 GAUSSIAN=0,1 GROUP=1,64 SAMPLE=
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
-//   VISIBLE=1,97 HIDDEN=1,97 ORDER_A=1,5 ORDER_B=1,5 GAUSSIAN=0,1
+//   VISIBLE=1,97 HIDDEN=1,97 ORDER_A=1,5 ORDER_B=0,5 GAUSSIAN=0,1
 
 #undef SAMPLE
 #define SAMPLE 1
 #include "frame_ring.clh"
 
 // bias ← the history's part of the input, and the static bias (eq 16, 17)
-#define DYNAMIC_BIAS(order, ld, weights, static_bias, bias)        \
+#define DYNAMIC_BIAS(ld, order, weights, static_bias, bias)        \
   FOR_TILES(ld, {                                                  \
     clear_tile(sum, count);                                        \
     add_history(sum, count, ring, frame, order, weights, ld, column); \
@@ -52,8 +52,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void generate_frames(
   floatN sum[ROWS][COLUMNS];
   for (int frame = first; frame < frames; ++frame) {
     random.z = (uint)(frame - first);
-    DYNAMIC_BIAS(ORDER_A, V_LD, weights_a, bias_a, bias_v);
-    DYNAMIC_BIAS(ORDER_B, H_LD, weights_b, bias_b, bias_h);
+    DYNAMIC_BIAS(V_LD, ORDER_A, weights_a, bias_a, bias_v);
+    DYNAMIC_BIAS(H_LD, ORDER_B, weights_b, bias_b, bias_h);
     for (int k = 0; k <= gibbs_steps; ++k) {
       FOR_TILES(H_LD, {
         INPUT(v, V_LD, VISIBLE, w, H_LD, bias_h);

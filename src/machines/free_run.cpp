@@ -23,12 +23,12 @@ RandomKey key_of(const GenerationOptions& options) {
 
 std::optional<RowTile> choose_tile(const Crbm& crbm, std::size_t sequences) {
   const CrbmShape& shape = crbm.shape();
-  if (shape.order == 0) return std::nullopt;
-  const std::size_t visible = padded(shape.visible);
-  return choose_row_tile(crbm.device(), (shape.order + 1) * visible + padded(shape.hidden),
+  const std::size_t order = std::max(shape.order_A(), shape.order_B());
+  if (order == 0) return std::nullopt;
+  return choose_row_tile(crbm.device(), (order + 1) * padded(shape.visible) + padded(shape.hidden),
                          sequences,
                          fmt::format("generation of {} visible, {} hidden units, order {}",
-                                     shape.visible, shape.hidden, shape.order));
+                                     shape.visible, shape.hidden, order));
 }
 
 void run_fused(const Crbm& crbm, const Matrix& state, const Frames& frames,

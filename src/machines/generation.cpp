@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "device/pointwise.hpp"
 #include "machines/cdbn_decoder.hpp"
 #include "machines/free_run.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -58,6 +59,8 @@ std::vector<MatrixF> generate(const Cdbn& cdbn, const std::vector<MatrixF>& seed
   for (std::size_t i = 0; i < cdbn.layers.size(); ++i) {
     if (i > 0) code = up_pass(cdbn.layers[i - 1], code);
     states.push_back(begun(code, history, options));
+    if (cdbn.layers[i].has_deviation)
+      scale_columns(states.back(), cdbn.layers[i].visible_deviation, true);
   }
   const Matrix top = states.back();
   run_freely(cdbn.layers.back(), top, sequences, history, options);
@@ -68,6 +71,8 @@ std::vector<MatrixF> generate(const Cdbn& cdbn, const std::vector<MatrixF>& seed
     CdbnDecoder decoder(below, top, sequences, std::move(states));
     decoder.decode(history, history + options.frames, {});
     visible = decoder.visible();
+  } else if (cdbn.layers.front().has_deviation) {
+    scale_columns(visible, cdbn.layers.front().visible_deviation);
   }
 
   const MatrixF all = visible.to_host();

@@ -9,15 +9,16 @@ Bounded exact(const MatrixF& matrix) {
   return Bounded::exact(matrix.cast<double>());
 }
 
-/// bias + Σ over the order of the moments before moment t, weighted (eq 16, 17).
+/// bias + Σ over the moments before moment t that the weights see, weighted (eq 16, 17).
 Sum dynamic_bias(const Moments& visible, std::size_t t, const CrbmParameters& p,
                  const MatrixF& weights, const MatrixF& bias) {
   const auto units = static_cast<Eigen::Index>(p.shape.visible);
   Sum sum;
   sum.add(exact(bias.replicate(visible.back().value.rows(), 1)));
-  for (std::size_t q = 0; q < p.shape.order; ++q)
-    sum.add_product(visible[t - p.shape.order + q],
-                    exact(weights.middleRows(static_cast<Eigen::Index>(q) * units, units)));
+  const Eigen::Index order = weights.rows() / units;
+  for (Eigen::Index q = 0; q < order; ++q)
+    sum.add_product(visible[t - static_cast<std::size_t>(order - q)],
+                    exact(weights.middleRows(q * units, units)));
   return sum;
 }
 
@@ -42,8 +43,14 @@ Bounded drawn(const Bounded& mean, double temperature, const RandomKey& key) {
   return tempered(mean, bernoulli(mean, uniform), temperature);
 }
 
-/// The last frames of each seed, each seed so many times.
-Moments moments_of(const std::vector<MatrixF>& seeds, std::size_t frames, std::size_t samples) {
+/// σ of the lowest layer's units, a row for each sequence.
+Bounded deviations(const CrbmParameters& p, std::size_t sequences) {
+  return exact(p.visible_deviation.replicate(static_cast<Eigen::Index>(sequences), 1));
+}
+
+/// The last frames of each seed, each seed so many times, over σ.
+Moments moments_of(const CrbmParameters& p, const std::vector<MatrixF>& seeds, std::size_t frames,
+                   std::size_t samples) {
   Moments moments;
   for (std::size_t t = 0; t < frames; ++t) {
     MatrixF rows(seeds.size() * samples, seeds[0].cols());
@@ -51,7 +58,7 @@ Moments moments_of(const std::vector<MatrixF>& seeds, std::size_t frames, std::s
       const MatrixF& seed = seeds[static_cast<std::size_t>(row) / samples];
       rows.row(row) = seed.row(seed.rows() - static_cast<Eigen::Index>(frames - t));
     }
-    moments.push_back(exact(rows));
+    moments.push_back(quotient(exact(rows), deviations(p, seeds.size() * samples)));
   }
   return moments;
 }
@@ -82,7 +89,7 @@ std::vector<Bounded> generated(const std::vector<CrbmParameters>& layers,
   for (const CrbmParameters& p : layers) orders += p.shape.order;
   // A top layer without history still starts from a frame.
   const std::size_t given = orders + (layers.back().shape.order == 0 ? 1 : 0);
-  std::vector<Moments> visible{moments_of(seeds, given, options.samples)};
+  std::vector<Moments> visible{moments_of(layers[0], seeds, given, options.samples)};
   std::size_t first = 0;  // that has a code
   for (std::size_t i = 0; i + 1 < layers.size(); ++i) {
     const CrbmParameters& p = layers[i];
@@ -98,6 +105,8 @@ std::vector<Bounded> generated(const std::vector<CrbmParameters>& layers,
       visible[i].push_back(
           visible_means(layers[i], dynamic_bias(visible[i], t, layers[i], layers[i].A, layers[i].a),
                         visible[i + 1][t]));
+  for (Bounded& moment : visible[0])
+    moment = times(moment, deviations(layers[0], seeds.size() * options.samples));
   std::vector<Bounded> result;
   for (std::size_t row = 0; row < seeds.size() * options.samples; ++row) {
     const auto frames = static_cast<Eigen::Index>(options.frames);

@@ -67,17 +67,26 @@ double check(const std::vector<MatrixF>& got, const std::vector<Bounded>& want) 
   return static_cast<double>(checked) / static_cast<double>(rows);
 }
 
-/// Of one to three layers, orders that differ, none among them, more sequences than a block has
-/// rows. As many units throughout as would hide an exchange of layers.
+/// Its units deviate otherwise than by 1.
+CrbmParameters with_deviation(CrbmParameters p) {
+  p.visible_deviation = (1.5F + random_matrix(1, p.shape.visible, 3, 0.7F).array()).matrix();
+  return p;
+}
+
+/// Of one to three layers, orders that differ, none among them, also of A and B, more sequences
+/// than a block has rows. As many units throughout as would hide an exchange of layers.
 std::vector<Stack> stacks() {
-  return {{layer({1, 1, 1, kGaussian}, 1)},
-          {layer({7, 13, 5, kGaussian}, 10)},
-          {layer({6, 5, 2, kBinary}, 20)},
-          {layer({6, 6, 0, kGaussian}, 30)},
-          {layer({19, 6, 2, kGaussian}, 40), layer({6, 7, 4, kBinary}, 50)},
-          {layer({6, 6, 3, kGaussian}, 60), layer({6, 5, 0, kBinary}, 70)},
-          {layer({5, 6, 3, kGaussian}, 80), layer({6, 6, 1, kBinary}, 90),
-           layer({6, 17, 2, kBinary}, 100)}};
+  return {
+      {layer({1, 1, 1, kGaussian}, 1)},
+      {layer({7, 13, 5, kGaussian}, 10)},
+      {layer({6, 5, 2, kBinary}, 20)},
+      {layer({6, 6, 0, kGaussian}, 30)},
+      {with_deviation(layer({6, 5, 3, kGaussian, 3, 1}, 33))},
+      {with_deviation(layer({6, 5, 2, kGaussian, 0, 2}, 36)), layer({5, 5, 3, kBinary, 3, 0}, 38)},
+      {layer({19, 6, 2, kGaussian}, 40), layer({6, 7, 4, kBinary}, 50)},
+      {layer({6, 6, 3, kGaussian}, 60), layer({6, 5, 0, kBinary}, 70)},
+      {layer({5, 6, 3, kGaussian}, 80), layer({6, 6, 1, kBinary}, 90),
+       layer({6, 17, 2, kBinary}, 100)}};
 }
 
 /// The sequences of a layer, begun; what is to be generated is NaN.
