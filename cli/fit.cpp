@@ -10,9 +10,9 @@
 #include "commands.hpp"
 #include "epoch_progress.hpp"
 #include "learning/metrics_log.hpp"
-#include "matrix_options.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/learning/machine_fit.hpp"
+#include "modality_options.hpp"
 #include "setting_flags.hpp"
 
 namespace mcdbn::cli {
@@ -36,14 +36,18 @@ constexpr std::array kKinds{
     MachineKind{"binary-cdbn", VisibleKind::binary, true, true},
 };
 
+constexpr const char* kMrbm = "mrbm";
+
 std::vector<std::string> kind_names() {
-  std::vector<std::string> names;
+  std::vector<std::string> names{kMrbm};
   for (const MachineKind& kind : kKinds) names.emplace_back(kind.name);
   return names;
 }
 
 struct FitOptions {
   MatrixInput data;
+  std::vector<std::string> modalities;  ///< NAME=FILE, of an MRBM
+  std::vector<std::string> gaussian;    ///< names of its Gaussian ones
   std::filesystem::path output;
   std::string machine;
   bool standardize = false;
@@ -57,20 +61,24 @@ struct FitOptions {
 };
 
 void check_flags(const FitOptions& options) {
-  const MachineKind& kind = options.kind();
-  const auto refuse = [&](const CLI::Option* flag, const char* what) {
-    if (flag->count() > 0)
-      throw ConfigError(
-          fmt::format("{}: --machine {} has no {}", flag->get_name(), kind.name, what));
-  };
-  if (!kind.has_history) refuse(options.order, "history");
-  if (!kind.is_stack) refuse(options.layers, "layers but one");
-  if (options.standardize && kind.visible == VisibleKind::binary)
-    throw ConfigError(
-        fmt::format("--standardize: --machine {} wants values from 0 to 1 as they are", kind.name));
   if (options.output.extension() != ".safetensors")
     throw ConfigError(
         fmt::format("--output {}: a machine's file is a .safetensors", options.output.string()));
+  const bool is_mrbm = options.machine == kMrbm;
+  const auto refuse = [&](const CLI::Option* flag, const char* what) {
+    if (flag->count() > 0)
+      throw ConfigError(
+          fmt::format("{}: --machine {} has no {}", flag->get_name(), options.machine, what));
+  };
+  if (is_mrbm || !options.kind().has_history) refuse(options.order, "history");
+  if (is_mrbm || !options.kind().is_stack) refuse(options.layers, "layers but one");
+  if (is_mrbm != options.data.files.empty() || is_mrbm == options.modalities.empty())
+    throw ConfigError(
+        "data: --machine mrbm wants --modality NAME=FILE for each modality, every other machine "
+        "files without names");
+  if (options.standardize && !is_mrbm && options.kind().visible == VisibleKind::binary)
+    throw ConfigError(fmt::format(
+        "--standardize: --machine {} wants values from 0 to 1 as they are", options.machine));
 }
 
 /// What a machine can learn from: numbers throughout, from 0 to 1 where its units are binary.
@@ -97,41 +105,81 @@ void check_lengths(const std::vector<MatrixF>& data, std::size_t order,
                                first.string(), order));
 }
 
-void run_fit(const CommandContext& context, const FitOptions& options) {
-  check_flags(options);
-  options.settings.validate();
-  const MachineKind& kind = options.kind();
-  const std::size_t order = kind.has_history ? options.settings.order : 0,
-                    layers = kind.is_stack ? options.settings.layers : 1;
-  std::vector<MatrixF> data = options.data.read();
-  for (std::size_t i = 0; i < data.size(); ++i)
-    check_values(data[i], kind.visible, options.data.files[i]);
-  check_lengths(data, order * layers, options.data.files.front());
-  std::vector<ColumnScale> scales;
-  if (options.standardize) {
-    scales.push_back(ColumnScale::of(data));
-    for (MatrixF& values : data) values = scales.front().apply(values);
-  }
+/// The data of one modality, checked, and scaled if that was asked for.
+ColumnScale prepare(std::vector<MatrixF>& data, const MatrixInput& input, VisibleKind kind,
+                    bool standardize) {
+  for (std::size_t i = 0; i < data.size(); ++i) check_values(data[i], kind, input.files[i]);
+  if (!standardize || kind == VisibleKind::binary) return {};
+  const ColumnScale scale = ColumnScale::of(data);
+  for (MatrixF& values : data) values = scale.apply(values);
+  return scale;
+}
+
+/// Fits with the progress, the metrics and the way to stop that all machines share, and saves.
+/// @param fit makes a SavedMachine on a device, given an observer
+template <typename Fit>
+void fit_and_save(const CommandContext& context, const FitOptions& options, Fit&& fit) {
   Device device = Device::open({context.platform, context.device});
-  const Sequences sequences = Sequences::from_host(device, data);
-  spdlog::info("{} files, {} rows of {} values on {}", data.size(), sequences.values.rows(),
-               sequences.values.columns(), device.info().name);
   std::filesystem::path metrics_file = options.output;
   MetricsLog metrics(metrics_file.replace_extension(".metrics.jsonl"));
   const InterruptGuard interrupt;
   ProgressLine progress(context.quiet);
   const EpochObserver show = shown_on(progress, interrupt);
-  const Cdbn stack = fit_stack(device, sequences, kind.visible, order, layers, options.settings,
-                               [&](const EpochReport& report) {
-                                 metrics.add(report);
-                                 show(report);
-                               });
-  nlohmann::json config = settings_record(options.settings);
-  config["machine"] = kind.name;
-  SavedMachine saved{stack, std::move(scales), std::move(config)};
-  if (!kind.is_stack) saved.machine = stack.layers.front();
+  SavedMachine saved = fit(device, [&](const EpochReport& report) {
+    metrics.add(report);
+    show(report);
+  });
+  saved.config = settings_record(options.settings);
+  saved.config["machine"] = options.machine;
   save_machine(options.output, saved);
   spdlog::info("{}: fitted in {:.1f} s", options.output.string(), progress.elapsed_s());
+}
+
+void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
+  std::vector<ModalityData> inputs = read_modalities(options.modalities, options.data.tensor);
+  if (inputs.size() < 2) throw ConfigError("--modality: two names or more are wanted");
+  for (const std::string& name : options.gaussian)
+    if (std::ranges::count(inputs, name, &ModalityData::name) == 0)
+      throw ConfigError(fmt::format("--gaussian {}: there is no such --modality", name));
+  std::vector<Modality> modalities;
+  std::vector<ColumnScale> scales;
+  for (ModalityData& input : inputs) {
+    const bool is_gaussian = std::ranges::count(options.gaussian, input.name) > 0;
+    modalities.push_back(
+        {.name = input.name, .kind = is_gaussian ? VisibleKind::gaussian : VisibleKind::binary});
+    scales.push_back(prepare(input.data, input.files, modalities.back().kind, options.standardize));
+  }
+  fit_and_save(context, options, [&](Device& device, const EpochObserver& observer) {
+    std::vector<Sequences> data;
+    for (const ModalityData& input : inputs)
+      data.push_back(Sequences::from_host(device, input.data));
+    spdlog::info("{} modalities, {} rows on {}", data.size(), data.front().values.rows(),
+                 device.info().name);
+    return SavedMachine{fit_mrbm(device, modalities, data, options.settings, observer), scales};
+  });
+}
+
+void run_fit(const CommandContext& context, const FitOptions& options) {
+  check_flags(options);
+  options.settings.validate();
+  if (options.machine == kMrbm) return run_fit_mrbm(context, options);
+  const MachineKind& kind = options.kind();
+  const std::size_t order = kind.has_history ? options.settings.order : 0,
+                    layers = kind.is_stack ? options.settings.layers : 1;
+  std::vector<MatrixF> data = options.data.read();
+  const ColumnScale scale = prepare(data, options.data, kind.visible, options.standardize);
+  check_lengths(data, order * layers, options.data.files.front());
+  fit_and_save(context, options, [&](Device& device, const EpochObserver& observer) {
+    const Sequences sequences = Sequences::from_host(device, data);
+    spdlog::info("{} files, {} rows of {} values on {}", data.size(), sequences.values.rows(),
+                 sequences.values.columns(), device.info().name);
+    const Cdbn stack =
+        fit_stack(device, sequences, kind.visible, order, layers, options.settings, observer);
+    SavedMachine saved{stack};
+    if (!kind.is_stack) saved.machine = stack.layers.front();
+    if (options.standardize) saved.scales.push_back(scale);
+    return saved;
+  });
 }
 
 }  // namespace
@@ -140,12 +188,20 @@ void add_fit_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<FitOptions>();
   CLI::App* command = app.add_subcommand("fit", "Fits a single machine to matrices of any data");
   add_matrix_input(*command, options->data, "data",
-                   "Matrices, one row a case or a frame; each file is a sequence of its own")
-      ->required();
+                   "Matrices, one row a case or a frame; each file is a sequence of its own");
+  add_modality_option(*command, options->modalities,
+                      "Matrices of an MRBM's modalities, each with its name; files of one name are "
+                      "sequences, as many and as long as the other names'");
   command
-      ->add_option("--machine", options->machine,
-                   "rbm, gaussian-rbm: no history; crbm (Gaussian), binary-crbm: with one; dbn, "
-                   "gaussian-dbn, cdbn, binary-cdbn: stacks of them, named by the lowest layer")
+      ->add_option("--gaussian", options->gaussian,
+                   "Modalities of an MRBM whose units are Gaussian; the others are binary")
+      ->type_name("NAME");
+  command
+      ->add_option(
+          "--machine", options->machine,
+          "rbm, gaussian-rbm: no history; crbm (Gaussian), binary-crbm: with one; dbn, "
+          "gaussian-dbn, cdbn, binary-cdbn: stacks of them, named by the lowest layer; mrbm: "
+          "of several modalities")
       ->required()
       ->check(CLI::IsMember(kind_names()));
   command
@@ -163,7 +219,9 @@ void add_fit_command(CLI::App& app, CommandContext& context) {
   add_quiet_option(*command, context);
   command->footer(
       "Example:\n  mcdbn-cl fit digits.npy --machine rbm --hidden 256 -o digits.safetensors\n"
-      "  mcdbn-cl fit a.csv b.csv --machine crbm --order 5 --standardize -o walk.safetensors");
+      "  mcdbn-cl fit a.csv b.csv --machine crbm --order 5 --standardize -o walk.safetensors\n"
+      "  mcdbn-cl fit --machine mrbm --modality left=l.npy --modality right=r.npy -o "
+      "m.safetensors");
   command->callback(
       [&context, options] { context.run = [&context, options] { run_fit(context, *options); }; });
 }

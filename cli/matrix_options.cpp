@@ -8,6 +8,14 @@
 #include "mcdbn/base/matrix_file.hpp"
 
 namespace mcdbn::cli {
+namespace {
+
+const ColumnScale* scale_of(const SavedMachine& saved, std::size_t modality) {
+  const bool has_one = modality < saved.scales.size() && saved.scales[modality].mean.cols() > 0;
+  return has_one ? &saved.scales[modality] : nullptr;
+}
+
+}  // namespace
 
 std::vector<MatrixF> MatrixInput::read() const {
   std::vector<MatrixF> data;
@@ -57,18 +65,20 @@ Cdbn stack_of(const SavedMachine& saved, const std::filesystem::path& file) {
 }
 
 std::vector<MatrixF> scaled(const SavedMachine& saved, std::vector<MatrixF> data,
-                            std::size_t visible, const MatrixInput& files) {
+                            std::size_t visible, const MatrixInput& files, std::size_t modality) {
+  const ColumnScale* scale = scale_of(saved, modality);
   for (MatrixF& values : data) {
     if (values.cols() != static_cast<Eigen::Index>(visible))
       throw InputError(fmt::format("{}: {} columns; the machine has {} visible units",
                                    files.files.front().string(), values.cols(), visible));
-    if (!saved.scales.empty()) values = saved.scales.front().apply(values);
+    if (scale) values = scale->apply(values);
   }
   return data;
 }
 
-MatrixF unscaled(const SavedMachine& saved, const MatrixF& values) {
-  return saved.scales.empty() ? values : saved.scales.front().undo(values);
+MatrixF unscaled(const SavedMachine& saved, const MatrixF& values, std::size_t modality) {
+  const ColumnScale* scale = scale_of(saved, modality);
+  return scale ? scale->undo(values) : values;
 }
 
 MatrixF stacked(const std::vector<MatrixF>& sequences, std::size_t first) {

@@ -35,11 +35,13 @@ void add_machine_option(CLI::App& command, std::filesystem::path& model);
 /// @throws InputError for others, naming the file
 Cdbn stack_of(const SavedMachine& saved, const std::filesystem::path& file);
 
-/// Data as the machine sees them, and what it gives as the data were: by its scale, if it has one.
+/// Data as the machine sees them, and what it gives as the data were: by the modality's scale, if
+/// it has one.
 /// @param files for errors  @throws InputError if the columns are not the machine's
 std::vector<MatrixF> scaled(const SavedMachine& saved, std::vector<MatrixF> data,
-                            std::size_t visible, const MatrixInput& files);
-MatrixF unscaled(const SavedMachine& saved, const MatrixF& values);
+                            std::size_t visible, const MatrixInput& files,
+                            std::size_t modality = 0);
+MatrixF unscaled(const SavedMachine& saved, const MatrixF& values, std::size_t modality = 0);
 
 /// The rows from `first` on of each sequence, one after another.
 MatrixF stacked(const std::vector<MatrixF>& sequences, std::size_t first);

@@ -1,11 +1,15 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
-#include "matrix_options.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/sampling.hpp"
+#include "modality_options.hpp"
 #include "setting_flags.hpp"
 
 namespace mcdbn::cli {
@@ -14,20 +18,58 @@ namespace {
 struct TransformOptions {
   std::filesystem::path model, output;
   MatrixInput data;
+  std::vector<std::string> modalities;  ///< NAME=FILE, of an MRBM
+  std::string infer;                    ///< its modality that is wanted
   bool inverse = false;
-  std::size_t steps = 1;
+  std::optional<std::size_t> steps;
 };
+
+std::size_t index_of(const std::vector<Modality>& modalities, const std::string& name) {
+  const auto found = std::ranges::find(modalities, name, &Modality::name);
+  if (found == modalities.end())
+    throw ConfigError(fmt::format("--modality {}: the MRBM has none of that name", name));
+  return static_cast<std::size_t>(found - modalities.begin());
+}
+
+/// Mean field of an MRBM with what is given clamped (eq 32, 33).
+/// @return the modality that is wanted, in the units of its data
+MatrixF inferred(Device& device, const SavedMachine& saved, const TransformOptions& options) {
+  constexpr std::size_t kUsualSteps = 10;
+  const auto* mrbm = std::get_if<Mrbm>(&saved.machine);
+  if (!mrbm)
+    throw InputError(fmt::format("{}: no MRBM; --infer is of one", options.model.string()));
+  const std::vector<ModalityData> inputs = read_modalities(options.modalities, options.data.tensor);
+  if (inputs.empty()) throw ConfigError("--infer: wants what is given, --modality NAME=FILE");
+  const std::vector<Modality>& modalities = mrbm->shape().modalities;
+  const auto rows = static_cast<std::size_t>(stacked(inputs.front().data, 0).rows());
+  std::vector<Matrix> units;
+  std::vector<bool> present(modalities.size(), false);
+  for (const Modality& modality : modalities) units.emplace_back(device, rows, modality.visible);
+  for (const ModalityData& input : inputs) {
+    const std::size_t m = index_of(modalities, input.name);
+    present[m] = true;
+    units[m] = Matrix::from_host(
+        device, stacked(scaled(saved, input.data, modalities[m].visible, input.files, m), 0));
+  }
+  const std::size_t wanted = index_of(modalities, options.infer);
+  if (present[wanted]) throw ConfigError(fmt::format("--infer {}: it is given", options.infer));
+  mrbm->infer({units.begin(), units.end()}, present, options.steps.value_or(kUsualSteps));
+  return unscaled(saved, units[wanted].to_host(), wanted);
+}
 
 void run_transform(const CommandContext& context, const TransformOptions& options) {
   check_matrix_output(options.output);
   Device device = Device::open({context.platform, context.device});
   const SavedMachine saved = load_machine(device, options.model);
+  if (!options.infer.empty()) return put_matrix(options.output, inferred(device, saved, options));
+  if (options.data.files.empty()) throw ConfigError("data: no files");
+  if (options.steps && !options.inverse) throw ConfigError("--steps: of --inverse, or of --infer");
   const Cdbn stack = stack_of(saved, options.model);
   const Sequences data = Sequences::from_host(
       device,
       scaled(saved, options.data.read(), stack.layers.front().shape().visible, options.data));
   const Sequences result =
-      options.inverse ? reconstruct(stack, data, options.steps) : stack.up_pass(data);
+      options.inverse ? reconstruct(stack, data, options.steps.value_or(1)) : stack.up_pass(data);
   if (result.valid_from > 0)
     spdlog::info("the first {} rows of each file are history and left out", result.valid_from);
   const MatrixF rows = stacked(result.to_host(), result.valid_from);
@@ -41,14 +83,19 @@ void add_transform_command(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("transform", "Gives a single machine's hidden probabilities of data");
   add_machine_option(*command, options->model);
-  add_matrix_input(*command, options->data, "data", "Matrices, each a sequence of its own")
-      ->required();
+  add_matrix_input(*command, options->data, "data", "Matrices, each a sequence of its own");
   command->add_flag("--inverse", options->inverse,
                     "Up and down again: the mean-field reconstruction of the data");
   add_setting_flag(*command, "--steps",
-                   {"steps", at_least(1), "steps", "Up and down so often, at the top of a stack"},
-                   options->steps)
-      ->needs(command->get_option("--inverse"));
+                   {"steps", at_least(1), "steps",
+                    "Up and down so often, at the top of a stack (default: once), or mean-field "
+                    "steps of --infer (default: 10)"},
+                   options->steps);
+  command
+      ->add_option("--infer", options->infer,
+                   "Modality of an MRBM to infer, by mean field, from those that --modality gives")
+      ->type_name("NAME");
+  add_modality_option(*command, options->modalities, "What is given of an MRBM's modalities");
   add_matrix_output(*command, options->output,
                     "File to write, .npy, .csv or .safetensors: the rows of all data that have a "
                     "history (default: CSV on standard output)");
@@ -56,7 +103,8 @@ void add_transform_command(CLI::App& app, CommandContext& context) {
   add_quiet_option(*command, context);
   command->footer(
       "Example:\n  mcdbn-cl transform --model digits.safetensors digits.npy -o code.npy\n"
-      "  mcdbn-cl transform --model digits.safetensors digits.npy --inverse -o again.npy");
+      "  mcdbn-cl transform --model digits.safetensors digits.npy --inverse -o again.npy\n"
+      "  mcdbn-cl transform --model m.safetensors --modality left=l.npy --infer right -o r.npy");
   command->callback([&context, options] {
     context.run = [&context, options] { run_transform(context, *options); };
   });

@@ -173,18 +173,6 @@ MatrixF logit(const MatrixF& p) {
   return (safe / (1.0F - safe)).log().matrix();
 }
 
-MrbmParameters small_weights(const MrbmShape& shape, std::span<const Sequences> codes,
-                             const LearningSettings& learning) {
-  MrbmParameters initial =
-      MrbmParameters::random(shape, learning.mrbm.initial_deviation,
-                             key_of(learning, random_streams::kMrbm, 0, kWeightPhase));
-  // So that the mean field starts near the codes' own means rather than at one half.
-  for (std::size_t m = 0; m < codes.size(); ++m)
-    initial.a[m] = shape.modalities[m].kind == VisibleKind::binary ? logit(mean_of(codes[m]))
-                                                                   : mean_of(codes[m]);
-  return initial;
-}
-
 /// How many frames ahead each modality's code is of those that it belongs to (Mcdbn::ahead).
 std::vector<int> frames_ahead(std::size_t modalities, const LearningSettings& learning) {
   std::vector<int> ahead(modalities, 0);
@@ -224,6 +212,18 @@ std::vector<MatrixF> some_codes(std::span<const Sequences> codes,
 }
 
 }  // namespace
+
+MrbmParameters small_weights(const MrbmShape& shape, std::span<const Sequences> codes,
+                             const LearningSettings& learning) {
+  MrbmParameters initial =
+      MrbmParameters::random(shape, learning.mrbm.initial_deviation,
+                             key_of(learning, random_streams::kMrbm, 0, kWeightPhase));
+  // So that the mean field starts near the codes' own means rather than at one half.
+  for (std::size_t m = 0; m < codes.size(); ++m)
+    initial.a[m] = shape.modalities[m].kind == VisibleKind::binary ? logit(mean_of(codes[m]))
+                                                                   : mean_of(codes[m]);
+  return initial;
+}
 
 std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings& learning,
                                     VisibleKind kind) {

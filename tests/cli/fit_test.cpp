@@ -7,7 +7,9 @@
 
 #include "base/text_file.hpp"
 #include "fitted_machines.hpp"
+#include "library_calls.hpp"
 #include "mcdbn/base/matrix_file.hpp"
+#include "mcdbn/learning/machine_fit.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;
@@ -16,50 +18,72 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Values = std::vector<std::pair<std::string, double>>;
+/// Another value than the default for each setting, with its flag as it is said: a setting more is
+/// a row more.
+struct SaidSetting {
+  std::string name, flag;
+  json value;
+  bool is_switch;
+};
 
-/// Every setting with another value than its default.
-Values setting_values() {
-  Values values = {{"seed", 7},   {"order", 2},  {"hidden", 9},
-                   {"layers", 3}, {"batch", 13}, {"least-batches", 5}};
-  for (const std::string group : {"gaussian.", "binary."})
-    for (const auto& [name, value] : Values{{"gibbs-steps", 2},
-                                            {"rate", 0.0021},
-                                            {"rate-A", 0.00013},
-                                            {"rate-B", 0.0017},
-                                            {"momentum", 0.55},
-                                            {"momentum-from-epoch", 1},
-                                            {"weight-decay", 0.003},
-                                            {"initial-deviation", 0.02},
-                                            {"epochs", 3}})
-      values.emplace_back(group + name, value);
-  return values;
+std::vector<SaidSetting> said_settings() {
+  std::vector<SaidSetting> said;
+  const mcdbn::MachineSettings usual;
+  mcdbn::visit_settings(usual, [&](const mcdbn::Setting& setting, const auto& value) {
+    std::string flag = setting.name;
+    std::replace(flag.begin(), flag.end(), '.', '-');
+    json other;
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, bool>) {
+      other = !value;
+      flag = (value ? "--no-" : "--") + flag;
+    } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
+      const double more =
+          value == 0 ? 1e-3 : value * (1.0 + 1e-3 * static_cast<double>(said.size()));
+      other = setting.range.contains(more) ? more : 0.5 * value;
+      flag = fmt::format("--{} {}", flag, other.get<double>());
+    } else {
+      other = setting.name == "hidden" ? 5 : setting.name.ends_with("epochs") ? 2 : value + 1;
+      flag = fmt::format("--{} {}", flag, other.template get<std::size_t>());
+    }
+    said.push_back({setting.name, flag, other, other.is_boolean()});
+  });
+  return said;
 }
 
-std::string flag_of(std::string name) {
-  std::replace(name.begin(), name.end(), '.', '-');
-  return "--" + name;
-}
-
-/// A row for each setting: one run has all of them, and its file says so.
+/// One run has all of them (but for what only a machine without history learns), and its file says
+/// so.
 std::vector<OptionRow> setting_option_rows() {
   const ScratchFolder folder;
-  const fs::path file = folder / "all.safetensors";
-  std::string flags;
-  for (const auto& [name, value] : setting_values())
-    flags += fmt::format(" {} {}", flag_of(name), value);
-  output_of(fmt::format("fit {} --machine cdbn -o {} --quiet{}",
-                        FittedMachines::instance().values(), file.string(), flags));
-  const json about = json::parse(output_of("info --json " + file.string()));
-  CHECK(about.at("layers").size() == 3);
-  CHECK(about.at("layers").at(2) ==
-        json{{"visible", 9}, {"hidden", 9}, {"order", 2}, {"kind", "binary"}});
+  const auto config_of = [&](const std::string& options) {
+    const std::string file = (folder / "all.safetensors").string();
+    output_of("fit " + FittedMachines::instance().values() + " -o " + file + " --quiet" + options);
+    return mcdbn::describe_machine(file).at("config");
+  };
+  const auto without_history = [](const SaidSetting& one) {
+    return one.name.ends_with("deviation-rate");
+  };
+  std::string flags, other_flags;
+  for (const SaidSetting& one : said_settings())
+    (without_history(one) ? other_flags : flags) += " " + one.flag;
+  const json config = config_of(" --machine cdbn" + flags),
+             other =
+                 config_of(" --machine gaussian-rbm --hidden 5 --gaussian-epochs 2" + other_flags);
   std::vector<OptionRow> rows;
-  for (const auto& [name, value] : setting_values()) {
-    std::string pointer = "/config/" + name;
+  for (const SaidSetting& one : said_settings()) {
+    std::string pointer = "/" + one.name;
     std::replace(pointer.begin(), pointer.end(), '.', '/');
-    const json recorded = about.at(json::json_pointer(pointer));
-    rows.push_back({flag_of(name), [recorded, value = value] { CHECK(recorded == value); }});
+    const json recorded = (without_history(one) ? other : config).at(json::json_pointer(pointer));
+    const std::string flag = one.flag.substr(0, one.flag.find(' '));
+    rows.push_back({flag, [recorded, value = one.value] { CHECK(recorded == value); }});
+    if (!one.is_switch) continue;
+    // What it is unless it is said.
+    const std::string opposite =
+        flag.starts_with("--no-") ? "--" + flag.substr(5) : "--no-" + flag.substr(2);
+    const json usual =
+        mcdbn::describe_machine(FittedMachines::instance().model("rbm")).at("config");
+    rows.push_back({opposite, [usual, pointer, value = one.value] {
+                      CHECK(usual.at(json::json_pointer(pointer)) != value);
+                    }});
   }
   return rows;
 }
@@ -121,6 +145,9 @@ TEST_CASE("fit: every option changes what its help says") {
   rows.push_back({"--machine", [&] { check_refused("fit a.npy -o b --machine other", 2, "rbm"); }});
   rows.push_back({"--output",
                   [&] { check_refused("fit a.npy --machine rbm -o b.npy", 2, "--output b.npy"); }});
+  // What these do has a test case of its own.
+  rows.push_back({"--modality", [] {}});
+  rows.push_back({"--gaussian", [] {}});
   rows.push_back({"--standardize", [&] {
                     output_of(call + " --standardize");
                     const auto saved = loaded(file.string());
@@ -138,6 +165,58 @@ TEST_CASE("fit: every option changes what its help says") {
          CHECK(run_cli(call).standard_error.empty());
        }});
   check_options("fit", rows);
+}
+
+TEST_CASE("fit: an MRBM of three modalities, and one of them inferred from the others") {
+  if (!have_device()) return;
+  const FittedMachines& machines = FittedMachines::instance();
+  const ScratchFolder folder;
+  const auto path = [&](const char* name) { return (folder / name).string(); };
+  const mcdbn::MatrixF bits = mcdbn::read_matrix(machines.bits());
+  mcdbn::write_matrix(path("a.npy"), bits.leftCols(2));
+  mcdbn::write_matrix(path("b.npy"), bits.rightCols(3));
+  mcdbn::write_matrix(path("short.npy"), bits.topRows(9));
+  const std::string out =
+      " --machine mrbm --hidden 4 --batch 20 --mrbm-epochs 2 -o " + path("m.safetensors") + " ";
+  const std::string modalities = " --modality a=" + path("a.npy") +
+                                 " --modality b=" + path("b.npy") +
+                                 " --modality v=" + machines.values();
+  output_of("fit" + out + modalities + " --gaussian v --standardize --quiet");
+  const auto saved = loaded(path("m.safetensors"));
+  const auto& mrbm = std::get<mcdbn::Mrbm>(saved.machine);
+  CHECK(mrbm.shape() == mcdbn::MrbmShape{{{"a", 2, mcdbn::VisibleKind::binary},
+                                          {"b", 3, mcdbn::VisibleKind::binary},
+                                          {"v", 5, mcdbn::VisibleKind::gaussian}},
+                                         4});
+  REQUIRE(saved.scales.size() == 3);
+  CHECK(saved.scales[0].mean.cols() == 0);
+  CHECK(std::abs(saved.scales[2].mean(4) - 40.0F) < 1.5F);
+
+  auto& device = usual_device();
+  const auto units = [&](const mcdbn::MatrixF& values) {
+    return mcdbn::Matrix::from_host(device, values);
+  };
+  const mcdbn::Matrix a = units(bits.leftCols(2)), b(device, 60, 3), v(device, 60, 5),
+                      given = units(saved.scales[2].apply(mcdbn::read_matrix(machines.values())));
+  mrbm.infer({a, b, v}, {true, false, false}, 7);
+  const std::string infer = "transform --model " + path("m.safetensors");
+  CHECK(printed(infer + " --modality a=" + path("a.npy") + " --infer v --steps 7") ==
+        saved.scales[2].undo(v.to_host()));
+  mrbm.infer({a, b, given}, {true, false, true}, 10);
+  CHECK(printed(infer + " --modality v=" + machines.values() + " --modality a=" + path("a.npy") +
+                " --infer b") == b.to_host());
+
+  check_refused("fit" + out + machines.bits(), 2, "--machine mrbm wants --modality");
+  check_refused("fit" + out + "--modality a=" + path("a.npy"), 2, "two names or more");
+  check_refused("fit" + out + "--modality a", 2, "--modality a: NAME=FILE is wanted");
+  check_refused("fit" + out + modalities + " --gaussian w", 2, "--gaussian w: there is no such");
+  check_refused(
+      "fit" + out + "--modality a=" + path("a.npy") + " --modality b=" + path("short.npy"), 3,
+      "short.npy: 9 rows, 60 in");
+  check_refused(infer + " --infer b", 2, "wants what is given");
+  check_refused(infer + " --modality a=" + path("a.npy") + " --infer w", 2, "none of that name");
+  check_refused(infer + " --modality a=" + path("a.npy") + " --infer a", 2, "it is given");
+  check_refused(infer + " " + machines.bits(), 3, "an MRBM; this command takes one modality");
 }
 
 TEST_CASE("fit: data and flags that do not fit are refused") {

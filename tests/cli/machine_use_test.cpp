@@ -100,6 +100,8 @@ TEST_CASE("transform: every option changes what its help says") {
   rows.push_back({"--tensor", [&] { check_refused(call + " --tensor", 2, "--tensor"); }});
   // What these do has a test case of its own.
   rows.push_back({"--inverse", [] {}});
+  rows.push_back({"--modality", [] {}});  // that of MRBMs in fit_test.cpp
+  rows.push_back({"--infer", [&] { check_refused(call + " --infer x", 3, "no MRBM"); }});
   rows.push_back({"--steps", [&] { check_refused(call + " --steps 2", 2, "--inverse"); }});
   check_options("transform", rows);
 }

@@ -50,6 +50,11 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
                 const CdSettings& settings, const LearningSettings& learning, std::uint16_t stream,
                 const EpochObserver& observer = {}, const std::string& stage = "crbm");
 
+/// An MRBM's first weights: small random ones, and visible biases with which the mean field starts
+/// near the codes' own means rather than at one half.
+MrbmParameters small_weights(const MrbmShape& shape, std::span<const Sequences> codes,
+                             const LearningSettings& learning);
+
 /// The MRBM by multi-prediction on codes of each modality whose rows belong to the same frames, the
 /// first modality's look_ahead frames later.
 Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "mcdbn/learning/epoch_report.hpp"
 #include "mcdbn/learning/settings.hpp"
 #include "mcdbn/machines/cdbn.hpp"
+#include "mcdbn/machines/mrbm.hpp"
 
 namespace mcdbn {
 
@@ -16,6 +20,7 @@ struct MachineSettings {
   std::size_t least_batches = 1;
   CdSettings gaussian = LearningSettings::greedy().gaussian;
   CdSettings binary = LearningSettings::greedy().binary;
+  decltype(LearningSettings::mrbm) mrbm = LearningSettings::greedy().mrbm;
 
   /// @throws ConfigError naming the setting that is out of range
   void validate() const { check_settings(*this); }
@@ -36,10 +41,11 @@ struct MachineSettings {
           self.least_batches);
     visit_group("gaussian", self.gaussian, visit);
     visit_group("binary", self.binary, visit);
+    visit_group("mrbm", self.mrbm, visit);
   }
 };
 
-/// A stack, fitted layer by layer by contrastive divergence (Algorithm 2); one layer is an RBM or a
+/// A stack, fitted layer by layer by contrastive divergence (train_cdbn); one layer is an RBM or a
 /// CRBM, an order of 0 makes it a DBN. Stages are called layer.0, layer.1 …
 /// @param kind of the lowest layer's visible units; those above see the code, which is binary
 /// @param observer hears of each epoch; may throw to stop
@@ -47,5 +53,12 @@ struct MachineSettings {
 Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind, std::size_t order,
                std::size_t layers, const MachineSettings& settings,
                const EpochObserver& observer = {});
+
+/// An MRBM, fitted by multi-prediction on rows that belong together.
+/// @param modalities name and kind of each  @param data of each, as many rows in all
+/// @throws DivergenceError, ShapeError
+Mrbm fit_mrbm(Device& device, const std::vector<Modality>& modalities,
+              std::span<const Sequences> data, const MachineSettings& settings,
+              const EpochObserver& observer = {});
 
 }  // namespace mcdbn

@@ -1,0 +1,55 @@
+#include "modality_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+ModalityData& named(std::vector<ModalityData>& modalities, const std::string& name) {
+  const auto found = std::find_if(modalities.begin(), modalities.end(),
+                                  [&](const ModalityData& one) { return one.name == name; });
+  if (found != modalities.end()) return *found;
+  modalities.push_back({name, {}, {}});
+  return modalities.back();
+}
+
+/// File i of each modality holds the same rows.
+void check_rows(const ModalityData& one, const ModalityData& first) {
+  if (one.data.size() != first.data.size())
+    throw InputError(fmt::format("{}: {} files of {}, {} of {}", one.files.files.front().string(),
+                                 one.data.size(), one.name, first.data.size(), first.name));
+  for (std::size_t i = 0; i < one.data.size(); ++i)
+    if (one.data[i].rows() != first.data[i].rows())
+      throw InputError(fmt::format("{}: {} rows, {} in {}", one.files.files[i].string(),
+                                   one.data[i].rows(), first.data[i].rows(),
+                                   first.files.files[i].string()));
+}
+
+}  // namespace
+
+void add_modality_option(CLI::App& command, std::vector<std::string>& said, const char* help) {
+  command.add_option("--modality", said, help)->type_name("NAME=FILE")->expected(1, -1);
+}
+
+std::vector<ModalityData> read_modalities(const std::vector<std::string>& said,
+                                          const std::string& tensor) {
+  std::vector<ModalityData> modalities;
+  for (const std::string& one : said) {
+    const auto equals = one.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      throw ConfigError(fmt::format("--modality {}: NAME=FILE is wanted", one));
+    named(modalities, one.substr(0, equals)).files.files.emplace_back(one.substr(equals + 1));
+  }
+  for (ModalityData& modality : modalities) {
+    modality.files.tensor = tensor;
+    modality.data = modality.files.read();
+    check_rows(modality, modalities.front());
+  }
+  return modalities;
+}
+
+}  // namespace mcdbn::cli
