@@ -1,6 +1,6 @@
 #include "mcdbn/machines/cdbn.hpp"
 
-#include "device/pointwise.hpp"
+#include "machines/own_units.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -24,12 +24,7 @@ Sequences up_pass(const Crbm& layer, const Sequences& visible) {
   code.clips = visible.clips;
   code.valid_from = visible.valid_from + order;
   code.values = Matrix(layer.device(), visible.values.rows(), layer.shape().hidden);
-  Matrix values = visible.values;
-  if (layer.has_deviation) {
-    values = Matrix::like(visible.values);
-    values.copy_from(visible.values);
-    scale_columns(values, layer.visible_deviation, true);
-  }
+  const Matrix values = in_own_units(layer, visible.values);
   // Clip by clip: rows without a history of their own clip are left at zero.
   for (const auto& clip : code.clips) {
     if (clip.frames <= code.valid_from) continue;

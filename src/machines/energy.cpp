@@ -3,6 +3,7 @@
 #include "base/random_streams.hpp"
 #include "device/gemm.hpp"
 #include "device/kernel_arguments.hpp"
+#include "machines/own_units.hpp"
 #include "machines/sequence_blocks.hpp"
 #include "mcdbn/base/random.hpp"
 
@@ -69,8 +70,9 @@ IndexBuffer drawn_units(const Crbm& crbm, std::size_t first, std::size_t count,
 
 Sequences free_energy(const Crbm& crbm, const Sequences& visible) {
   Sequences energies = one_number_a_frame(crbm, visible);
+  const Matrix values = in_own_units(crbm, visible.values);
   for (const auto& block : blocks_from(visible.clips, energies.valid_from)) {
-    const Rows rows(visible.values, block.first, block.frames);
+    const Rows rows(values, block.first, block.frames);
     RowEnergies{crbm, rows}.write(rows, Rows(energies.values, block.first, block.frames));
   }
   return energies;

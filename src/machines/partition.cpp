@@ -6,7 +6,7 @@
 #include "base/random_streams.hpp"
 #include "device/gemm.hpp"
 #include "device/kernel_arguments.hpp"
-#include "device/pointwise.hpp"
+#include "machines/own_units.hpp"
 
 namespace mcdbn {
 namespace {
@@ -91,7 +91,7 @@ class Annealing {
                                    static_cast<Eigen::Index>(shape.visible));
     frames.topRows(static_cast<Eigen::Index>(shape.order)) = history.reshaped<Eigen::RowMajor>(
         static_cast<Eigen::Index>(shape.order), static_cast<Eigen::Index>(shape.visible));
-    const Matrix on_device = Matrix::from_host(crbm_.device(), frames);
+    const Matrix on_device = in_own_units(crbm_, Matrix::from_host(crbm_.device(), frames));
     const Rows row(on_device, shape.order, 1);
     crbm_.dynamic_visible_bias(row, visible_bias_);
     crbm_.dynamic_hidden_bias(row, hidden_bias_);

@@ -6,8 +6,8 @@
 
 #include "base/random_streams.hpp"
 #include "device/kernel_arguments.hpp"
-#include "device/pointwise.hpp"
 #include "machines/gibbs_chain.hpp"
+#include "machines/own_units.hpp"
 #include "machines/sequence_blocks.hpp"
 
 namespace mcdbn {
@@ -56,6 +56,7 @@ void where_given(const Rows& given, const Rows& other, const Rows& out) {
 
 Sequences reconstructed(Layers layers, const Sequences& visible, std::size_t steps) {
   require(steps > 0, "reconstruct: wants at least one step");
+  const Matrix own = in_own_units(layers.front(), visible.values);
   std::vector<Sequences> codes{visible};
   for (const Crbm& layer : layers.first(layers.size() - 1))
     codes.push_back(up_pass(layer, codes.back()));
@@ -65,7 +66,7 @@ Sequences reconstructed(Layers layers, const Sequences& visible, std::size_t ste
     const bool is_top = i + 1 == layers.size();
     Sequences result{Matrix::like(codes[i].values), visible.clips, valid_from};
     for (const auto& block : blocks_from(visible.clips, valid_from)) {
-      const Rows data(codes[i].values, block.first, block.frames);
+      const Rows data(i == 0 ? own : codes[i].values, block.first, block.frames);
       const Rows out(result.values, block.first, block.frames);
       GibbsChain chain(layers[i], block.frames);
       chain.take_history(data);
@@ -80,6 +81,7 @@ Sequences reconstructed(Layers layers, const Sequences& visible, std::size_t ste
     }
     above = std::move(result);
   }
+  to_data_units(layers.front(), above.values);
   return above;
 }
 
@@ -93,7 +95,7 @@ struct Grid {
   }
   /// All at the layer's training mean.
   Matrix filled(const Crbm& layer) const {
-    return Matrix::filled_with_row(layer.visible_mean, sequences * frames);
+    return Matrix::filled_with_row(in_own_units(layer, layer.visible_mean), sequences * frames);
   }
 };
 
@@ -132,7 +134,7 @@ class ClampedStack {
     grid_.sequences = sequences.size();
     for (const auto& sequence : sequences) grid_.frames = std::max(grid_.frames, sequence.frames);
     grid_.frames += grid_.lead;
-    given_ = on_grid(grid_, given, sequences);
+    given_ = in_own_units(layers.front(), on_grid(grid_, given, sequences));
     for (const Crbm& layer : layers) {
       states_.push_back(grid_.filled(layer));
       chains_.emplace_back(layer, grid_.sequences);
@@ -143,6 +145,9 @@ class ClampedStack {
     for (std::size_t i = 0; i < sequences.size(); ++i)
       result_.values.copy_rows_from(states_.front(), i * grid_.frames + grid_.lead,
                                     sequences[i].frames, sequences[i].first);
+    if (!layers.front().has_deviation) return;
+    to_data_units(layers.front(), result_.values);
+    where_given(given.values, result_.values, result_.values);  // as it was, not rounded twice
   }
 
   Sequences take() { return std::move(result_); }
@@ -199,8 +204,7 @@ Matrix sampled(Layers layers, const Matrix& start, const ChainSettings& settings
   Sequences code{start, {{0, start.rows()}}, 0};
   for (const Crbm& layer : layers.first(layers.size() - 1)) code = up_pass(layer, code);
   Draws draws(settings.seed);
-  Matrix units = Matrix::like(code.values);
-  units.copy_from(code.values);
+  Matrix units = layers.size() == 1 ? in_own_units(layers.front(), start) : std::move(code.values);
   for (std::size_t i = layers.size(); i-- > 0;) {
     const bool is_top = i + 1 == layers.size(), as_means = settings.means && i == 0;
     Matrix visible(start.device(), start.rows(), layers[i].shape().visible);
@@ -217,6 +221,7 @@ Matrix sampled(Layers layers, const Matrix& start, const ChainSettings& settings
     }
     units = std::move(visible);
   }
+  to_data_units(layers.front(), units);
   return units;
 }
 

@@ -86,10 +86,8 @@ Crbm expected_statistics(const Crbm& model, const MatrixD& history) {
     const RowVectorD v = weighted_means.colwise().sum();
     const RowVectorD h = probability.transpose() * states;
     expected.weights += weighted_means.transpose() * states;
-    expected.visible_history +=
-        history.row(r).tail(model.visible_history.rows()).transpose() * v;
-    expected.hidden_history +=
-        history.row(r).tail(model.hidden_history.rows()).transpose() * h;
+    expected.visible_history += history.row(r).tail(model.visible_history.rows()).transpose() * v;
+    expected.hidden_history += history.row(r).tail(model.hidden_history.rows()).transpose() * h;
     expected.visible_bias += v;
     expected.hidden_bias += h;
   }

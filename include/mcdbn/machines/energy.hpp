@@ -10,7 +10,8 @@ namespace mcdbn {
 /// F(v | H) = −log Σ_h exp(−E(v, h | H)) of every frame that has a history: −log p(v | H) but for
 /// the partition function, which depends on H (log_partition).
 /// Gaussian units: ½ ‖v − â‖² − Σ_j log(1 + exp(b̂_j + v·W_j)), eq 9 and 14 with their erratum (plus
-/// before the quadratic term); binary ones: −v·â in place of the square (eq 2).
+/// before the quadratic term), v being the frame over visible_deviation; binary ones: −v·â in place
+/// of the square (eq 2).
 /// @return [all frames x 1], rows numbered as the frames are  @throws ShapeError
 Sequences free_energy(const Crbm& crbm, const Sequences& visible);
 

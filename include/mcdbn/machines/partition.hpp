@@ -33,9 +33,9 @@ struct LogPartition {
 };
 
 /// log Z = log Σ_{v,h} exp(−E(v, h | H)) (an integral over Gaussian units), so that log p(v | H) =
-/// −F(v | H) − log Z. The base distribution has no weights; its visible biases are the machine's
-/// own where units are Gaussian, and those of visible_mean, within 0.05 … 0.95, where they are
-/// binary. Temperatures lie evenly between.
+/// −F(v | H) − log Z, v being over visible_deviation. The base distribution has no weights; its
+/// visible biases are the machine's own where units are Gaussian, and those of visible_mean, within
+/// 0.05 … 0.95, where they are binary. Temperatures lie evenly between.
 /// @param history [order·visible], oldest frame first; empty for an RBM
 /// @throws ShapeError, ConfigError for settings out of their range
 LogPartition log_partition(const Crbm& crbm, const AisSettings& settings = {},
