@@ -35,12 +35,9 @@ ColumnScale ColumnScale::of(std::span<const MatrixF> data) {
   const RowVectorD variance = column_sums(data, columns, [&](double x, Eigen::Index c) {
                                 return (x - mean(c)) * (x - mean(c));
                               }).cwiseQuotient(count);
-  // A column of one value has a deviation of what rounding its mean left.
-  const RowVectorD least = 1e-6 * mean.cwiseAbs();
   const RowVectorD deviation = variance.cwiseSqrt();
-  return {mean.cast<float>(), (deviation.array() > least.array())
-                                  .select(deviation, RowVectorD::Ones(columns))
-                                  .cast<float>()};
+  return {mean.cast<float>(),
+          (deviation.array() > 0.0).select(deviation, RowVectorD::Ones(columns)).cast<float>()};
 }
 
 MatrixF ColumnScale::apply(const MatrixF& values) const {

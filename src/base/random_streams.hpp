@@ -6,8 +6,8 @@
 /// would draw the same.
 namespace mcdbn::random_streams {
 
-/// Of a CDBN's first layer, and one more for each further one: CDBN 0 is trained first. Those of two
-/// modalities lie before the MRBM's, further ones behind all others.
+/// Of a CDBN's first layer, and one more for each further one: CDBN 0 is trained first. Those of
+/// two modalities lie before the MRBM's, further ones behind all others.
 constexpr std::uint16_t layers_of(std::size_t cdbn) {
   return static_cast<std::uint16_t>(cdbn < 2 ? 64 * cdbn : 0x1000 + 64 * (cdbn - 2));
 }

@@ -58,8 +58,7 @@ class Scene {
       return Rows::indexed(matrix, index, 0, shape_.batch);
     };
     Mrbm mrbm(device, parameters);
-    const MrbmSettings settings{.mean_field_steps =
-                                               static_cast<std::size_t>(shape_.steps)};
+    const MrbmSettings settings{.mean_field_steps = static_cast<std::size_t>(shape_.steps)};
     Mrbm still(device, parameters);
     MultiPrediction gradient(still, shape_.batch, settings, OptimizerKind::none);
     LossAccumulator losses(device, 2, shape_.batch);

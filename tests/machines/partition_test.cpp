@@ -145,6 +145,32 @@ TEST_CASE("annealed importance sampling finds log Z within its own error") {
   });
 }
 
+TEST_CASE("annealed importance sampling of a large machine whose log Z is a sum of small ones") {
+  // Blocks that do not see each other: log Z is the sum of theirs.
+  constexpr std::size_t kBlocks = 24;
+  const CrbmShape block{10, 6, 0, kBinary};
+  CrbmParameters p = CrbmParameters::zeros({kBlocks * 10, kBlocks * 6, 0, kBinary});
+  double want = 0;
+  for (std::size_t i = 0; i < kBlocks; ++i) {
+    const CrbmParameters one = tiny_crbm(block, static_cast<unsigned>(200 + 10 * i));
+    const auto v = static_cast<Eigen::Index>(10 * i), h = static_cast<Eigen::Index>(6 * i);
+    p.W.block(v, h, 10, 6) = one.W;
+    p.a.middleCols(v, 10) = one.a;
+    p.b.middleCols(h, 6) = one.b;
+    p.visible_mean.middleCols(v, 10) = one.visible_mean;
+    want += exact_log_partition(one);
+  }
+  on_every_device([&](Device& device) {
+    const LogPartition got =
+        log_partition(Crbm(device, p), {.temperatures = 500, .chains = 200, .seed = 4});
+    CAPTURE(got.value);
+    CAPTURE(want);
+    CAPTURE(got.standard_error);
+    CHECK(std::abs(got.value - want) < 4.0 * got.standard_error);
+    CHECK(got.standard_error < 0.1);
+  });
+}
+
 TEST_CASE("the standard error is how far estimates of log Z lie from each other") {
   const CrbmParameters p = tiny_crbm({6, 8, 0, kBinary}, 111, 2.0F);
   const double want = exact_log_partition(p);

@@ -123,8 +123,7 @@ TEST_CASE("reference: the multi-prediction gradient is that of its loss") {
   model.weights = {normal_matrix(4, 3, 0.7, generator), normal_matrix(5, 3, 0.7, generator)};
   model.visible_bias = {normal_matrix(1, 4, 0.5, generator), normal_matrix(1, 5, 0.5, generator)};
   model.hidden_bias = normal_matrix(1, 3, 0.5, generator);
-  const std::vector<MatrixD> batch{probabilities(6, 4, generator),
-                                     probabilities(6, 5, generator)};
+  const std::vector<MatrixD> batch{probabilities(6, 4, generator), probabilities(6, 5, generator)};
   for (const int steps : {1, 2, 5, 10})
     for (const bool double_first_pass : {false, true}) {
       CAPTURE(steps);
