@@ -22,10 +22,10 @@ INLINE float add_lanes(float sum, floatN x, int count) {
 
 #if SAMPLE == 0
 // energy[r] = ½ |v − â|² − Σ_j log(1 + exp(x_j)) (eq 9 and 14, errata), or −v·â in place of the square
-// for binary units (eq 2); x = b̂ + v·W. global: (rows)
+// for binary units (eq 2); x = b̂ + v·W. With `add` it is added to what is there. global: (rows)
 kernel void free_energy(global const float* v, int v_offset, int v_ld, global const float* bias,
                         int bias_ld, int visible, global const float* input, int input_ld, int hidden,
-                        global float* energy, int energy_offset, int energy_ld) {
+                        global float* energy, int energy_offset, int energy_ld, int add) {
   const int row = get_global_id(0);
   v += v_offset + row * v_ld;
   bias += row * bias_ld;
@@ -42,7 +42,8 @@ kernel void free_energy(global const float* v, int v_offset, int v_ld, global co
   float summed_out = 0.0f;
   for (int j = 0; j < hidden; j += VEC)
     summed_out = add_lanes(summed_out, softplusN(loadN(j, input)), min(VEC, hidden - j));
-  energy[energy_offset + row * energy_ld] = seen - summed_out;
+  const int at = energy_offset + row * energy_ld;
+  energy[at] = (add ? energy[at] : 0.0f) + (seen - summed_out);
 }
 
 // The unit columns[r] of each row becomes 1 − v. global: (rows)

@@ -40,7 +40,7 @@ class RowEnergies {
            visible.matrix->buffer(), visible.offset(), visible.stride(), visible_bias_.buffer(),
            to_int(visible_bias_.stride()), to_int(crbm_.shape().visible), input_.buffer(),
            to_int(input_.stride()), to_int(crbm_.shape().hidden), out.matrix->buffer(),
-           out.offset(), out.stride());
+           out.offset(), out.stride(), 0);
   }
 
  private:

@@ -24,7 +24,30 @@ struct Put {
     about["kind"] = "mrbm";
     return about;
   }
+  json operator()(const Mcdbn& network) const {
+    json about = put_mrbm(file, "mrbm.", network.mrbm);
+    about["kind"] = "mcdbn";
+    about["cdbns"] = json::array();
+    for (std::size_t m = 0; m < network.modality_count(); ++m)
+      about["cdbns"].push_back(put_cdbn(file, network.modality(m).name + ".", network.cdbns[m]));
+    about["look_ahead"] = network.look_ahead;
+    about["mean_field_steps"] = network.mean_field_steps;
+    about["fills_gaps"] = network.fills_gaps;
+    return about;
+  }
 };
+
+Mcdbn mcdbn_from(Device& device, const TensorFile& file, const json& about) {
+  const MrbmShape shape = mrbm_shape_from(about);
+  std::vector<Cdbn> cdbns;
+  for (std::size_t m = 0; m < shape.modalities.size(); ++m)
+    cdbns.push_back(
+        get_cdbn(device, file, shape.modalities[m].name + ".", about.at("cdbns").at(m)));
+  Mcdbn network{std::move(cdbns), get_mrbm(device, file, "mrbm.", shape), about.at("look_ahead"),
+                about.at("mean_field_steps")};
+  network.fills_gaps = about.at("fills_gaps");
+  return network;
+}
 
 decltype(SavedMachine::machine) machine_from(Device& device, const TensorFile& file,
                                              const json& about) {
@@ -32,6 +55,7 @@ decltype(SavedMachine::machine) machine_from(Device& device, const TensorFile& f
   if (kind == "crbm") return get_crbm(device, file, "", about.at("layers").at(0));
   if (kind == "cdbn") return get_cdbn(device, file, "", about.at("layers"));
   if (kind == "mrbm") return get_mrbm(device, file, "", mrbm_shape_from(about));
+  if (kind == "mcdbn") return mcdbn_from(device, file, about);
   throw InputError(file.path + ": a machine of unknown kind " + kind.dump());
 }
 

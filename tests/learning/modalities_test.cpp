@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "base/scratch_folder.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/multi_prediction.hpp"
 #include "learning/small_network.hpp"
@@ -12,6 +13,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/learning/fine_tuning.hpp"
 #include "mcdbn/learning/greedy_schedule.hpp"
+#include "mcdbn/machines/energy.hpp"
+#include "mcdbn/machines/machine_file.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 #include "reference/finite_difference.hpp"
 
@@ -285,6 +288,34 @@ TEST_CASE("three modalities are trained greedily, fine-tuned and regenerated fro
       CHECK(error < 0.7 * variance);  // a mean of zeros has all of it
     }
     CHECK_THROWS_AS(regenerate(tuned, {{}, {}, {}}, 3), ShapeError);
+
+    // It comes back from a file of its own, without a skeleton.
+    const ScratchFolder folder;
+    save_machine(folder / "network.safetensors", {tuned});
+    const SavedMachine saved = load_machine(device, folder / "network.safetensors");
+    REQUIRE(std::holds_alternative<Mcdbn>(saved.machine));
+    const Mcdbn& again = std::get<Mcdbn>(saved.machine);
+    std::vector<std::vector<MatrixF>> two;
+    for (const ModalityClips& modality : clips.modalities)
+      two.emplace_back(modality.clips.begin(), modality.clips.end());
+    two[2].clear();
+    CHECK(regenerate(again, two, 2) == regenerate(tuned, two, 2));
+    CHECK(again.modality(1).name == "two");
+
+    // Its free energy is the MRBM's on codes that belong together.
+    std::vector<Sequences> sequences;
+    std::vector<Matrix> codes;
+    for (std::size_t m = 0; m < 3; ++m) {
+      sequences.push_back(Sequences::from_host(device, clips.modalities[m].clips));
+      codes.push_back(tuned.cdbns[m].up_pass(sequences[m]).values);
+    }
+    const Sequences energies = free_energy(tuned, sequences);
+    REQUIRE(energies.valid_from == 2);
+    const std::size_t row = 31 + 7;  // in the second clip
+    const MatrixF want = free_energy(tuned.mrbm, {Rows(codes[0], row + 1, 1),
+                                                  Rows(codes[1], row, 1), Rows(codes[2], row, 1)})
+                             .to_host();
+    CHECK(energies.values.to_host()(static_cast<Eigen::Index>(row), 0) == want(0, 0));
   });
 }
 

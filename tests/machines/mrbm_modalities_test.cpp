@@ -5,8 +5,11 @@
 #include "device/every_device.hpp"
 #include "machines/mrbm_chain.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/machines/energy.hpp"
+#include "mcdbn/machines/sampling.hpp"
 #include "reference/error_bounds.hpp"
 #include "reference/mrbm_chain_reference.hpp"
+#include "reference/units_reference.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -149,5 +152,69 @@ TEST_CASE("small: an MRBM wants two modalities or more, each with a name of its 
     CHECK(mrbm.parameters().entry("W_1").rows == 7);
     CHECK_THROWS_AS(MrbmChain(mrbm, {true, true, true}, 2), ShapeError);
     CHECK_THROWS_AS(MrbmChain(mrbm, {true, false}, 2), ShapeError);
+  });
+}
+
+TEST_CASE("small: the free energy of an MRBM sums its hidden units out of eq 19") {
+  const Problem problem({{4, kBinary}, {3, kGaussian}, {2, kBinary}}, 5);
+  on_every_device([&](Device& device) {
+    const Mrbm mrbm(device, problem.start);
+    std::vector<Matrix> values;
+    for (const MatrixF& value : problem.values) values.push_back(Matrix::from_host(device, value));
+    const MatrixF got = free_energy(mrbm, {values.begin(), values.end()}).to_host();
+    for (Eigen::Index r = 0; r < kRows; ++r) {
+      // Σ over all 2^5 states of the hidden units of exp(−E).
+      double sum = 0;
+      for (int state = 0; state < 32; ++state) {
+        double energy = 0;
+        for (std::size_t m = 0; m < 3; ++m) {
+          const RowVectorD v = problem.values[m].row(r).cast<double>();
+          const RowVectorD& a = problem.model.visible_bias[m];
+          energy += m == 1 ? 0.5 * (v - a).squaredNorm() : -v.dot(a);
+          for (int k = 0; k < 5; ++k)
+            if (state >> k & 1) energy -= v.dot(problem.model.weights[m].col(k));
+        }
+        for (int k = 0; k < 5; ++k)
+          if (state >> k & 1) energy -= problem.model.hidden_bias(k);
+        sum += std::exp(-energy);
+      }
+      CHECK(std::abs(got(r, 0) + std::log(sum)) < 1e-4);
+    }
+    CHECK_THROWS_AS(free_energy(mrbm, {values[0], values[1]}), ShapeError);
+  });
+}
+
+TEST_CASE("an MRBM reconstructs by its means and draws what is not given as enumeration says") {
+  constexpr std::size_t kChains = 8000;
+  const Problem problem({{3, kBinary}, {2, kBinary}}, 3);
+  const reference::HiddenStates states =
+      reference::enumerate_hidden(problem.model, 0, problem.values[0].row(0).cast<double>());
+  on_every_device([&](Device& device) {
+    const Mrbm mrbm(device, problem.start);
+    const Matrix given =
+        Matrix::filled_with_row(Matrix::from_host(device, problem.values[0].topRows(1)), kChains);
+    const auto drawn = sample(mrbm, {given, Matrix()}, {true, false}, kChains, {.steps = 60});
+    CHECK(drawn[0].to_host() == given.to_host());
+    const MatrixF values = drawn[1].to_host();
+    CHECK(((values.array() == 0.0F) || (values.array() == 1.0F)).all());
+    const RowVectorD want = states.stationary * states.absent;
+    // Five standard deviations of a mean of so many draws.
+    CHECK((values.cast<double>().colwise().mean() - want).cwiseAbs().maxCoeff() <
+          2.5 / std::sqrt(static_cast<double>(kChains)));
+    const auto free = sample(mrbm, {Matrix(), Matrix()}, {false, false}, 7, {.seed = 3});
+    const auto again = sample(mrbm, {Matrix(), Matrix()}, {false, false}, 7, {.seed = 3});
+    CHECK(free[0].to_host() == again[0].to_host());
+    CHECK(free[0].rows() == 7);
+
+    const Matrix first = Matrix::from_host(device, problem.values[0]),
+                 second = Matrix::from_host(device, problem.values[1]);
+    const auto back = reconstruct(mrbm, {first, second});
+    const MatrixD hidden =
+        reference::sigmoid(problem.values[0].cast<double>() * problem.model.weights[0] +
+                           problem.values[1].cast<double>() * problem.model.weights[1] +
+                           problem.model.hidden_bias.replicate(kRows, 1));
+    const MatrixD means = reference::sigmoid(reference::plus_row(
+        hidden * problem.model.weights[1].transpose(), problem.model.visible_bias[1]));
+    CHECK((back[1].to_host().cast<double>() - means).cwiseAbs().maxCoeff() < 1e-5);
   });
 }

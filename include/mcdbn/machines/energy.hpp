@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "mcdbn/machines/cdbn.hpp"
+#include "mcdbn/machines/mcdbn.hpp"
 #include "mcdbn/machines/sequences.hpp"
 
 namespace mcdbn {
@@ -18,6 +18,16 @@ Sequences free_energy(const Crbm& crbm, const Sequences& visible);
 /// That of the top machine on its code, the up-pass of the layers beneath: the stack's own has no
 /// closed form.
 Sequences free_energy(const Cdbn& cdbn, const Sequences& visible);
+
+/// F(v¹, v² …) of an MRBM, its hidden units summed out (eq 19): −log p(v¹, v² …) but for the
+/// partition function.
+/// @param modalities [rows x visible] of each, not indexed  @return [rows x 1]  @throws ShapeError
+Matrix free_energy(const Mrbm& mrbm, const std::vector<Rows>& modalities);
+
+/// That of the MRBM on the modalities' codes, where all of them have one that belongs together.
+/// @param modalities the same clips in each  @return [all frames x 1], rows numbered as the frames
+/// of the modalities without a look-ahead are  @throws ShapeError
+Sequences free_energy(const Mcdbn& network, const std::vector<Sequences>& modalities);
 
 /// An estimate of Σ_i log p(v_i | the other units, H) of a machine of binary units: one unit i
 /// of each frame, drawn evenly, stands for all: D · log σ(F(v with v_i flipped) − F(v)).

@@ -7,20 +7,21 @@
 
 #include "mcdbn/base/column_scale.hpp"
 #include "mcdbn/machines/cdbn.hpp"
-#include "mcdbn/machines/mrbm.hpp"
+#include "mcdbn/machines/mcdbn.hpp"
 
 namespace mcdbn {
 
 /// A machine of its own, and what its data were.
 struct SavedMachine {
-  std::variant<Crbm, Cdbn, Mrbm> machine;
+  std::variant<Crbm, Cdbn, Mrbm, Mcdbn> machine;
   /// What the data were scaled by before the machine saw them, one of each modality; a scale
   /// without columns, or none: data as they are.
   std::vector<ColumnScale> scales = {};
   nlohmann::json config = {};  ///< the settings that it was fitted with
 };
 
-/// One .safetensors file: tensors `W`, `A` … of a CRBM, `0.W` … of a CDBN, metadata with format
+/// One .safetensors file: tensors `W`, `A` … of a CRBM, `0.W` … of a CDBN, `NAME.0.W` … and
+/// `mrbm.W_NAME` … of an MCDBN, metadata with format
 /// version, shapes and settings. Written atomically. @throws InputError
 void save_machine(const std::filesystem::path& path, const SavedMachine& saved);
 /// @throws InputError

@@ -4,6 +4,7 @@
 
 #include "mcdbn/base/settings.hpp"
 #include "mcdbn/machines/cdbn.hpp"
+#include "mcdbn/machines/mrbm.hpp"
 #include "mcdbn/machines/sequences.hpp"
 
 namespace mcdbn {
@@ -45,6 +46,20 @@ Sequences sample_given(const Crbm& crbm, const Sequences& given, const ChainSett
 /// The same up and down through all layers in each step. The lower layers are directed, so these
 /// are no exact draws from the stack's own conditional distribution.
 Sequences sample_given(const Cdbn& cdbn, const Sequences& given, const ChainSettings& settings);
+
+/// Mean field of an MRBM: the shared units from all modalities, each modality's means given those,
+/// so many times. @param modalities [rows x visible] of each  @return as many, of the same shapes
+std::vector<Matrix> reconstruct(const Mrbm& mrbm, const std::vector<Rows>& modalities,
+                                std::size_t steps = 1);
+
+/// Chains of an MRBM from zeros: the modalities that are given stay, the others are drawn, all of
+/// them where nothing is given.
+/// @param modalities [rows x visible] of each; those that are not given may be empty matrices
+/// @param given of each modality  @param rows of the result
+/// @return of each modality [rows x visible]  @throws ShapeError
+std::vector<Matrix> sample(const Mrbm& mrbm, const std::vector<Matrix>& modalities,
+                           const std::vector<bool>& given, std::size_t rows,
+                           const ChainSettings& settings);
 
 /// Free chains of an RBM. `start` may be Matrix::filled_with_row(rbm.visible_mean, chains).
 /// @param start [chains x visible]  @return [chains x visible]
