@@ -133,7 +133,8 @@ TEST_CASE("the paper's preset at rates that do not diverge learns what the other
                settings.gaussian, settings, 0,
                [&](const EpochReport& report) { losses.push_back(report.loss); });
     CHECK(losses.size() == 40);
-    CHECK(losses.back() < 0.5 * losses.front());
+    constexpr double kDraws = 1.0;  // the variance of drawn visible units, which no training takes
+    CHECK(losses.back() - kDraws < 0.25 * (losses.front() - kDraws));
   });
 }
 
