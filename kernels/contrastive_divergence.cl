@@ -61,34 +61,10 @@ INLINE void store_change(floatN end[ROWS][COLUMNS], const int count, global cons
 // Visible means in columns column … column + VEC of v become draws.
 INLINE void draw_visible(local float* v, int column, int row0, uint4 random) {
 #if GAUSSIAN
-  const floatN mask = column_mask(column, VISIBLE);
-  for (int group = row0 / 4; group <= (row0 + ROWS - 1) / 4; ++group) {
-    uintN words[4];
-    uintN other_words[4];
-    draw_four_rows(words, column, (uint)group, random);
-    draw_four_rows(other_words, column, (uint)group, (uint4)(random.xyz, random.w | 0x8000u));
-#pragma unroll
-    for (int word = 0; word < 4; ++word) {
-      const int r = 4 * group + word - row0;
-      if (r < 0 || r >= ROWS) continue;
-      const floatN mean = loadN(r * V_LD + column, v);
-      storeN(mask * normal_draw(mean, words[word], other_words[word]), r * V_LD + column, v);
-    }
-  }
+  draw_normal_rows(v, V_LD, column, VISIBLE, row0, random);
 #else
   draw_rows(v, V_LD, column, row0, 1.0f, random);
 #endif
-}
-#endif
-
-#if SAMPLE_VISIBLE || PERSISTENT
-// The inverse of keep_tile.
-INLINE void load_kept_tile(floatN sum[ROWS][COLUMNS], const int count, local const float* x,
-                           const int ld, int column) {
-#pragma unroll
-  for (int r = 0; r < ROWS; ++r)
-#pragma unroll
-    for (int c = 0; c < count; ++c) sum[r][c] = loadN(r * ld + column + c * VEC, x);
 }
 #endif
 

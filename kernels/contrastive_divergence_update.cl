@@ -14,17 +14,7 @@
 
 #include "units.clh"
 #include "crbm_shape.clh"
-#include "optimizer.clh"
-
-#ifndef TILE_ROWS
-#define TILE_ROWS 16
-#endif
-
-// sum[r] += x[r] · y: one row of the mini-batch
-INLINE void add_outer(floatN sum[TILE_ROWS], global const float* x, floatN y) {
-#pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r) sum[r] = fma((floatN)(x[r]), y, sum[r]);
-}
+#include "weight_tile.clh"
 
 // W: ⟨v hᵀ⟩ of the data less that of the chain's end (eq 37)
 INLINE void update_w(int tile, int rows, float mean, global const float* visible_data,
@@ -32,25 +22,15 @@ INLINE void update_w(int tile, int rows, float mean, global const float* visible
                      global const float* hidden, int at, global float* parameters,
                      global float* gradients, global float* states, int size,
                      global float* w_transposed, float8 rule) {
-  const int row0 = tile / (H_LD / VEC) * TILE_ROWS;
-  const int column = tile % (H_LD / VEC) * VEC;
+  const int row0 = TILE_ROW(tile), column = TILE_COLUMN(tile);
   floatN sum[TILE_ROWS];
-#pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r) sum[r] = (floatN)(0.0f);
+  clear_sums(sum);
   for (int i = 0; i < rows; ++i) {
     add_outer(sum, visible_data + i * V_LD + row0, loadN(i * H_LD + column, hidden_data));
     add_outer(sum, visible + i * V_LD + row0, -loadN(i * H_LD + column, hidden));
   }
-#pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r) {
-    if (row0 + r >= VISIBLE) break;
-    const floatN value = update(parameters, gradients, states, size, at + (row0 + r) * H_LD + column,
-                                -mean * sum[r], rule);
-    float lanes[VEC];
-    storeN(value, 0, lanes);
-    for (int lane = 0; lane < VEC && column + lane < HIDDEN; ++lane)
-      w_transposed[(column + lane) * V_LD + row0 + r] = lanes[lane];
-  }
+  update_weights(tile, sum, -mean, VISIBLE, V_LD, at, w_transposed, parameters, gradients, states, size,
+                 rule);
 }
 
 // A or B: ⟨history · change⟩ (eq 38 to 41); `ld` is V_LD for A, H_LD for B, `order` the frames it sees
@@ -62,8 +42,7 @@ INLINE void update_directed(int tile, const int order, const int ld, int rows, f
   const int column = tile % (ld / VEC) * VEC;
   frames += (shift - order) * V_LD + row0;
   floatN sum[TILE_ROWS];
-#pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r) sum[r] = (floatN)(0.0f);
+  clear_sums(sum);
   for (int i = 0; i < rows; ++i)
     add_outer(sum, frames + index[i] * V_LD, loadN(i * ld + column, change));
 #pragma unroll

@@ -18,11 +18,8 @@
 
 #include "units.clh"
 #include "mrbm_shape.clh"
-#include "optimizer.clh"
+#include "weight_tile.clh"
 
-#ifndef TILE_ROWS
-#define TILE_ROWS 16
-#endif
 #ifndef PIECE_ROWS
 #define PIECE_ROWS 1024
 #endif
@@ -46,13 +43,8 @@ INLINE floatN column_sum(global const float* x, int rows, const int ld) {
 INLINE void piece_product(int rows, global const float* x, const int x_ld, global const float* y,
                           global float* partial) {
   floatN sum[TILE_ROWS];
-#pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r) sum[r] = (floatN)(0.0f);
-  for (int i = 0; i < rows; ++i) {
-    const floatN row = loadN(i * H_LD, y);
-#pragma unroll
-    for (int r = 0; r < TILE_ROWS; ++r) sum[r] = fma((floatN)(x[i * x_ld + r]), row, sum[r]);
-  }
+  clear_sums(sum);
+  for (int i = 0; i < rows; ++i) add_outer(sum, x + i * x_ld, loadN(i * H_LD, y));
 #pragma unroll
   for (int r = 0; r < TILE_ROWS; ++r) storeN(sum[r], r * VEC, partial);
 }
@@ -70,7 +62,7 @@ kernel void multi_prediction_products(global const int* layout, int stride,
   int m = 0;
   for (; tile >= TILES(UNITS(m)); ++m) tile -= TILES(UNITS(m));
   const int ld = PADDED(UNITS(m));
-  const int row0 = tile / (H_LD / VEC) * TILE_ROWS, column = tile % (H_LD / VEC) * VEC;
+  const int row0 = TILE_ROW(tile), column = TILE_COLUMN(tile);
   const int block = stride * H_LD, direction = m * STEPS * block;
 
   int piece = get_global_id(1), rows = STEPS * stride;
@@ -98,27 +90,15 @@ kernel void multi_prediction_products(global const int* layout, int stride,
 INLINE void update_w(int tile, int tiles, const int units, int pieces, global const float* partial,
                      int w_at, global float* wt, global float* parameters, global float* gradients,
                      global float* states, int size, float8 rule) {
-  const int ld = PADDED(units);
-  const int row0 = tile / (H_LD / VEC) * TILE_ROWS;
-  const int column = tile % (H_LD / VEC) * VEC;
   floatN sum[TILE_ROWS];
-#pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r) sum[r] = (floatN)(0.0f);
+  clear_sums(sum);
   for (int piece = 0; piece < pieces; ++piece) {
 #pragma unroll
     for (int r = 0; r < TILE_ROWS; ++r) sum[r] += loadN(r * VEC, partial);
     partial += tiles * TILE_ROWS * VEC;
   }
-#pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r) {
-    if (row0 + r >= units) break;
-    const floatN value = update(parameters, gradients, states, size,
-                                w_at + (row0 + r) * H_LD + column, sum[r], rule);
-    float lanes[VEC];
-    storeN(value, 0, lanes);
-    for (int lane = 0; lane < VEC && column + lane < HIDDEN; ++lane)
-      wt[(column + lane) * ld + row0 + r] = lanes[lane];
-  }
+  update_weights(tile, sum, 1.0f, units, PADDED(units), w_at, wt, parameters, gradients, states, size,
+                 rule);
 }
 
 kernel void multi_prediction_update(

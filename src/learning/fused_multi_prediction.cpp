@@ -1,6 +1,7 @@
 // The launches of a fused mini-batch.
 
 #include "device/kernel_arguments.hpp"
+#include "learning/code_stack.hpp"
 #include "learning/multi_prediction.hpp"
 #include "machines/mrbm_chain.hpp"
 
@@ -26,18 +27,11 @@ void MultiPrediction::fused_chain() {
          drive_error_.buffer(), row_losses_.buffer());
 }
 
-/// Padded units of all modalities together.
-std::size_t MultiPrediction::all_units() const {
-  std::size_t units = 0;
-  for (const Matrix& W : mrbm_.W) units += padded(W.rows());
-  return units;
-}
-
 /// Adds up the tiles of every W over pieces of the stacks. @return the pieces
 std::size_t MultiPrediction::fused_products(const Defines& defines) {
   const auto vec = static_cast<std::size_t>(tile_->vector_width);
   const std::size_t tile_floats = static_cast<std::size_t>(tile_->update_rows) * vec;
-  const std::size_t tiles = all_units() * padded(mrbm_.hidden()) / tile_floats;
+  const std::size_t tiles = all_units(mrbm_) * padded(mrbm_.hidden()) / tile_floats;
   const auto pieces_of = [](std::size_t rows) { return ceil_divide(rows, kPieceRows); };
   const std::size_t pieces = pieces_of(steps_ * block_) + pieces_of((steps_ - 1) * block_) +
                              (mrbm_.W.size() - 1) * pieces_of(block_);
@@ -64,7 +58,7 @@ void MultiPrediction::fused_update(const UpdateRule& rule, LossAccumulator& loss
       device.programs().kernel("multi_prediction_update.cl", "multi_prediction_update", defines);
   const auto vec = static_cast<std::size_t>(tile_->vector_width);
   const auto tile_rows = static_cast<std::size_t>(tile_->update_rows);
-  const std::size_t hidden = padded(mrbm_.hidden()), units = all_units();
+  const std::size_t hidden = padded(mrbm_.hidden()), units = all_units(mrbm_);
   const std::size_t items = units / tile_rows * (hidden / vec) + (units + hidden) / vec + 1;
   const auto group = static_cast<std::size_t>(tile_->group);
   launch(device, kernel, {{ceil_divide(items, group) * group, 1}, {group, 1}},

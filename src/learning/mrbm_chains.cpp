@@ -12,31 +12,33 @@ namespace mcdbn {
 
 MrbmChains::MrbmChains(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
                        OptimizerKind optimizer)
-    : mrbm_(mrbm),
-      settings_(settings),
-      batch_(batch),
-      hidden_data_(mrbm.device(), batch, mrbm.hidden()),
-      hidden_(Matrix::like(hidden_data_)),
-      hidden_sample_(Matrix::like(hidden_data_)),
-      optimizer_(mrbm.parameters(), optimizer),
-      gradient_(mrbm.parameters().in(optimizer_.gradients()), mrbm.shape()),
-      weighted_(Matrix::like(hidden_data_)) {
-  for (const Matrix& W : mrbm.W) {
-    data_.emplace_back(mrbm.device(), batch, W.rows());
+    : mrbm_(mrbm), settings_(settings), batch_(batch), optimizer_(mrbm.parameters(), optimizer) {}
+
+void MrbmChains::make_matrices() {
+  hidden_data_ = Matrix(mrbm_.device(), batch_, mrbm_.hidden());
+  for (Matrix* matrix : {&hidden_, &hidden_sample_, &weighted_})
+    *matrix = Matrix::like(hidden_data_);
+  for (const Matrix& W : mrbm_.W) {
+    data_.emplace_back(mrbm_.device(), batch_, W.rows());
     visible_.push_back(Matrix::like(data_.back()));
   }
+  gradient_.emplace(mrbm_.parameters().in(optimizer_.gradients()), mrbm_.shape());
 }
 
 void MrbmChains::learn(std::span<const Rows> visible, const LearningStep& step,
                        LossAccumulator& losses) {
-  require(visible.size() == data_.size(), "MRBM: wants every modality");
-  for (std::size_t m = 0; m < visible.size(); ++m) {
+  require(visible.size() == mrbm_.modality_count(), "MRBM: wants every modality");
+  for (std::size_t m = 0; m < visible.size(); ++m)
     require(visible[m].index != nullptr && visible[m].count == batch_ &&
-                visible[m].columns == data_[m].columns(),
+                visible[m].columns == mrbm_.visible(m),
             "MRBM: wants indexed codes, as many as it was made for");
-    gather(visible[m], data_[m]);
-  }
   optimizer_.next_step();
+  run_minibatch(visible, step, losses);
+}
+
+void MrbmChains::run_minibatch(std::span<const Rows> visible, const LearningStep& step,
+                               LossAccumulator& losses) {
+  for (std::size_t m = 0; m < visible.size(); ++m) gather(visible[m], data_[m]);
   optimizer_.gradients().set_zero();
   add_gradients(step.random, losses);
   optimizer_.update(mrbm_update_rule(settings_, step.progress));
@@ -97,10 +99,10 @@ void MrbmChains::add_side(const std::vector<Rows>& units, const Matrix& hidden,
                           const Matrix& weights, float sign) {
   scale_rows(hidden, weights, weighted_);
   for (std::size_t m = 0; m < units.size(); ++m) {
-    gemm_transposed_a(units[m], weighted_, gradient_.W[m], sign, 1.0F);
-    gemm_transposed_a(weights, units[m], gradient_.a[m], sign, 1.0F);
+    gemm_transposed_a(units[m], weighted_, gradient_->W[m], sign, 1.0F);
+    gemm_transposed_a(weights, units[m], gradient_->a[m], sign, 1.0F);
   }
-  column_sum(weighted_, sign, 1.0F, gradient_.b);
+  column_sum(weighted_, sign, 1.0F, gradient_->b);
 }
 
 MrbmParameters MrbmChains::gradients() {

@@ -12,8 +12,8 @@ namespace mcdbn {
 /// JointLikelihood and PerceptronLoss.
 ///
 /// As in contrastive divergence, hidden units are sampled, visible ones are means unless the
-/// settings want them sampled, and the last hidden step keeps probabilities. One product after the
-/// other.
+/// settings want them sampled, and the last hidden step keeps probabilities. What is here takes one
+/// product after the other.
 class MrbmChains : public LearningRule {
  public:
   std::size_t loss_count() const override { return mrbm_.modality_count(); }
@@ -31,7 +31,12 @@ class MrbmChains : public LearningRule {
 
  protected:
   MrbmChains(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings, OptimizerKind optimizer);
+  /// Room for what follows, but for the optimizer's.
+  void make_matrices();
 
+  /// One mini-batch of rows that were checked, with its update.
+  virtual void run_minibatch(std::span<const Rows> visible, const LearningStep& step,
+                             LossAccumulator& losses);
   /// Adds the gradients of a mini-batch whose data are in data_.
   virtual void add_gradients(const RandomKey& key, LossAccumulator& losses) = 0;
 
@@ -52,14 +57,14 @@ class MrbmChains : public LearningRule {
   std::size_t batch_;
   std::vector<Matrix> data_, visible_;           // [batch x visible] of each modality
   Matrix hidden_data_, hidden_, hidden_sample_;  // [batch x hidden]
+  Optimizer optimizer_;
 
  private:
   void add_side(const std::vector<Rows>& units, const Matrix& hidden, const Matrix& weights,
                 float sign);
 
-  Optimizer optimizer_;
-  MrbmMatrices gradient_;  // the optimizer's
-  Matrix weighted_;        // [batch x hidden]
+  std::optional<MrbmMatrices> gradient_;  // the optimizer's
+  Matrix weighted_;                       // [batch x hidden]
 };
 
 }  // namespace mcdbn

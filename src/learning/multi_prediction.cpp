@@ -5,6 +5,7 @@
 #include "device/gemm.hpp"
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
+#include "learning/code_stack.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/mrbm_rule.hpp"
 #include "machines/mean_field.hpp"
@@ -58,7 +59,7 @@ MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettin
 /// Room for the stacks of multi_prediction.cl.
 void MultiPrediction::make_stacks() {
   Device& device = mrbm_.device();
-  codes_ = Matrix(device, 1, block_ * all_units());
+  codes_ = Matrix(device, 1, block_ * all_units(mrbm_));
   stacked_values_ = Matrix(device, 1, steps_ * codes_.columns());
   stacked_value_errors_ = Matrix::like(stacked_values_);
 }
@@ -87,7 +88,7 @@ void MultiPrediction::step(const std::vector<Rows>& codes, const UpdateRule& rul
   }
   optimizer_.next_step();
   if (tile_) {
-    gather_codes(codes);
+    gather_codes(codes, block_, codes_);
     fused_chain();
     fused_update(rule, losses);
     return;
@@ -97,16 +98,6 @@ void MultiPrediction::step(const std::vector<Rows>& codes, const UpdateRule& rul
   for (std::size_t m = codes.size(); m-- > 0;) back_propagate(m, losses);
   optimizer_.update(rule);
   mrbm_.refresh_transposed();
-}
-
-/// Into the stack of multi_prediction.cl, two at a time; of an odd number one comes twice.
-void MultiPrediction::gather_codes(const std::vector<Rows>& codes) {
-  std::vector<std::size_t> first{0};
-  for (const Rows& rows : codes) first.push_back(first.back() + block_ * padded(rows.columns));
-  for (std::size_t m = 1; m < codes.size(); m += 2)
-    gather_two(codes[m - 1], codes[m], codes_, first[m - 1], first[m]);
-  const std::size_t last = codes.size() - 1;
-  if (last % 2 == 0) gather_two(codes[last - 1], codes[last], codes_, first[last - 1], first[last]);
 }
 
 /// Forward, eq 32 and 33, block t of a stack being mean-field step t; block 0 of the values is

@@ -44,8 +44,6 @@ class MultiPrediction : public LearningRule {
   void back_propagate(std::size_t q, LossAccumulator& losses);
   void unroll(std::size_t q);
   void add_gradients(std::size_t q);
-  void gather_codes(const std::vector<Rows>& codes);
-  std::size_t all_units() const;
   void make_stacks();
   void make_matrices();
 

@@ -10,7 +10,9 @@ PerceptronLoss::PerceptronLoss(Mrbm& mrbm, std::size_t batch, const MrbmSettings
     : MrbmChains(mrbm, batch, settings, optimizer.value_or(optimizer_of(settings))),
       weights_(mrbm.device(), batch, 1),
       data_energy_(Matrix::like(weights_)),
-      end_energy_(Matrix::like(weights_)) {}
+      end_energy_(Matrix::like(weights_)) {
+  make_matrices();
+}
 
 void PerceptronLoss::add_gradients(const RandomKey& key, LossAccumulator& losses) {
   for (std::size_t m = 0; m < data_.size(); ++m) {
