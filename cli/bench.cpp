@@ -121,13 +121,14 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
       "Times the mini-batch of each layer, products, regeneration and generation on a device");
   const auto options = std::make_shared<BenchOptions>();
   command
-      ->add_option("--only", options->layers,
-                   "Layers to measure (default: all but epoch): gaussian_crbm, binary_crbm, "
-                   "persistent_gaussian_crbm, persistent_binary_crbm, mrbm, mrbm_chain, gemm, "
-                   "regeneration, generation, epoch (a thousand to a million frames)")
+      ->add_option(
+          "--only", options->layers,
+          "Layers to measure (default: all but epoch): gaussian_crbm, binary_crbm, "
+          "persistent_gaussian_crbm, persistent_binary_crbm, mrbm, joint_likelihood, "
+          "mrbm_chain, gemm, regeneration, generation, epoch (a thousand to a million frames)")
       ->check(CLI::IsMember({"gaussian_crbm", "binary_crbm", "persistent_gaussian_crbm",
-                             "persistent_binary_crbm", "mrbm", "mrbm_chain", "gemm", "regeneration",
-                             "generation", "epoch"}))
+                             "persistent_binary_crbm", "mrbm", "joint_likelihood", "mrbm_chain",
+                             "gemm", "regeneration", "generation", "epoch"}))
       ->type_name("LAYER");
   command->add_flag("--tune", options->tune,
                     "First find what suits the device best and keep it in the user's cache folder");

@@ -6,6 +6,7 @@
 
 #include "device/gemm.hpp"
 #include "learning/contrastive_divergence.hpp"
+#include "learning/joint_likelihood.hpp"
 #include "learning/minibatch.hpp"
 #include "learning/multi_prediction.hpp"
 #include "learning/persistent_contrastive_divergence.hpp"
@@ -179,6 +180,35 @@ BenchStep mrbm_step(Device& device, std::size_t modalities, std::size_t visible,
           }};
 }
 
+/// Contrastive divergence over both modalities at once.
+BenchStep joint_likelihood_step(Device& device, std::size_t visible, std::size_t hidden,
+                                std::size_t batch, std::size_t gibbs_steps) {
+  struct State : MrbmState {
+    JointLikelihood rule;
+    LossAccumulator losses;
+    LearningStep step;
+    State(Device& device, std::size_t visible, std::size_t hidden, std::size_t batch,
+          std::size_t gibbs_steps)
+        : MrbmState(device, 2, visible, hidden, batch),
+          rule(mrbm, batch, {.gibbs_steps = gibbs_steps}),
+          losses(device, 2, batch) {}
+  };
+  const auto state = std::make_shared<State>(device, visible, hidden, batch, gibbs_steps);
+  // Up; k times down and up; two products for every W's gradient.
+  const auto k = static_cast<double>(gibbs_steps);
+  const double multiply_adds = (1.0 + 2.0 * k + 2.0) * static_cast<double>(2 * visible * hidden);
+  return {{{"layer", "joint_likelihood"},
+           {"visible", 2 * visible},
+           {"hidden", hidden},
+           {"batch", batch},
+           {"k", gibbs_steps}},
+          2.0 * multiply_adds * static_cast<double>(batch),
+          [state, batch] {
+            ++state->step.random.step;
+            state->rule.learn(state->rows(batch), state->step, state->losses);
+          }};
+}
+
 /// Inference of one modality from the other, mean field or sampled.
 BenchStep mrbm_chain_step(Device& device, std::size_t visible, std::size_t hidden,
                           std::size_t batch, std::size_t steps, double temperature) {
@@ -303,6 +333,8 @@ std::vector<BenchStepMaker> bench_steps() {
     for (const std::size_t modalities : {2U, 3U})
       makers.emplace_back(
           [=](Device& device) { return mrbm_step(device, modalities, 300, 150, batch, 10); });
+    makers.emplace_back(
+        [=](Device& device) { return joint_likelihood_step(device, 300, 150, batch, 1); });
     for (const double temperature : {0.0, 1.0})
       makers.emplace_back([=](Device& device) {
         return mrbm_chain_step(device, 300, 150, batch, 10, temperature);

@@ -44,7 +44,19 @@ std::vector<BenchRow> bench_rows() {
     crbm("persistent_binary_crbm", 300, 1, batch);
     json mrbm = {{"visible", 600}, {"hidden", 150}, {"batch", batch}, {"steps", 10}};
     mrbm["layer"] = "mrbm";
-    rows.push_back({mrbm, batch * 2.0 * (6 * 10 - 1) * 300 * 150});
+    for (const int n : {2, 3}) {
+      mrbm["modalities"] = n;
+      mrbm["visible"] = 300 * n;
+      // A direction: ten steps but for the first, which starts from zeros; the others' drive.
+      rows.push_back({mrbm, batch * n * (6.0 * 10 - 3 + 2 * (n - 1)) * 300 * 150});
+    }
+    mrbm["visible"] = 600;
+    mrbm.erase("modalities");
+    json joint = mrbm;
+    joint.erase("steps");
+    joint["layer"] = "joint_likelihood";
+    joint["k"] = 1;
+    rows.push_back({joint, batch * 5.0 * 600 * 150});
     mrbm["layer"] = "mrbm_chain";
     for (const double temperature : {0.0, 1.0}) {
       mrbm["temperature"] = temperature;

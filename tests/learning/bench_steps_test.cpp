@@ -27,7 +27,7 @@ TEST_CASE("bench steps: each runs again and again and says what it is") {
     }
     device.finish();
     for (const char* layer : {"\"gaussian_crbm", "\"binary_crbm", "persistent_gaussian_crbm",
-                              "persistent_binary_crbm", "generation"})
+                              "persistent_binary_crbm", "joint_likelihood", "generation"})
       CHECK(std::any_of(seen.begin(), seen.end(), [&](const std::string& what) {
         return what.find(layer) != std::string::npos;
       }));
