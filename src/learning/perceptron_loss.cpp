@@ -1,5 +1,6 @@
 #include "learning/perceptron_loss.hpp"
 
+#include "device/pointwise.hpp"
 #include "learning/mrbm_rule.hpp"
 #include "machines/mrbm_energy.hpp"
 
@@ -11,10 +12,26 @@ PerceptronLoss::PerceptronLoss(Mrbm& mrbm, std::size_t batch, const MrbmSettings
       weights_(mrbm.device(), batch, 1),
       data_energy_(Matrix::like(weights_)),
       end_energy_(Matrix::like(weights_)) {
+  settings_.sample_visible = true;
   make_matrices();
 }
 
+/// As step 0 of a chain.
+void PerceptronLoss::draw_data(const RandomKey& key) {
+  for (std::size_t m = 0; m < data_.size(); ++m) {
+    if (mrbm_.kind(m) != VisibleKind::binary) continue;
+    const Rows units(data_[m]);
+    GemmOptions draw;
+    draw.sampling = Sampling::bernoulli;
+    draw.sample = &units;
+    draw.random = key;
+    draw.random.phase = static_cast<std::uint16_t>(kVisiblePhase + m);
+    apply_epilogue(units, draw);
+  }
+}
+
 void PerceptronLoss::add_gradients(const RandomKey& key, LossAccumulator& losses) {
+  draw_data(key);
   for (std::size_t m = 0; m < data_.size(); ++m) {
     const std::size_t free[] = {m};
     RandomKey own = key;

@@ -81,6 +81,13 @@ struct ReferenceChain {
            });
   }
 
+  /// The codes, 0 or 1 as their probabilities have it.
+  void draw_data(RandomKey key) {
+    for (std::size_t m = 0; m < data.size(); ++m) {
+      key.phase = static_cast<std::uint16_t>(0x1000 + m);
+      if (!scene.model.is_gaussian(m)) data[m] = drawn(data[m], key);
+    }
+  }
   void start(const RandomKey& key) {
     hidden_data = hidden_of(data);
     sample = drawn(hidden_data, key);
