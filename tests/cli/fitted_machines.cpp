@@ -74,11 +74,12 @@ SavedMachine loaded(const std::string& file) {
 }
 
 std::vector<OptionRow> refused_device_rows(const std::string& call) {
-  std::vector<OptionRow> rows;
-  for (const std::string option : {"--platform", "--device"})
-    rows.push_back(
-        {option, [=] { check_refused(call + " " + option + " no-such-name", 4, "no-such-name"); }});
-  return rows;
+  return {{"--platform",
+           [=] {
+             check_refused(call + " --platform no-such-one --device no-such-name", 4,
+                           "platform 'no-such-one', device 'no-such-name'");
+           }},
+          {"--device", [] {}}};
 }
 
 }  // namespace mcdbn::test

@@ -36,7 +36,7 @@ void check_refused(const std::string& call, int exit_code, const std::string& wo
 /// The machine of a file, on the device that the program takes.
 SavedMachine loaded(const std::string& file);
 
-/// Rows of --platform and --device that start the program once each.
+/// Rows of --platform and --device that start the program once.
 std::vector<OptionRow> refused_device_rows(const std::string& call);
 
 }  // namespace mcdbn::test

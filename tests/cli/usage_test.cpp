@@ -65,12 +65,12 @@ TEST_CASE("wrong usage is exit code 2") {
 }
 
 TEST_CASE("a command that does not exist is exit code 2 with those that do, asked for help too") {
-  for (const char* call : {"generate", "generate --help", "--help generate", "generate -h",
-                           "generate --version", "generate --json"}) {
+  for (const char* call : {"invent", "invent --help", "--help invent", "invent -h",
+                           "invent --version", "invent --json"}) {
     CAPTURE(call);
     const CliResult result = run_cli(call);
     check_one_line_error(result, 2);
-    CHECK(result.standard_error.find("unknown command generate; there are devices, synthesize") !=
+    CHECK(result.standard_error.find("unknown command invent; there are devices, synthesize") !=
           std::string::npos);
     for (const char* command : {"project", "render", "train", "regenerate", "evaluate", "info"})
       CHECK(result.standard_error.find(std::string(", ") + command) != std::string::npos);
