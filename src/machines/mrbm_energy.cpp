@@ -28,7 +28,8 @@ void launch_energy(const Mrbm& mrbm, std::size_t m, const Rows& units, const Mat
 
 /// Of the shared units, from all modalities. @return [rows x hidden]
 Matrix shared_input(const Mrbm& mrbm, const std::vector<Rows>& units) {
-  require(units.size() == mrbm.modality_count(), "free energy: wants every modality");
+  require(!units.empty() && units.size() == mrbm.modality_count(),
+          "free energy: wants every modality");
   for (std::size_t m = 0; m < units.size(); ++m)
     require(units[m].columns == mrbm.visible(m) && units[m].count == units[0].count &&
                 units[m].index == nullptr,

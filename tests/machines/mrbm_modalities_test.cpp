@@ -162,7 +162,7 @@ TEST_CASE("small: the free energy of an MRBM sums its hidden units out of eq 19"
     std::vector<Matrix> values;
     for (const MatrixF& value : problem.values) values.push_back(Matrix::from_host(device, value));
     const MatrixF got = free_energy(mrbm, {values.begin(), values.end()}).to_host();
-    for (Eigen::Index r = 0; r < kRows; ++r) {
+    for (Eigen::Index r = 0; r < got.rows(); ++r) {
       // Σ over all 2^5 states of the hidden units of exp(−E).
       double sum = 0;
       for (int state = 0; state < 32; ++state) {
