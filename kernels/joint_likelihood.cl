@@ -14,7 +14,7 @@
 // chains start from the data.
 //
 // Variants that `scripts/lint kernels` compiles:
-//   VEC=1,4,8,16 GROUP=1,64 SAMPLE= STEPS=
+//   VEC=1,4,8,16 GROUP=1,64 SAMPLE= STEPS= ALL_UNITS=
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
 //   VEC=1,16 GROUP=1,64 BINARY=0,1 SAMPLE_VISIBLE=0,1 PERSISTENT=0,1
 //   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97 BINARY=0,1

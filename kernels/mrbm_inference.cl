@@ -15,7 +15,7 @@
 // probabilities.
 //
 // Variants that `scripts/lint kernels` compiles:
-//   VEC=1,4,8,16 SAMPLE=1,3 GROUP=1,64 STEPS=
+//   VEC=1,4,8,16 SAMPLE=1,3 GROUP=1,64 STEPS= BINARY=
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
 //   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97
 

@@ -12,7 +12,7 @@
 // Compile-time: mrbm_shape.clh, TILE_ROWS (divides 16), PIECE_ROWS, OPTIMIZER.
 //
 // Variants that `scripts/lint kernels` compiles:
-//   VEC=1,4,8,16 TILE_ROWS=4,8,16 PIECE_ROWS=256 SAMPLE=
+//   VEC=1,4,8,16 TILE_ROWS=4,8,16 PIECE_ROWS=256 SAMPLE= BINARY=
 //   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97 STEPS=1,10
 //   OPTIMIZER=none,momentum,adam
 

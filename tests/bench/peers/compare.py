@@ -8,8 +8,27 @@ import subprocess
 from pathlib import Path
 
 BUILD = Path("build")
-CASES = [(layer, batch) for layer in ("gaussian_crbm", "binary_crbm", "mrbm")
-         for batch in (100, 1024)] + [("regeneration", 10)]
+
+# Name of a step: what `bench --only` calls it, and which of these steps it is.
+STEPS = {
+    "gaussian_crbm": ("gaussian_crbm", {}),
+    "binary_crbm": ("binary_crbm", {}),
+    "mrbm": ("mrbm", {"modalities": 2}),
+    "regeneration": ("regeneration", {"temperature": 1.0}),
+    "persistent_gaussian_crbm": ("persistent_gaussian_crbm", {}),
+    "joint_likelihood": ("joint_likelihood", {}),
+    "mrbm_3": ("mrbm", {"modalities": 3}),
+    "generation_1": ("generation", {"k": 1}),
+    "generation_30": ("generation", {"k": 30}),
+}
+WITH_ALL_PEERS = ("gaussian_crbm", "binary_crbm", "mrbm")
+SAMPLES = 10  # of a regeneration or generation
+
+
+def cases(names):
+    for name in names:
+        for batch in (SAMPLES,) if "generation" in name else (100, 1024):
+            yield name, batch
 
 
 def cpu_model():
@@ -24,19 +43,19 @@ def run_json(*command):
     return json.loads(done.stdout) if done.stdout.strip() else {}
 
 
-def ours(layer, batch, seconds):
+def ours(name, batch, seconds):
     """One measurement of mcdbn-cl: its median and its share of the peak of that moment."""
+    layer, which = STEPS[name]
     report = run_json(BUILD / "cli/mcdbn-cl", "bench", "--json", "--only", layer, "--seconds",
                       str(seconds))
     for step in report["steps"]:
-        sampled = layer == "regeneration" and step["temperature"] > 0
-        if sampled or step.get("batch") == batch:
+        if step.get("batch", SAMPLES) == batch and which.items() <= step.items():
             return step, report["peak_gflops"]
-    raise LookupError(layer)
+    raise LookupError(name)
 
 
 def measure(layer, batch, rounds, seconds, python):
-    times, steps, peaks = {}, [], []
+    times, ratios, steps, peaks = {}, [], [], []
     for _ in range(rounds):
         step, peak = ours(layer, batch, seconds)
         steps.append(step)
@@ -44,14 +63,27 @@ def measure(layer, batch, rounds, seconds, python):
         results = [{"mcdbn-cl": step["median_us"]},
                    run_json(python, "tests/bench/peers/pytorch_peer.py", layer, str(batch),
                             str(seconds))]
-        if layer != "regeneration":
+        if layer in WITH_ALL_PEERS:
             for peer in ("eigen_peer", "clblast_peer"):
                 results.append(run_json(BUILD / "tests/bench/peers" / peer, layer, str(batch),
                                         str(seconds)))
         for result in results:
             for name, median in result.items():
                 times.setdefault(name, []).append(median)
-    return {name: statistics.median(t) for name, t in times.items()}, steps[0], max(peaks)
+        ratios.append(min(results[1].values()) / step["median_us"])
+    medians = {name: statistics.median(t) for name, t in times.items()}
+    return medians, ratios, steps[0], max(peaks)
+
+
+def fold_adam(times):
+    """The faster of PyTorch's two Adams, and one name for a variant without draws."""
+    folded = {}
+    for name, time in times.items():
+        name = name.removesuffix(", fused Adam")
+        if name in ("pytorch eager", "pytorch compiled"):
+            name += ", bernoulli"
+        folded[name] = min(time, folded.get(name, time))
+    return folded
 
 
 def cell(times, name, own):
@@ -63,20 +95,20 @@ def main():
     parser.add_argument("--python", required=True)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=1.0)
+    parser.add_argument("--steps", nargs="*", choices=STEPS, default=STEPS)
     options = parser.parse_args()
     print(f"{cpu_model()}; medians of {options.rounds} rounds in turn, times of the peers as "
           "multiples of mcdbn-cl's.\n")
     columns = ["pytorch eager, bernoulli", "pytorch eager, rand < p", "pytorch compiled, bernoulli",
                "pytorch compiled, rand < p", "Eigen + OpenMP", "CLBlast + elementwise"]
     print("| step | batch | mcdbn-cl | launches | GFLOP/s | % of peak | "
-          + " | ".join(columns) + " | PyTorch's best |")
-    print("|---" * (7 + len(columns)) + "|")
-    for layer, batch in CASES:
-        times, step, peak = measure(layer, batch, options.rounds, options.seconds, options.python)
+          + " | ".join(columns) + " | PyTorch's best | its ratio, round by round |")
+    print("|---" * (8 + len(columns)) + "|")
+    for layer, batch in cases(options.steps or STEPS):
+        times, ratios, step, peak = measure(layer, batch, options.rounds, options.seconds,
+                                            options.python)
+        times = fold_adam(times)
         own = times["mcdbn-cl"]
-        for kind in ("eager", "compiled"):  # without draws there is one variant only
-            if f"pytorch {kind}" in times:
-                times[f"pytorch {kind}, bernoulli"] = times.pop(f"pytorch {kind}")
         best = min(t for name, t in times.items() if name.startswith("pytorch"))
         rate = "–"
         if "gflops" in step:
@@ -85,7 +117,7 @@ def main():
         shown = rate if rate == "–" else f"{rate:.0f}"
         print(f"| {layer} | {batch} | {own:.0f} µs | {step['launches']} | {shown} | {share} | "
               + " | ".join(cell(times, name, own) for name in columns)
-              + f" | {best / own:.1f} |", flush=True)
+              + f" | {best / own:.1f} | {', '.join(f'{r:.1f}' for r in ratios)} |", flush=True)
 
 
 main()

@@ -4,7 +4,9 @@
 
 prints {"variant": median_us, ...} for eager and compiled, torch.bernoulli and rand < p. The variants
 take turns, so that whatever else the machine does slows all of them. Layers: gaussian_crbm,
-binary_crbm, mrbm, regeneration (BATCH is then the number of samples).
+binary_crbm, persistent_gaussian_crbm, joint_likelihood, mrbm (of two modalities), mrbm_3 (of three),
+and regeneration, generation_1 and generation_30 (BATCH is then the number of samples, the number that
+of drawn steps a frame).
 """
 
 import json
@@ -46,7 +48,8 @@ def momentum_update(parameter, velocity, gradient, rate, decay):
 class CrbmStep:
     """CD-k as kernels/contrastive_divergence.cl and contrastive_divergence_update.cl do it."""
 
-    def __init__(self, visible, batch, gibbs_steps, binary, draw):
+    def __init__(self, visible, batch, gibbs_steps, binary, draw, persistent=False):
+        self.particles = draw(torch.full((batch, HIDDEN), 0.5)) if persistent else None
         self.frames = frames_of(visible, binary)
         self.rows = torch.randint(ORDER, 4096, (batch,))
         self.window = torch.arange(-ORDER, 0)
@@ -64,12 +67,16 @@ class CrbmStep:
         bias_v = torch.addmm(p["a"], history, p["A"])
         bias_h = torch.addmm(p["b"], history, p["B"])
         hidden_data = torch.sigmoid(torch.addmm(bias_h, data, p["W"]))
-        hidden = hidden_data
-        for _ in range(self.gibbs_steps):
-            visible = torch.addmm(bias_v, self.draw(hidden), p["W"].t())
+        sample = self.draw(hidden_data) if self.particles is None else self.particles
+        for step in range(self.gibbs_steps):
+            if step > 0:
+                sample = self.draw(hidden)
+            visible = torch.addmm(bias_v, sample, p["W"].t())
             if self.binary:
                 visible = torch.sigmoid(visible)
             hidden = torch.sigmoid(torch.addmm(bias_h, visible, p["W"]))
+        if self.particles is not None:
+            self.particles.copy_(self.draw(hidden))
         change_v, change_h = (data - visible) / n, (hidden_data - hidden) / n
         gradients = {"W": (data.t() @ hidden_data - visible.t() @ hidden) / n,
                      "A": history.t() @ change_v, "B": history.t() @ change_h,
@@ -85,20 +92,23 @@ class MrbmStep:
 
     STEPS = 10
 
-    def __init__(self, batch, visible=300, hidden=150):
-        self.frames = [frames_of(visible, True) for _ in range(2)]
+    def __init__(self, batch, modalities, fused, visible=300, hidden=150):
+        self.frames = [frames_of(visible, True) for _ in range(modalities)]
         self.rows = torch.randint(0, 4096, (batch,))
-        self.W = [normal(visible, hidden).requires_grad_() for _ in range(2)]
-        self.a = [torch.zeros(visible, requires_grad=True) for _ in range(2)]
+        self.W = [normal(visible, hidden).requires_grad_() for _ in range(modalities)]
+        self.a = [torch.zeros(visible, requires_grad=True) for _ in range(modalities)]
         self.b = torch.zeros(hidden, requires_grad=True)
-        self.optimizer = torch.optim.Adam([*self.W, *self.a, self.b], lr=1e-3)
+        self.optimizer = torch.optim.Adam([*self.W, *self.a, self.b], lr=1e-3, fused=fused)
         self.total = torch.zeros(())
 
     def loss(self):
         codes = [frames[self.rows] for frames in self.frames]
         total = 0.0
-        for present, absent in ((0, 1), (1, 0)):
-            drive = torch.addmm(self.b, codes[present], self.W[present])
+        for absent in range(len(codes)):
+            drive = self.b
+            for present in range(len(codes)):
+                if present != absent:
+                    drive = torch.addmm(drive, codes[present], self.W[present])
             hidden = torch.sigmoid(drive)
             for step in range(self.STEPS):
                 logits = torch.addmm(self.a[absent], hidden, self.W[absent].t())
@@ -115,6 +125,66 @@ class MrbmStep:
         loss.backward()
         self.optimizer.step()
         self.total += loss.detach()
+
+
+class JointLikelihoodStep:
+    """CD-1 over both binary modalities at once, with Adam. Such an MRBM is an RBM whose visible units
+    are those of both: here they are one matrix, which suits PyTorch best."""
+
+    def __init__(self, batch, draw, fused, visible=600, hidden=150):
+        self.frames = frames_of(visible, True)
+        self.rows = torch.randint(0, 4096, (batch,))
+        self.W, self.a, self.b = normal(visible, hidden), torch.zeros(visible), torch.zeros(hidden)
+        self.optimizer = torch.optim.Adam([self.W, self.a, self.b], lr=1e-3, fused=fused)
+        self.draw = draw
+        self.losses = torch.zeros(2)
+
+    def gradients(self):
+        data, n = self.frames[self.rows], len(self.rows)
+        hidden_data = torch.sigmoid(torch.addmm(self.b, data, self.W))
+        visible = torch.sigmoid(torch.addmm(self.a, self.draw(hidden_data), self.W.t()))
+        hidden = torch.sigmoid(torch.addmm(self.b, visible, self.W))
+        change = visible - data
+        self.losses += change.square().view(n, 2, -1).mean((0, 2))
+        return ((visible.t() @ hidden - data.t() @ hidden_data) / n, change.mean(0),
+                (hidden - hidden_data).mean(0))
+
+    def __call__(self):
+        self.W.grad, self.a.grad, self.b.grad = self.gradients()
+        self.optimizer.step()
+
+
+class Generation:
+    """1,000 frames of a Gaussian CRBM on its own output, `samples` of them (Algorithm 4)."""
+
+    FRAMES, VISIBLE = 1000, 96
+
+    def __init__(self, samples, gibbs_steps, draw):
+        shapes = {"W": (self.VISIBLE, HIDDEN), "A": (ORDER * self.VISIBLE, self.VISIBLE),
+                  "B": (ORDER * self.VISIBLE, HIDDEN)}
+        self.parameters = {name: normal(*shape) for name, shape in shapes.items()}
+        self.a, self.b = torch.zeros(self.VISIBLE), torch.zeros(HIDDEN)
+        self.seed = torch.randn(ORDER, self.VISIBLE).flatten().repeat(samples, 1)
+        self.gibbs_steps, self.draw = gibbs_steps, draw
+
+    def next_frame(self, history):
+        p = self.parameters
+        bias_v = torch.addmm(self.a, history, p["A"])
+        bias_h = torch.addmm(self.b, history, p["B"])
+        visible = history[:, -self.VISIBLE:]
+        for step in range(self.gibbs_steps + 1):
+            hidden = torch.sigmoid(torch.addmm(bias_h, visible, p["W"]))
+            if step < self.gibbs_steps:
+                hidden = self.draw(hidden)
+            visible = torch.addmm(bias_v, hidden, p["W"].t())
+        return visible, torch.cat([history[:, self.VISIBLE:], visible], 1)
+
+    def __call__(self):
+        history, frames = self.seed, []
+        for _ in range(self.FRAMES):
+            frame, history = self.next_frame(history)
+            frames.append(frame)
+        return torch.stack(frames, 1)
 
 
 class Regeneration:
@@ -169,37 +239,53 @@ class Regeneration:
         return torch.stack(frames, 1)
 
 
-def variants(layer, batch):
-    """(name, step) pairs; a compiled one only where torch.compile works here."""
-    result = {}
-
-    def add(name, make):
-        result["eager" + name] = make()
-        if layer == "regeneration":  # a loop over frames: nothing to compile as a whole
-            return
-        step = make()
-        if layer == "mrbm":
-            step.loss = torch.compile(step.loss)
-            compiled = step
-        else:
-            compiled = torch.compile(step.__call__)
-        try:
-            compiled()
-        except Exception as error:  # no compiler, or a version without it
-            print(f"torch.compile: {error}"[:200], file=sys.stderr)
-            return
-        result["compiled" + name] = compiled
-
-    if layer == "mrbm":
-        add("", lambda: MrbmStep(batch))
-        return result
+def makers(layer, batch):
+    """(variant, function that makes the step, its method that is worth compiling)"""
+    if layer.startswith("mrbm"):
+        modalities = 3 if layer == "mrbm_3" else 2
+        return [(name, lambda fused=fused: MrbmStep(batch, modalities, fused), "loss")
+                for name, fused in (("", False), (", fused Adam", True))]
+    result = []
     for name, draw in DRAWS.items():
-        if layer == "regeneration":
-            add(", " + name, lambda draw=draw: Regeneration(batch, draw))
+        if layer == "regeneration":  # a loop over frames: nothing to compile as a whole
+            result.append((", " + name, lambda draw=draw: Regeneration(batch, draw), None))
+        elif layer.startswith("generation"):
+            steps = int(layer.rsplit("_", 1)[1])
+            result.append((", " + name, lambda draw=draw: Generation(batch, steps, draw),
+                           "next_frame"))
+        elif layer == "joint_likelihood":
+            for adam, fused in (("", False), (", fused Adam", True)):
+                result.append((", " + name + adam, lambda draw=draw, fused=fused:
+                               JointLikelihoodStep(batch, draw, fused), "gradients"))
         else:
-            binary = layer == "binary_crbm"
+            binary, persistent = layer == "binary_crbm", layer.startswith("persistent")
             visible, steps = (300, 1) if binary else (96, 5)
-            add(", " + name, lambda draw=draw: CrbmStep(visible, batch, steps, binary, draw))
+            result.append((", " + name, lambda draw=draw: CrbmStep(
+                visible, batch, steps, binary, draw, persistent), "__call__"))
+    return result
+
+
+def compiled(step, method):
+    """The step with that method compiled, or None where torch.compile does not work here."""
+    if method == "__call__":
+        step = torch.compile(step.__call__)
+    else:
+        setattr(step, method, torch.compile(getattr(step, method)))
+    try:
+        step()
+    except Exception as error:  # no compiler, or a version without it
+        print(f"torch.compile: {error}"[:200], file=sys.stderr)
+        return None
+    return step
+
+
+def variants(layer, batch):
+    """Name to step."""
+    result = {}
+    for name, make, method in makers(layer, batch):
+        result["eager" + name] = make()
+        if method and (step := compiled(make(), method)):
+            result["compiled" + name] = step
     return result
 
 
@@ -207,12 +293,12 @@ def main():
     layer, batch, seconds = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
     torch.set_num_threads(2)
     torch.manual_seed(1)
-    if layer != "mrbm":
+    if not layer.startswith("mrbm"):
         torch.set_grad_enabled(False)
     steps = variants(layer, batch)
     runs, times = {}, {name: [] for name in steps}
     for name, step in steps.items():
-        for _ in range(3 if layer != "regeneration" else 1):
+        for _ in range(1 if "generation" in layer else 3):
             start = time.perf_counter()
             step()
             once = time.perf_counter() - start
