@@ -28,15 +28,14 @@ void launch_energy(const Mrbm& mrbm, std::size_t m, const Rows& units, const Mat
 
 /// Of the shared units, from all modalities. @return [rows x hidden]
 Matrix shared_input(const Mrbm& mrbm, const std::vector<Rows>& units) {
-  require(!units.empty() && units.size() == mrbm.modality_count(),
-          "free energy: wants every modality");
+  require(units.size() == mrbm.modality_count(), "free energy: wants every modality");
   for (std::size_t m = 0; m < units.size(); ++m)
     require(units[m].columns == mrbm.visible(m) && units[m].count == units[0].count &&
                 units[m].index == nullptr,
             "free energy: the rows do not fit the MRBM");
   std::vector<std::size_t> all(units.size());
   std::iota(all.begin(), all.end(), 0);
-  const Matrix input(mrbm.device(), units[0].count, mrbm.hidden());
+  const Matrix input(mrbm.device(), units.at(0).count, mrbm.hidden());
   shared_units(mrbm, all, units, mrbm.b, {}, input);
   return input;
 }
