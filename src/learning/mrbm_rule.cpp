@@ -3,14 +3,11 @@
 #include "learning/joint_likelihood.hpp"
 #include "learning/multi_prediction.hpp"
 #include "learning/perceptron_loss.hpp"
-#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 
 std::unique_ptr<LearningRule> make_mrbm_rule(Mrbm& mrbm, std::size_t batch,
                                              const MrbmSettings& settings) {
-  if (settings.joint_likelihood && settings.perceptron_loss)
-    throw ConfigError("`mrbm.joint-likelihood` and `mrbm.perceptron-loss` exclude each other");
   if (settings.joint_likelihood) return std::make_unique<JointLikelihood>(mrbm, batch, settings);
   if (settings.perceptron_loss) return std::make_unique<PerceptronLoss>(mrbm, batch, settings);
   return std::make_unique<MultiPrediction>(mrbm, batch, settings, optimizer_of(settings));

@@ -96,7 +96,7 @@ TEST_CASE("generate: every option changes what its help says") {
                    .samples = 2,
                    .gibbs_steps = 4,
                    .temperature = 0.8,
-                   .seed = 3};
+                   .seed = 1};
   const auto before = by_program(plain);
   CHECK(before == by_library(plain));
   CHECK(before[0] != before[1]);

@@ -84,7 +84,7 @@ const std::vector<SettingRow>& setting_rows() {
       SETTING("mrbm.mean-field-steps", 4, mrbm.mean_field_steps),
       SETTING("mrbm.epochs", 2, mrbm.epochs),
       SWITCH("mrbm.joint-likelihood", 1, mrbm.joint_likelihood),
-      SWITCH("mrbm.perceptron-loss", 0, mrbm.perceptron_loss),
+      SWITCH("mrbm.perceptron-loss", 1, mrbm.perceptron_loss),
       SETTING("mrbm.gibbs-steps", 3, mrbm.gibbs_steps),
       SWITCH("mrbm.persistent", 1, mrbm.persistent),
       SWITCH("mrbm.sample-visible", 1, mrbm.sample_visible),

@@ -18,9 +18,6 @@ namespace {
 const std::string kQuick =
     kTinyGreedy + " --stages greedy --layers 1 --order 2 --least-batches 1 --batch 36";
 
-constexpr const char* kSwitches[] = {"keep-first-frame", "fine-tuning.from-greedy",
-                                     "augment.mirror"};
-
 std::string with_dashes(std::string name) {
   std::replace(name.begin(), name.end(), '.', '-');
   return name;
@@ -49,12 +46,15 @@ void check_setting(const SettingRow& row) {
 
 std::vector<OptionRow> setting_option_rows() {
   std::vector<OptionRow> rows;
-  for (const SettingRow& row : setting_rows())
-    if (!row.is_switch)
+  for (const SettingRow& row : setting_rows()) {
+    if (!row.is_switch) {
       rows.push_back({"--" + with_dashes(row.name), [&row] { check_setting(row); }});
-  for (const char* name : kSwitches)
+      continue;
+    }
     for (const bool on : {true, false})
-      rows.push_back({(on ? "--" : "--no-") + with_dashes(name), [=] { check_switch(name, on); }});
+      rows.push_back({(on ? "--" : "--no-") + with_dashes(row.name),
+                      [&row, on] { check_switch(row.name, on); }});
+  }
   return rows;
 }
 

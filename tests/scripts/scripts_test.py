@@ -13,6 +13,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import tomllib
 import unittest
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
@@ -230,7 +231,7 @@ fine-tuning.from-greedy = false
         side = "below" if 0.8646 < pose else "above"
         self.assertIn(f"Walking: the printed mean, 0.8646, is {side}", result.stdout)
         # Both ways of Algorithm 5: sampled with k = 3, and mean field.
-        drawn = json.loads((out / "walking/run/config.json").read_text())["regeneration"]
+        drawn = tomllib.loads((out / "walking/run/config.toml").read_text())["regeneration"]
         self.assertEqual(drawn, {"gibbs-steps": 3, "mrbm-gibbs-steps": 3, "sampled": True})
         self.assertNotEqual(walking["mean"], walking["mean_field"])
         selection = json.loads((out / "walking/selection.json").read_text())

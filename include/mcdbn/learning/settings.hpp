@@ -129,7 +129,7 @@ struct MrbmSettings {
                   "learns the joint likelihood by contrastive divergence, in place of MinVI"},
           self.joint_likelihood);
     visit(Setting{"perceptron-loss", on_or_off(), "",
-                  "MinVI by CD-PercLoss, in place of multi-prediction"},
+                  "MinVI, where it is learnt, by CD-PercLoss in place of multi-prediction"},
           self.perceptron_loss);
     visit(Setting{"gibbs-steps", within(1, 1000), "steps",
                   "k of the chains of joint-likelihood and perceptron-loss"},
