@@ -3,12 +3,16 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <utility>
 
+#include "clip_options.hpp"
 #include "commands.hpp"
 #include "fit_option.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
+#include "mcdbn/formats/track_csv.hpp"
 #include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "sample_path.hpp"
@@ -17,21 +21,35 @@
 namespace mcdbn::cli {
 namespace {
 
+constexpr const char *kToPose = "pose", *kToTrack = "track";
+
 struct RegenerateOptions {
   std::filesystem::path model, input, output, camera, skeleton;
   SamplingOptions sampling;
-  std::string fit = kFitTrack;
+  std::string to = kToPose, fit;
 };
 
-void run_regenerate(const CommandContext& context, const RegenerateOptions& options) {
-  Device device = Device::open({context.platform, context.device});
-  const Model model = load_model(device, options.model);
+/// What the answer to a track needs to know, and a track does not.
+void check_direction(const RegenerateOptions& options) {
+  if (options.to != kToTrack) return;
+  for (const auto& [said, flag] : {std::pair{!options.skeleton.empty(), "--skeleton"},
+                                   std::pair{!options.fit.empty(), "--fit"}})
+    if (said)
+      throw ConfigError(fmt::format(
+          "{} is for --to pose: a regenerated track has no skeleton and is not fitted", flag));
+}
+
+void report(const std::filesystem::path& path, int frames, double fps) {
+  spdlog::info("{}: {} frames at {:.4g} fps", path.string(), frames, fps);
+}
+
+void regenerate_poses(const Model& model, const RegenerateOptions& options,
+                      const std::optional<Camera>& camera,
+                      const RegenerationOptions& regeneration) {
   ClipPlacement placement;
-  if (!options.camera.empty()) placement.camera = read_camera(options.camera);
+  placement.camera = camera;
   if (!options.skeleton.empty()) placement.skeleton = read_bvh(options.skeleton).skeleton;
   placement.fit = track_fit(options.fit);
-  const RegenerationOptions regeneration =
-      options.sampling.regeneration(model.network, context.seed);
   TrackFeatures::FillCount filled;
   const Track2d track = read_track(options.input);
   const auto motions = regenerate_clip(model, track, placement, regeneration, &filled);
@@ -41,26 +59,62 @@ void run_regenerate(const CommandContext& context, const RegenerateOptions& opti
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const auto path = sample_path(options.output, i, motions.size());
     write_bvh(path, motions[i]);
-    spdlog::info("{}: {} frames at {:.4g} fps", path.string(), motions[i].frames(),
-                 motions[i].fps());
+    report(path, motions[i].frames(), motions[i].fps());
   }
+}
+
+void regenerate_tracks(const Model& model, const RegenerateOptions& options,
+                       const std::optional<Camera>& camera,
+                       const RegenerationOptions& regeneration) {
+  const Motion clip = load_clip_with_notices(options.input, {.fps = model.modalities.fps});
+  const auto tracks = regenerate_track(model, clip, regeneration, camera);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const auto path = sample_path(options.output, i, tracks.size());
+    write_track_csv(path, tracks[i]);
+    report(path, tracks[i].frames(), tracks[i].fps);
+  }
+}
+
+void run_regenerate(const CommandContext& context, const RegenerateOptions& options) {
+  check_direction(options);
+  Device device = Device::open({context.platform, context.device});
+  const Model model = load_model(device, options.model);
+  std::optional<Camera> camera;
+  if (!options.camera.empty()) camera = read_camera(options.camera);
+  const RegenerationOptions regeneration =
+      options.sampling.regeneration(model.network, context.seed);
+  if (options.to == kToTrack)
+    regenerate_tracks(model, options, camera, regeneration);
+  else
+    regenerate_poses(model, options, camera, regeneration);
 }
 
 }  // namespace
 
 void add_regenerate_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<RegenerateOptions>();
-  CLI::App* command =
-      app.add_subcommand("regenerate", "Regenerates 3D motion, as BVH, from a 2D track");
+  CLI::App* command = app.add_subcommand(
+      "regenerate", "Regenerates 3D motion, as BVH, from a 2D track; or a track from motion");
   command->add_option("--model", options->model, "Trained model")->required()->type_name("FILE");
-  command->add_option("--input", options->input, "2D track, CSV")->required()->type_name("FILE");
-  command->add_option("-o,--output", options->output, "BVH file to write")
+  command->add_option("--input", options->input, "2D track, CSV; with --to track a BVH clip")
       ->required()
       ->type_name("FILE");
   command
-      ->add_option("--camera", options->camera,
-                   "OpenCV YAML or XML camera that saw the track (default: the model's view, clip "
-                   "at the origin)")
+      ->add_option("-o,--output", options->output,
+                   "BVH file to write; with --to track a 2D track, CSV")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--to", options->to,
+                   "pose: 3D from 2D; track: 2D from 3D, at the model's rate, in pixels of the "
+                   "camera's image")
+      ->check(CLI::IsMember({kToPose, kToTrack}))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--camera", options->camera,
+          "OpenCV YAML or XML camera that saw the track, or is to see the motion (default: "
+          "the model's view, clip at the origin)")
       ->type_name("FILE");
   command
       ->add_option("--skeleton", options->skeleton,
@@ -75,7 +129,9 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
   command->footer(
       "Example:\n  mcdbn-cl regenerate --model run/model.safetensors --input track.csv -o out.bvh\n"
       "  mcdbn-cl regenerate --model run/model.safetensors --input track.csv -o out.bvh --samples "
-      "5");
+      "5\n"
+      "  mcdbn-cl regenerate --model run/model.safetensors --to track --input walk.bvh -o "
+      "track.csv");
   command->callback([&context, options] {
     context.run = [&context, options] { run_regenerate(context, *options); };
   });

@@ -213,6 +213,33 @@ MatrixD TrackFeatures::encode(const Track2d& track, FillCount* filled) const {
   return features;
 }
 
+Track2d TrackFeatures::decode(const MatrixD& features, double fps, int width_px,
+                              int height_px) const {
+  if (features.cols() != dimension())
+    throw ShapeError(fmt::format("TrackFeatures::decode: {} columns, expected {}", features.cols(),
+                                 dimension()));
+  const auto joints = static_cast<Eigen::Index>(joint_names_.size());
+  Track2d track;
+  track.fps = fps;
+  track.width_px = width_px;
+  track.height_px = height_px;
+  track.joint_names = {root_name_};
+  track.joint_names.insert(track.joint_names.end(), joint_names_.begin(), joint_names_.end());
+  track.x_px.resize(features.rows(), joints + 1);
+  track.y_px.resize(features.rows(), joints + 1);
+  track.confidence = MatrixD::Ones(features.rows(), joints + 1);
+  const Eigen::ArrayXd root_x = features.col(2 * joints).array() * height_px + width_px / 2.0;
+  const Eigen::ArrayXd root_y = features.col(2 * joints + 1).array() * height_px + height_px / 2.0;
+  const Eigen::ArrayXd size_px = features.col(2 * joints + 2).array().exp() * height_px;
+  track.x_px.col(0) = root_x;
+  track.y_px.col(0) = root_y;
+  for (Eigen::Index joint = 0; joint < joints; ++joint) {
+    track.x_px.col(joint + 1) = root_x + size_px * features.col(2 * joint).array();
+    track.y_px.col(joint + 1) = root_y + size_px * features.col(2 * joint + 1).array();
+  }
+  return track;
+}
+
 nlohmann::json TrackFeatures::to_json() const {
   return {{"joints", joint_names_}, {"root", root_name_}};
 }

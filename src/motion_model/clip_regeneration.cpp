@@ -4,6 +4,7 @@
 
 #include "camera/track_resample.hpp"
 #include "fitting/track_smoothing.hpp"
+#include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/resample.hpp"
 
 namespace mcdbn {
@@ -55,6 +56,23 @@ std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
     motions.push_back(with_frames(resample(clip.motion, track.fps), track.frames()));
   }
   return motions;
+}
+
+std::vector<Track2d> regenerate_track(const Model& model, const Motion& clip,
+                                      const RegenerationOptions& options,
+                                      const std::optional<Camera>& camera) {
+  const Modalities& modalities = model.modalities;
+  const CameraPlacement& view = modalities.camera;
+  const Eigen::Matrix3d camera_from_world =
+      camera ? camera->camera_from_world : camera_rotation(view.azimuth_deg, view.elevation_deg);
+  const MatrixF pose = modalities.encode_pose(resample(clip, modalities.fps), camera_from_world);
+  std::vector<std::vector<MatrixF>> present(model.network.modality_count());
+  present[kPose] = {pose};
+  std::vector<Track2d> tracks;
+  for (const MatrixF& track : regenerate(model.network, present, kTrack, options))
+    tracks.push_back(modalities.decode_track(track, camera ? camera->width_px : view.width_px,
+                                             camera ? camera->height_px : view.height_px));
+  return tracks;
 }
 
 }  // namespace mcdbn

@@ -75,6 +75,39 @@ TEST_CASE("track features: neither image size nor the position in it changes the
   CHECK((after.col(6) - before.col(6)).norm() < 1e-9);
 }
 
+TEST_CASE("track features: decoded, pixels come back wherever nothing was missing") {
+  Track2d track = still_track();
+  track.width_px = 1281;
+  track.height_px = 720;
+  track.fps = 24;
+  for (int frame = 0; frame < 90; ++frame) {
+    // Across the image, towards the camera, and a hand that waves.
+    track.x_px.row(frame).array() += 3.0 * frame - 500;
+    track.y_px.row(frame).array() -= 0.5 * frame;
+    track.x_px(frame, track.find("Foot")) += 0.2 * frame;
+    track.y_px(frame, track.find("Hand")) += 20 * std::sin(0.3 * frame);
+  }
+  const Track2d back = kFeatures.decode(kFeatures.encode(track), 24, 1281, 720);
+  CHECK(back.joint_names == std::vector<std::string>{"Hips", "Hand", "Foot"});
+  CHECK(back.fps == 24);
+  CHECK(back.width_px == 1281);
+  CHECK(back.height_px == 720);
+  CHECK((back.confidence.array() == 1.0).all());
+  REQUIRE(back.frames() == 90);
+  for (const std::string& name : back.joint_names) {
+    CAPTURE(name);
+    const auto joint = back.find(name), same = track.find(name);
+    // A few roundings of numbers up to a thousand.
+    CHECK((back.x_px.col(joint) - track.x_px.col(same)).cwiseAbs().maxCoeff() < 1e-11);
+    CHECK((back.y_px.col(joint) - track.y_px.col(same)).cwiseAbs().maxCoeff() < 1e-11);
+  }
+  // On an image twice as large everything is.
+  const Track2d large = kFeatures.decode(kFeatures.encode(track), 24, 2562, 1440);
+  CHECK((large.x_px - 2 * back.x_px).cwiseAbs().maxCoeff() < 1e-11);
+  CHECK((large.y_px - 2 * back.y_px).cwiseAbs().maxCoeff() < 1e-11);
+  CHECK_THROWS_AS(kFeatures.decode(MatrixD::Zero(3, 6), 24, 100, 100), ShapeError);
+}
+
 TEST_CASE("track features: the body's size follows an approach to the ends, but not the gait") {
   Track2d track = still_track();
   for (int frame = 0; frame < 90; ++frame) {

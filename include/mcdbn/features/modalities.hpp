@@ -29,6 +29,10 @@ struct Modalities {
   MatrixF encode_track(const Track2d& track, TrackFeatures::FillCount* filled = nullptr) const {
     return track_scale.apply(track_features.encode(track, filled));
   }
+  /// The inverse of encode_track, on an image of that size.
+  Track2d decode_track(const MatrixF& standardized, int width_px, int height_px) const {
+    return track_features.decode(track_scale.invert(standardized), fps, width_px, height_px);
+  }
 };
 
 }  // namespace mcdbn

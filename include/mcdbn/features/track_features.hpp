@@ -43,6 +43,11 @@ class TrackFeatures {
   /// @param filled if given, how many joint-frames were interpolated and how many stay missing
   /// @return [frames x dimension]  @throws InputError if a joint of the model is in no column
   MatrixD encode(const Track2d& track, FillCount* filled = nullptr) const;
+  /// Back to pixels on an image of that size: the root first, then joint_names(), confidence 1. The
+  /// root's place and the body's size are features too, so nothing else has to be known; of
+  /// encode() it is the inverse wherever nothing was missing.
+  /// @param features [frames x dimension]  @throws ShapeError
+  Track2d decode(const MatrixD& features, double fps, int width_px, int height_px) const;
   static constexpr double kLongestGap_s = 0.2;
   static constexpr double kSizeWindow_s = 1.0;  ///< to either side
 

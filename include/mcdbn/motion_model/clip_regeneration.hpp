@@ -36,4 +36,16 @@ std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
                                     const RegenerationOptions& options,
                                     TrackFeatures::FillCount* filled = nullptr);
 
+/// The other direction: a 2D track from 3D motion, `samples` times, one frame for each of the clip
+/// at the model's rate. Everything in it is the network's answer, the root's place in the image and
+/// the body's size too; nothing is fitted or projected.
+/// @param clip any skeleton with the model's joint names, at any rate
+/// @param camera whose axes the motion is seen along and whose image the pixels are of; unset: the
+///        model's own view. Its lens and its place are not asked: the network knows one of each.
+/// @return the root first, then the other joints of the model
+/// @throws InputError if the clip lacks a joint of the model
+std::vector<Track2d> regenerate_track(const Model& model, const Motion& clip,
+                                      const RegenerationOptions& options,
+                                      const std::optional<Camera>& camera = {});
+
 }  // namespace mcdbn
