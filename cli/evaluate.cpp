@@ -51,7 +51,10 @@ void print_table(const EvaluationReport& report) {
     fmt::print("{:<22}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n", method.name,
                method.mean.pcc_flat, method.mean.pcc_channel, method.mean.error.mpjpe_mm,
                method.mean.error.pa_mpjpe_mm, method.mean.root_mm);
-  fmt::print("\n");
+  const TrackError track = overall_track_error(report);
+  fmt::print(
+      "\n2D from 3D: joints {:.1f} px off, relative to the root (the mean track {:.1f} px)\n\n",
+      track.track_error_px, track.mean_track_error_px);
   for (const Verdict& verdict : verdicts(report))
     fmt::print("{} {}\n",
                verdict.kind == Verdict::Kind::good  ? "+"

@@ -29,7 +29,7 @@ struct RegenerateOptions {
   std::string to = kToPose, fit;
 };
 
-/// What the answer to a track needs to know, and a track does not.
+/// Options that mean nothing where a track is wanted. @throws ConfigError naming the first
 void check_direction(const RegenerateOptions& options) {
   if (options.to != kToTrack) return;
   for (const auto& [said, flag] : {std::pair{!options.skeleton.empty(), "--skeleton"},

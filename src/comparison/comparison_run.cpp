@@ -10,6 +10,7 @@
 #include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
+#include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/body_size.hpp"
 #include "motion/foot_joints.hpp"
 
@@ -117,9 +118,10 @@ Regeneration answer(const Model& model, const TestRunOptions& options, const Enc
 }
 
 /// Clips go to the device some at a time, so that memory does not grow with the test.
+constexpr std::size_t kSequencesAtOnce = 64;
+
 void regenerate_clips(const Model& model, const TestRunOptions& options, const Progress& progress,
                       std::vector<ClipResult>& results) {
-  constexpr std::size_t kSequencesAtOnce = 64;
   const std::size_t samples = options.regeneration.samples;
   const std::size_t at_once = std::max<std::size_t>(1, kSequencesAtOnce / samples);
   for (std::size_t first = 0; first < results.size(); first += at_once) {
@@ -145,6 +147,30 @@ void regenerate_clips(const Model& model, const TestRunOptions& options, const P
     for (std::size_t i = 0; i < single.size(); ++i)
       results[first + i].others[kMeanField] =
           answer(model, options, results[first + i].truth, single[i]);
+  }
+}
+
+/// The other direction, from the true motion: what is done to tracks has no part in it.
+void regenerate_tracks(const Model& model, std::vector<ClipResult>& results) {
+  const Modalities& modalities = model.modalities;
+  const std::size_t modality_count = model.network.modality_count();
+  for (std::size_t first = 0; first < results.size(); first += kSequencesAtOnce) {
+    const std::size_t last = std::min(results.size(), first + kSequencesAtOnce);
+    std::vector<std::vector<MatrixF>> present(modality_count);
+    for (std::size_t i = first; i < last; ++i)
+      present[kPose].push_back(results[i].truth.pose_features);
+    const auto tracks = regenerate(model.network, present, kTrack);
+    for (std::size_t i = first; i < last; ++i) {
+      const EncodedClip& clip = results[i].truth;
+      const Track2d truth = project_motion(clip.motion, clip.camera);
+      const auto error_px = [&](const MatrixF& standardized) {
+        return track_error_px(
+            truth, modalities.decode_track(standardized, truth.width_px, truth.height_px),
+            modalities.root_name());
+      };
+      const MatrixF& track = tracks[i - first];
+      results[i].track = {error_px(track), error_px(MatrixF::Zero(track.rows(), track.cols()))};
+    }
   }
 }
 
@@ -221,6 +247,7 @@ std::vector<ClipResult> run_test(const Model& model,
     results.push_back(std::move(result));
   }
   regenerate_clips(model, options, progress, results);
+  regenerate_tracks(model, results);
   if (!options.baselines.empty()) run_baselines(model, options, progress, results);
   return results;
 }

@@ -15,6 +15,7 @@
 #include "corpus/encoded_clip.hpp"
 #include "evaluation/clip_score.hpp"
 #include "evaluation/report_clip.hpp"
+#include "evaluation/track_error.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
 
@@ -53,6 +54,7 @@ struct ClipResult {
   std::vector<Regeneration> samples;
   /// The baselines by name, and kMeanField, the model's single answer, if samples were drawn.
   std::map<std::string, Regeneration> others;
+  TrackError track;  ///< 2D from the true 3D, by the model's mean field
 };
 
 /// @throws InputError if a clip was trained on, or a training clip that the baselines need is gone

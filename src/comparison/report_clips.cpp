@@ -131,6 +131,7 @@ std::vector<ReportClip> report_clips(const Model& model, const std::vector<ClipR
       clip.samples.push_back({figure.points_mm(sample.motion), sample.score});
     for (const auto& [name, other] : result.others)
       clip.others[name] = {figure.points_mm(other.motion), other.score};
+    clip.track = result.track;
     clips.push_back(std::move(clip));
   }
   return clips;

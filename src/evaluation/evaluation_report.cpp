@@ -20,6 +20,11 @@ ordered_json score_json(const ClipScore& score) {
   return json;
 }
 
+ordered_json track_json(const TrackError& error) {
+  return {{"track_error_px", number(error.track_error_px)},
+          {"mean_track_error_px", number(error.mean_track_error_px)}};
+}
+
 ordered_json statistics_json(const SummaryStatistics& statistics) {
   return {{"count", statistics.count},
           {"left_out", statistics.left_out},
@@ -88,7 +93,8 @@ ordered_json clip_json(const ReportClip& clip) {
                        {"trained_on", clip.trained_on},
                        {"frames", clip.frames()},
                        {"fps", clip.fps},
-                       {"model", score_json(mean_score(scores))}};
+                       {"model", score_json(mean_score(scores))},
+                       {"track_from_pose", track_json(clip.track)}};
   return json;
 }
 
@@ -111,6 +117,16 @@ std::vector<MethodReport> overall_methods(const EvaluationReport& report) {
   return methods;
 }
 
+TrackError overall_track_error(const EvaluationReport& report) {
+  TrackError mean;
+  const auto clips = static_cast<double>(report.clips.size());
+  for (const ReportClip& clip : report.clips) {
+    mean.track_error_px += clip.track.track_error_px / clips;
+    mean.mean_track_error_px += clip.track.mean_track_error_px / clips;
+  }
+  return mean;
+}
+
 ordered_json summary_json(const EvaluationReport& report) {
   int frames = 0, trained = 0;
   for (const ReportClip& clip : report.clips) {
@@ -127,6 +143,7 @@ ordered_json summary_json(const EvaluationReport& report) {
   }
   json["baselines"] = std::move(baselines);
   if (!mean_field.is_null()) json["model_mean_field"] = std::move(mean_field);
+  json["track_from_pose"] = track_json(overall_track_error(report));
   json["model_file"] = report.model;
   json["protocol"] = report.protocol;
   json["temperature"] = report.temperature;

@@ -34,11 +34,15 @@ struct EvaluationReport {
 /// by name. A report without clips has none.
 std::vector<MethodReport> overall_methods(const EvaluationReport& report);
 
+/// 2D from 3D: mean over the clips.
+TrackError overall_track_error(const EvaluationReport& report);
+
 /// What the figures say, in words: whether a baseline beats the model, whether the flattened
 /// correlation says anything, how alike the regenerations are, whether training clips flatter.
 std::vector<Verdict> verdicts(const EvaluationReport& report);
 
-/// {"clips", "frames", "model": {pcc_flat, …}, "baselines": {name: {…}}, …}; figures that are not
+/// {"clips", "frames", "model": {pcc_flat, …}, "baselines": {name: {…}},
+/// "track_from_pose": {track_error_px, …}, …}; figures that are not
 /// finite are null. Without the clips' motion.
 nlohmann::ordered_json summary_json(const EvaluationReport& report);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evaluation/clip_score.hpp"
+#include "evaluation/track_error.hpp"
 
 namespace mcdbn {
 
@@ -32,6 +33,7 @@ struct ReportClip {
   std::vector<ReportMotion> samples;
   /// By name; `mean_field` is the model's single answer where the samples are drawn.
   std::map<std::string, ReportMotion> others;
+  TrackError track;  ///< of the model's other direction, 2D from 3D
 
   int frames() const { return static_cast<int>(truth_mm.rows()); }
 };

@@ -178,6 +178,18 @@ ReportTable clips_table(const EvaluationReport& report) {
   return table;
 }
 
+ReportTable tracks_table(const EvaluationReport& report) {
+  ReportTable table{"tracks.csv",
+                    "2D from 3D: every clip's regenerated track",
+                    {"clip", "action", "trained_on", "track_error_px", "mean_track_error_px"},
+                    {}};
+  for (const ReportClip& clip : report.clips)
+    table.rows.push_back({clip.name, clip.action, clip.trained_on ? "yes" : "no",
+                          number(clip.track.track_error_px),
+                          number(clip.track.mean_track_error_px)});
+  return table;
+}
+
 std::string csv_cell(const json& value) {
   if (value.is_null()) return "";
   if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
@@ -203,7 +215,8 @@ std::vector<ReportTable> report_tables(const EvaluationReport& report) {
           real_and_regenerated_table(report, 7),
           methods_table(report),
           fits_table(report),
-          clips_table(report)};
+          clips_table(report),
+          tracks_table(report)};
 }
 
 std::string csv_text(const ReportTable& table) {

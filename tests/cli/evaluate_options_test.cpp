@@ -219,6 +219,11 @@ TEST_CASE("evaluate: what holds where an option is not said, and the text for pe
   CHECK(text.standard_error.find("%  reading clips") != std::string::npos);
   CHECK(text.standard_output.starts_with("1 clips, 36 frames\n"));
   const json wanted = by_library(call, views_of_training(call.model));
+  const json& track = wanted.at("track_from_pose");
+  const std::string line = fmt::format(
+      "\n2D from 3D: joints {:.1f} px off, relative to the root (the mean track {:.1f} px)\n",
+      track.at("track_error_px").get<double>(), track.at("mean_track_error_px").get<double>());
+  CHECK(text.standard_output.find(line) != std::string::npos);
   const auto check_row = [&](const std::string& name, const json& scores) {
     const auto figure = [&](const char* of) { return scores.at(of).get<double>(); };
     const std::string row = fmt::format(

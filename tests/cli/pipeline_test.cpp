@@ -92,6 +92,13 @@ TEST_CASE("evaluate prints one object, and refuses clips that were trained on") 
     check_scores(summary.at("baselines").at(baseline));
   }
 
+  const json& track = summary.at("track_from_pose");
+  CHECK(track.at("track_error_px").get<double>() > 0.0);
+  double mean = 0;
+  for (const json& clip : summary.at("per_clip"))
+    mean += clip.at("track_from_pose").at("track_error_px").get<double>() / 2;
+  CHECK(track.at("track_error_px").get<double>() == doctest::Approx(mean));
+
   const CliResult refused = run_cli(evaluate + pipeline.training_clips());
   CHECK(refused.exit_code == 3);
   CHECK(refused.standard_output.empty());
@@ -186,6 +193,7 @@ TEST_CASE("evaluate --report writes the tables, by action, training clips marked
   CHECK(fs::exists(report / "report.html"));
   CHECK(count_lines(mcdbn::read_text_file(report / "table_3.csv")) == 3);
   CHECK(count_lines(mcdbn::read_text_file(report / "table_7.csv")) == 2);
+  CHECK(count_lines(mcdbn::read_text_file(report / "tracks.csv")) == 3);
 
   // The paper's protocol: every clip, ten times; what was said stays.
   const CliResult paper = run_cli(evaluate + pipeline.test_clips() + pipeline.training_clips() +

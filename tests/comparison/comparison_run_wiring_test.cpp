@@ -128,6 +128,30 @@ TEST_CASE("a test run shows the test clips' tracks as the damage left them, each
   });
 }
 
+TEST_CASE("a test run scores 2D from the true motion, whatever befell the tracks") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    TestRunOptions options = plain_options(scene);
+    options.damage = {.noise_px = 3, .missing_share = 0.05, .hidden_s = 0.1};
+    const Model model = scene.model(device);
+    const auto results = run_test(model, scene.tests, options);
+    const auto clips = report_clips(model, results, false);
+    REQUIRE(clips.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      CAPTURE(i);
+      const Motion clip = load_clip(scene.tests[i], {.fps = kFps});
+      const Camera camera = place_camera(clip, scene.test_view);
+      const Track2d truth = project_motion(clip, camera),
+                    answer = regenerate_track(model, clip, {}, camera).at(0);
+      CHECK(clips[i].track.track_error_px == track_error_px(truth, answer, "Hips"));
+      const Track2d mean = scene.modalities.track_features.decode(
+          scene.modalities.track_scale.mean().replicate(clip.frames(), 1), kFps, 1280, 720);
+      CHECK(clips[i].track.mean_track_error_px == track_error_px(truth, mean, "Hips"));
+      CHECK(results[i].track.track_error_px != results[i].track.mean_track_error_px);
+    }
+  });
+}
+
 TEST_CASE("a test run's samples are the network's, with the options that were given") {
   const Scene scene;
   on_every_device([&](Device& device) {

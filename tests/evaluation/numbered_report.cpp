@@ -49,6 +49,7 @@ ReportClip numbered_clip(const std::string& name, const std::string& action, int
                             numbered_score(10 * number + 3 - sample)});
   clip.others["ridge_window"] = {clip.truth_mm * 1.01, numbered_score(kRidgeNumber)};
   clip.others["mean_pose"] = {clip.truth_mm * 0.99, numbered_score(kMeanPoseNumber)};
+  clip.track = {12.5 * number, 40.0 + number};
   clip.others[kMeanField] = {clip.truth_mm * 1.02, numbered_score(kMeanFieldNumber)};
   return clip;
 }

@@ -189,6 +189,21 @@ TEST_CASE("report tables: scores of methods and clips, and every fit") {
     }
   }
 
+  const auto tracks = written.rows("tracks.csv");
+  REQUIRE(tracks.size() == 5);
+  for (std::size_t c = 0; c < 5; ++c) {
+    CHECK(tracks[c].at("clip") == written.report.clips[c].name);
+    CHECK(tracks[c].at("action") == written.report.clips[c].action);
+    CHECK(tracks[c].at("trained_on") == (c == 2 ? "yes" : "no"));
+    const json& error = written.summary.at("per_clip").at(c).at("track_from_pose");
+    CHECK(error.at("track_error_px") == 12.5 * static_cast<double>(c + 1));
+    CHECK(error.at("mean_track_error_px") == 41.0 + static_cast<double>(c));
+    check_cell(tracks[c], "track_error_px", error.at("track_error_px"));
+    check_cell(tracks[c], "mean_track_error_px", error.at("mean_track_error_px"));
+  }
+  CHECK(written.summary.at("track_from_pose") ==
+        json{{"track_error_px", 37.5}, {"mean_track_error_px", 43.0}});
+
   std::size_t at = 0;
   const auto fits = written.rows("fits.csv");
   for (const json& action : written.summary.at("actions"))
