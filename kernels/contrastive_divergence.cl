@@ -15,12 +15,13 @@
 // SAMPLE_VISIBLE=1 draws the visible units of every step, too (eq 6, 10), with phases from
 // VISIBLE_PHASE on. PERSISTENT=1 takes the first step's hidden units from `particles` [blocks · ROWS x
 // H_LD], one row for each of the mini-batch, and leaves those of the last step there; where `fresh`,
-// the chains start from the data.
+// the chains start from the data. MASKED=1 keeps the units at zero that `seen` [as frames] says were
+// not: 1 what was, 0 what was not, where the data are zero too.
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 GAUSSIAN=0,1 GROUP=1,64 SAMPLE=
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
-//   VEC=1,16 GROUP=1,64 GAUSSIAN=0,1 SAMPLE_VISIBLE=0,1 PERSISTENT=0,1
+//   VEC=1,16 GROUP=1,64 GAUSSIAN=0,1 SAMPLE_VISIBLE=0,1 PERSISTENT=0,1 MASKED=0,1
 //   VISIBLE=1,97 HIDDEN=1,97 ORDER_A=0,1,5 ORDER_B=0,5 GAUSSIAN=0,1
 
 #undef SAMPLE
@@ -33,6 +34,9 @@
 #endif
 #ifndef PERSISTENT
 #define PERSISTENT 0
+#endif
+#ifndef MASKED
+#define MASKED 0
 #endif
 #define VISIBLE_PHASE 0x1000
 
@@ -68,6 +72,17 @@ INLINE void draw_visible(local float* v, int column, int row0, uint4 random) {
 }
 #endif
 
+#if MASKED
+// Zero where the block's rows, frames `at`, did not see the unit.
+INLINE void mask_tile(floatN sum[ROWS][COLUMNS], const int count, global const float* seen,
+                      const int at[ROWS], int column) {
+#pragma unroll
+  for (int r = 0; r < ROWS; ++r)
+#pragma unroll
+    for (int c = 0; c < count; ++c) sum[r][c] *= loadN(at[r] * V_LD + column + c * VEC, seen);
+}
+#endif
+
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
     global const float* frames, global const int* index, int first, int shift, int rows,
     global const float* parameters, int8 parameters_at, global const float* w_transposed,
@@ -77,6 +92,10 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
 #if PERSISTENT
     ,
     global float* particles, int fresh
+#endif
+#if MASKED
+    ,
+    global const float* seen
 #endif
 ) {
   local float v[ROWS * V_LD];
@@ -146,6 +165,10 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
           draw_visible(v, column + c * VEC, row0,
                        (uint4)(random.xyz, random.w + (uint)(VISIBLE_PHASE + step)));
         load_kept_tile(sum, count, v, V_LD, column);
+#endif
+#if MASKED
+        mask_tile(sum, count, seen, at, column);
+        keep_tile(sum, count, v, V_LD, column);
 #endif
         if (last) {
           store_tile(sum, count, visible, V_LD, column);

@@ -90,6 +90,16 @@ kernel void scale_columns(global float* x, int offset, int ld, int columns,
   storeN(divides ? loadN(at, x) / by : loadN(at, x) * by, at, x);
 }
 
+// x[r, c] ← x[r, c] · by[r, c]
+kernel void multiply(global float* x, int offset, int ld, int columns, global const float* by,
+                     int by_offset, int by_ld) {
+  const int column = get_global_id(0) * VEC;
+  const int row = get_global_id(1);
+  if (column >= columns) return;
+  const int at = offset + row * ld + column;
+  storeN(loadN(at, x) * loadN(by_offset + row * by_ld + column, by), at, x);
+}
+
 #if SAMPLE == 1
 // Drop-out: keeps an entry, divided by the share that is kept, or makes it zero. Runs of `alike` rows
 // share their draws.

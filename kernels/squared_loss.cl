@@ -4,9 +4,11 @@
 // A window is `frames` rows, of which those from `lead` on count; there are `count` windows. Rows of
 // `prediction`, `target` and `error` are LD wide. Compile-time: DIMENSION, LD (a row's length).
 // global: (rows)
+// MASKED=1 counts only what `seen` says, 1 or 0, like `target`, and takes the mean over that; how much
+// it is `count_seen` finds out first, a column a work-item.
 //
 // Variants that `scripts/lint kernels` compiles:
-//   DIMENSION=1,97 LD=112
+//   DIMENSION=1,97 LD=112 MASKED=0,1
 
 #ifndef DIMENSION
 #define DIMENSION 43
@@ -15,15 +17,47 @@
 #define LD ((DIMENSION + 15) / 16 * 16)
 #endif
 
+#ifndef MASKED
+#define MASKED 0
+#endif
+
+#if MASKED
+// seen_count[column] = how many of the rows that count saw it; global: (DIMENSION)
+kernel void count_seen(global const float* seen, int count, int frames, int lead,
+                       global float* seen_count) {
+  const int column = get_global_id(0);
+  float sum = 0.0f;
+  for (int window = 0; window < count; ++window)
+    for (int frame = lead; frame < frames; ++frame) sum += seen[(window * frames + frame) * LD + column];
+  seen_count[column] = sum;
+}
+#endif
+
 kernel void squared_loss(global const float* prediction, global const float* target, int count,
                            int frames, int lead, float weight, global float* error,
-                           global float* losses, int losses_ld) {
+                           global float* losses, int losses_ld
+#if MASKED
+                           ,
+                           global const float* seen, global const float* seen_count
+#endif
+) {
   const int row = get_global_id(0);
   const bool counts = row % frames >= lead;
+#if MASKED
+  float all_seen = 0.0f;
+  for (int i = 0; i < DIMENSION; ++i) all_seen += seen_count[i];
+  const float of_features = 1.0f / max(all_seen, 1.0f);
+#else
   const float of_features = 1.0f / ((float)(count * (frames - lead)) * DIMENSION);
+#endif
   float sum = 0.0f;
   for (int i = 0; i < LD; ++i) {
+#if MASKED
+    const float difference =
+        counts ? seen[row * LD + i] * (prediction[row * LD + i] - target[row * LD + i]) : 0.0f;
+#else
     const float difference = counts ? prediction[row * LD + i] - target[row * LD + i] : 0.0f;
+#endif
     sum += difference * difference;
     error[row * LD + i] = 2.0f * weight * of_features * difference;
   }

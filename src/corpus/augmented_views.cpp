@@ -29,7 +29,7 @@ std::size_t views_that_fit(const std::vector<LoadedClip>& clips, const CorpusSet
 TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Modalities& modalities,
                                  const CorpusSettings& settings, std::uint64_t seed) {
   const std::size_t count = views_that_fit(clips, settings);
-  TrainingSet views{modalities, {}, {}, {}, {}};
+  TrainingSet views{modalities, {}, {}, {}, {}, {}};
   PeopleCount people;
   RandomKey key{seed, 0, random_streams::kAugmentedViews, 0};
   for (const auto& [clip, raw] : clips) {
@@ -39,11 +39,15 @@ TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Mod
       views.clips.push_back(clip);
       const AugmentedView view =
           augmented_view(raw, settings.fps, settings.camera, settings.augment, key);
-      // Limbs out of sight: as Mcdbn::fills_gaps says.
-      views.tracks.push_back(at_mean_where_unknown(modalities.encode_track(view.track)));
+      // Limbs out of sight: as Mcdbn::fills_gaps says, and nothing is learnt from them.
+      const MatrixF track = modalities.encode_track(view.track);
+      views.tracks_seen.push_back((!track.array().isNaN()).cast<float>().matrix());
+      views.tracks.push_back(at_mean_where_unknown(track));
       views.poses.push_back(modalities.encode_pose(view.motion, view.camera.camera_from_world));
     }
   }
+  const auto whole = [](const MatrixF& seen) { return (seen.array() == 1.0F).all(); };
+  if (std::ranges::all_of(views.tracks_seen, whole)) views.tracks_seen.clear();
   return views;
 }
 

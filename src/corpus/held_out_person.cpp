@@ -8,13 +8,14 @@ namespace mcdbn {
 namespace {
 
 TrainingSet selected(const TrainingSet& views, std::size_t person, bool that_person) {
-  TrainingSet result{views.modalities, {}, {}, {}, {}};
+  TrainingSet result{views.modalities, {}, {}, {}, {}, {}};
   for (std::size_t i = 0; i < views.poses.size(); ++i) {
     if ((views.people[i] == person) != that_person) continue;
     result.tracks.push_back(views.tracks[i]);
     result.poses.push_back(views.poses[i]);
     result.clips.push_back(views.clips[i]);
     result.people.push_back(views.people[i]);
+    if (!views.tracks_seen.empty()) result.tracks_seen.push_back(views.tracks_seen[i]);
   }
   return result;
 }

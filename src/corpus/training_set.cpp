@@ -91,6 +91,7 @@ TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const Corpus
                   {},
                   {},
                   std::move(recorded),
+                  {},
                   {}};
   pairs.resize(without_views);
   for (const Pair& pair : pairs) {

@@ -83,6 +83,15 @@ void scale_columns(const Rows& rows, const Matrix& factor, bool divides) {
          rows.offset(), rows.stride(), to_int(rows.columns), factor.buffer(), divides ? 1 : 0);
 }
 
+void multiply(const Rows& rows, const Rows& by) {
+  require(!rows.index && !by.index && by.count == rows.count && by.columns == rows.columns,
+          "multiply: shapes differ");
+  Device& device = rows.matrix->device();
+  launch(device, units_kernel(device, "multiply"), pointwise_size(rows), rows.matrix->buffer(),
+         rows.offset(), rows.stride(), to_int(rows.columns), by.matrix->buffer(), by.offset(),
+         by.stride());
+}
+
 void dropout(const Rows& c, float kept_share, const RandomKey& key, std::size_t alike) {
   require(kept_share > 0.0F && kept_share <= 1.0F, "dropout: the kept share is not in (0, 1]");
   require(alike > 0, "dropout: runs of no rows");

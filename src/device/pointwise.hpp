@@ -20,6 +20,8 @@ void scaled_difference(const Rows& x, const Rows& y, float scale, const Rows& ou
 void scale_rows(const Rows& x, const Rows& weights, const Rows& out);
 /// Every row times `factor` [1 x columns], or divided by it; in place, not indexed.
 void scale_columns(const Rows& rows, const Matrix& factor, bool divides = false);
+/// Every entry times that of `by`, of the same shape; in place, neither indexed.
+void multiply(const Rows& rows, const Rows& by);
 /// Drop-out, in place: an entry is divided by `kept_share` with that probability, else zero.
 /// @param alike runs of so many rows share their draws
 void dropout(const Rows& c, float kept_share, const RandomKey& key, std::size_t alike = 1);

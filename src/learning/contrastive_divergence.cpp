@@ -99,16 +99,21 @@ void ContrastiveDivergence::learn(std::span<const Rows> visible, const LearningS
                                   LossAccumulator& losses) {
   require(visible.size() == 1, "CD: wants one sequence");
   this->step(visible.front(), cd_rule_for(settings_, step.epoch, step.progress), step.random,
-             losses);
+             losses, step.seen);
 }
 
 void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const RandomKey& key,
-                                 LossAccumulator& losses) {
+                                 LossAccumulator& losses, const Matrix* seen) {
   require(rows.index != nullptr && rows.columns == crbm_.shape().visible,
           "CD: wants indexed frames, one each");
   require(rows.count > 0 && rows.count <= visible_data_.rows(),
           "CD: the mini-batch is larger than it was made for");
   require(rule.gibbs_steps > 0, "CD: wants at least one Gibbs step");
+  require(!seen || (seen->rows() == rows.matrix->rows() && seen->columns() == rows.columns),
+          "CD: what was seen has another shape than the frames");
+  require(!seen || !crbm_.has_deviation || rule.deviation_rate == 0.0F,
+          "CD: a deviation is learnt from frames that were seen whole");
+  seen_ = seen;
   optimizer_.next_step();
   run_chain(rows, rule, key);
   if (crbm_.has_deviation && rule.deviation_rate > 0.0F)
@@ -175,6 +180,12 @@ void ContrastiveDivergence::clamp_data(const Rows& rows, const RandomKey& key) {
   const Rows data(visible_data_, 0, rows.count);
   const Rows hidden_sample(hidden_sample_, 0, rows.count);
   gather(rows, data);
+  if (seen_) {
+    if (visible_seen_.empty()) visible_seen_ = Matrix::like(visible_data_);
+    Rows those = rows;
+    those.matrix = seen_;
+    gather(those, Rows(visible_seen_, 0, rows.count));
+  }
   if (crbm_.has_deviation) scale_columns(data, crbm_.visible_deviation, true);
   dynamic_biases(crbm_, rows);
   GemmOptions hidden;
@@ -208,6 +219,7 @@ void ContrastiveDivergence::gibbs_chain(const Crbm& machine, std::size_t count, 
     key.phase = static_cast<std::uint16_t>(kVisiblePhase + step);
     visible.random = key;
     gemm(hidden_sample, machine.W_transposed, visible_rows, visible);
+    if (seen_) multiply(visible_rows, Rows(visible_seen_, 0, count));
     GemmOptions hidden;
     hidden.bias = &hidden_bias_;
     hidden.activation = Activation::sigmoid;

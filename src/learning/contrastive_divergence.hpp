@@ -59,8 +59,14 @@ class ContrastiveDivergence : public LearningRule {
   /// One mini-batch: enqueues and returns. The draws are those of `key` with phase = Gibbs step for
   /// hidden units, kVisiblePhase + Gibbs step for visible ones.
   /// Adds the mean squared reconstruction error of a unit to `losses` slot 0.
-  /// @param rows the current frames, indexed, at most `largest_batch` of them  @throws ShapeError
-  void step(const Rows& rows, const CdRule& rule, const RandomKey& key, LossAccumulator& losses);
+  /// @param rows the current frames, indexed, at most `largest_batch` of them
+  /// @param seen what was seen in the frames' matrix, 1 or 0, in its shape: the rest, which has to
+  /// be
+  ///        0 there, is no part of the machine in that frame: 0 in every reconstruction too, so
+  ///        that it moves neither hidden units nor parameters. None: everything was seen
+  /// @throws ShapeError, also where `seen` is given while a deviation is learnt
+  void step(const Rows& rows, const CdRule& rule, const RandomKey& key, LossAccumulator& losses,
+            const Matrix* seen = nullptr);
 
   /// Unset where mini-batches are composed.
   const std::optional<RowTile>& tile() const { return tile_; }
@@ -88,6 +94,7 @@ class ContrastiveDivergence : public LearningRule {
 
   Crbm& crbm_;
   CdSettings settings_;
+  const Matrix* seen_ = nullptr;  ///< step()'s
   std::optional<RowTile> tile_;
   Optimizer optimizer_;
   // Dynamic biases while the chain runs; the fused chain leaves data − reconstruction there.
@@ -103,6 +110,7 @@ class ContrastiveDivergence : public LearningRule {
   void learn_deviation(std::size_t count, float rate);
 
   Matrix row_losses_;                     // [1 x batch], fused
+  Matrix visible_seen_;                   // [batch x visible], composed, where seen_ is
   Matrix activity_;                       // [1 x hidden], of a target
   std::optional<CrbmMatrices> gradient_;  // the optimizer's, composed
 };

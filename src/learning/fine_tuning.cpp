@@ -49,7 +49,7 @@ class Windows {
  public:
   Windows(Device& device, const SynchronizedClips& clips, std::size_t rows) : rows_(rows) {
     for (const ModalityClips& modality : clips.modalities)
-      sequences_.push_back(Sequences::from_host(device, modality.clips));
+      sequences_.push_back(Sequences::from_host(device, modality.clips, modality.seen));
   }
 
   /// The first modality's frames are those look_ahead later (WindowSampler::rows).
@@ -62,6 +62,8 @@ class Windows {
   std::size_t dimension(std::size_t modality) const {
     return sequences_[modality].values.columns();
   }
+  /// What was seen, like the modality's values; empty where everything was.
+  const Matrix& seen(std::size_t modality) const { return sequences_[modality].seen; }
 
  private:
   std::size_t rows_;
@@ -103,11 +105,18 @@ class HeldOutWindows {
 struct Direction {
   std::size_t modality;
   UnrolledPass pass;
-  std::unique_ptr<SequenceLoss> loss;
   Matrix target;
+  std::unique_ptr<Matrix> seen;  ///< like target, if some of it was not and the loss asks
+  std::unique_ptr<SequenceLoss> loss;
 
-  void learn(std::span<const Rows> rows, float kept, const RandomKey& key) {
+  /// @param all_seen Windows::seen of the modality
+  void learn(std::span<const Rows> rows, const Matrix& all_seen, float kept, const RandomKey& key) {
     gather(rows[modality], target);
+    if (seen) {
+      Rows those = rows[modality];
+      those.matrix = &all_seen;
+      gather(those, *seen);
+    }
     pass.forward(rows, kept, key);
     loss->differentiate(pass.prediction(), target, pass.prediction_error());
     pass.backward();
@@ -126,13 +135,16 @@ class FineTuner {
         windows_(device, clips, windows.rows()),
         sampler_(clips, windows, settings),
         index_(device, sampler_.rows(0)) {
+    const std::size_t last = start.modality_count() - 1;
+    add_direction(windows, last, make_loss(device, windows));
     const double others = settings_.reverse * static_cast<double>(kReverseEvery);
-    for (std::size_t m = start.modality_count(); m-- > 0;)
-      directions_.push_back({m, UnrolledPass(network_, m, windows),
-                             directions_.empty()
-                                 ? make_loss(device, windows)
-                                 : std::make_unique<SquaredLoss>(device, windows, others),
-                             Matrix(device, windows.rows(), windows_.dimension(m))});
+    for (std::size_t m = last; m-- > 0;) {
+      std::unique_ptr<Matrix> seen;
+      if (!windows_.seen(m).empty())
+        seen = std::make_unique<Matrix>(device, windows.rows(), windows_.dimension(m));
+      auto loss = std::make_unique<SquaredLoss>(device, windows, others, seen.get());
+      add_direction(windows, m, std::move(loss), std::move(seen));
+    }
   }
 
   void step(std::size_t step) {
@@ -142,7 +154,7 @@ class FineTuner {
     RandomKey key{seed_, static_cast<std::uint32_t>(step), random_streams::kDropout, 0};
     network_.clear_gradients();
     for (Direction& direction : directions_) {
-      direction.learn(rows, kept, key);
+      direction.learn(rows, windows_.seen(direction.modality), kept, key);
       if (settings_.reverse == 0 || step % kReverseEvery != 0) break;
       key.phase = static_cast<std::uint16_t>(key.phase + 0x100);
     }
@@ -169,6 +181,13 @@ class FineTuner {
   Mcdbn result() { return network_.averaged(); }
 
  private:
+  void add_direction(const SequenceWindows& windows, std::size_t modality,
+                     std::unique_ptr<SequenceLoss> loss, std::unique_ptr<Matrix> seen = nullptr) {
+    directions_.push_back({modality, UnrolledPass(network_, modality, windows),
+                           Matrix(network_.device(), windows.rows(), windows_.dimension(modality)),
+                           std::move(seen), std::move(loss)});
+  }
+
   const FineTuningSettings& settings_;
   std::uint64_t seed_;
   UnrolledNetwork network_;

@@ -37,6 +37,7 @@ void ContrastiveDivergence::fused_chain(const Rows& rows, const CdRule& rule, co
   defines["GAUSSIAN"] = shape.kind == VisibleKind::gaussian ? 1 : 0;
   if (rule.sample_visible) defines["SAMPLE_VISIBLE"] = 1;
   if (particles) defines["PERSISTENT"] = 1;
+  if (seen_) defines["MASKED"] = 1;
   Device& device = crbm_.device();
   cl::Kernel& kernel =
       device.programs().kernel("contrastive_divergence.cl", "gibbs_chain", defines);
@@ -50,10 +51,16 @@ void ContrastiveDivergence::fused_chain(const Rows& rows, const CdRule& rule, co
            visible_bias_.buffer(), hidden_data_.buffer(), hidden_.buffer(), hidden_bias_.buffer(),
            row_losses_.buffer(), to_int(rule.gibbs_steps), random_argument(key), more...);
   };
+  const auto run_seen = [&](const auto&... more) {
+    if (seen_)
+      run(more..., seen_->buffer());
+    else
+      run(more...);
+  };
   if (particles)
-    run(particles->buffer(), fresh ? 1 : 0);
+    run_seen(particles->buffer(), fresh ? 1 : 0);
   else
-    run();
+    run_seen();
 }
 
 void ContrastiveDivergence::fused_update(const Rows& rows, const CdRule& rule,

@@ -53,6 +53,7 @@ struct Stage {
   /// The sequences that the machine sees, and by how many frames each is ahead of the window's row.
   std::vector<std::pair<const Matrix*, int>> sequences;
   std::function<LayerHealth()> health;  ///< called now and then for the report
+  const Matrix* seen = nullptr;         ///< of the first sequence: LearningStep::seen
 };
 
 /// All epochs: shuffle, all mini-batches, one read of the losses, guard, report.
@@ -65,6 +66,7 @@ void run_epochs(const Stage& stage, MinibatchSchedule& schedule, DivergenceGuard
   EpochClock clock;
   LearningStep step;
   step.random = random;
+  step.seen = stage.seen;
   for (step.epoch = 1; step.epoch <= stage.epochs; ++step.epoch) {
     RandomKey shuffle = random;
     shuffle.phase = kShufflePhase;
@@ -282,7 +284,8 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
               settings.epochs,
               noise ? static_cast<LearningRule&>(*noise) : *rule,
               {{&visible.values, 0}},
-              [&] { return crbm_health(crbm.to_host(), windows); }},
+              [&] { return crbm_health(crbm.to_host(), windows); },
+              visible.seen.empty() ? nullptr : &visible.seen},
              schedule, guard, key_of(learning, stream, 0, 0), observer);
   return crbm;
 }
@@ -333,10 +336,10 @@ Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningS
   for (std::size_t i = 0; i < modalities; ++i) {
     const std::size_t m = modalities - 1 - i;
     const ModalityClips& modality = clips.modalities[m];
-    TrainedCdbn trained =
-        train_cdbn(device, Sequences::from_host(device, modality.clips), layers[m], learning,
-                   random_streams::layers_of(i), progress.part(cdbn_cost(layers[m], learning)),
-                   modality.name, start ? &start->cdbns.at(m) : nullptr);
+    TrainedCdbn trained = train_cdbn(
+        device, Sequences::from_host(device, modality.clips, modality.seen), layers[m], learning,
+        random_streams::layers_of(i), progress.part(cdbn_cost(layers[m], learning)), modality.name,
+        start ? &start->cdbns.at(m) : nullptr);
     cdbns[m] = std::move(trained.cdbn);
     codes[m] = std::move(trained.code);
   }

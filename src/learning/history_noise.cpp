@@ -44,9 +44,19 @@ void HistoryNoise::learn(std::span<const Rows> visible, const LearningStep& step
   noise.random = step.random;
   noise.random.phase = kNoisePhase;
   apply_epilogue(all, noise);
+  LearningStep noisy_step = step;
+  if (step.seen) {
+    if (seen_.empty()) seen_ = Matrix::like(windows_);
+    windows.matrix = step.seen;
+    Rows seen = copies;
+    seen.matrix = &seen_;
+    gather(windows, seen);
+    multiply(all, Rows(seen_, 0, all.count));
+    noisy_step.seen = &seen_;
+  }
   gather(rows, Rows::strided(windows_, frames_ - 1, rows.count, frames_));
   const Rows noisy = Rows::indexed(windows_, current_, 0, rows.count);
-  rule_.learn({&noisy, 1}, step, losses);
+  rule_.learn({&noisy, 1}, noisy_step, losses);
 }
 
 }  // namespace mcdbn

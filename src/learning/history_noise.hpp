@@ -27,6 +27,7 @@ class HistoryNoise : public LearningRule {
   std::size_t frames_;  ///< of a window: the history and the current one
   float deviation_;
   Matrix windows_;       ///< [largest_batch·frames x visible], one window after another
+  Matrix seen_;          ///< the same of what was seen; what was not gets no noise
   IndexBuffer current_;  ///< the last row of each
 };
 

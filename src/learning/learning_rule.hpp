@@ -13,6 +13,9 @@ struct LearningStep {
   std::size_t epoch = 1;  ///< from 1
   double progress = 0;    ///< 0 … 1, of all mini-batches
   RandomKey random;       ///< its draws: phase 0 on
+  /// What was seen of the first sequence, in the same rows of a matrix of its own
+  /// (Sequences::seen); none: all of it.
+  const Matrix* seen = nullptr;
 };
 
 /// How a machine learns from mini-batches: what its gradient is, and how its parameters move. One

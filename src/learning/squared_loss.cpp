@@ -15,17 +15,37 @@ void require_windows(const SequenceWindows& windows, const Matrix& prediction, c
           "window loss: shapes differ");
 }
 
-SquaredLoss::SquaredLoss(Device& device, const SequenceWindows& windows, double weight)
-    : windows_(windows), weight_(weight), losses_(device, windows.rows(), 1), sum_(device, 1, 1) {}
+SquaredLoss::SquaredLoss(Device& device, const SequenceWindows& windows, double weight,
+                         const Matrix* seen)
+    : windows_(windows),
+      weight_(weight),
+      seen_(seen),
+      losses_(device, windows.rows(), 1),
+      sum_(device, 1, 1) {
+  if (seen) seen_count_ = Matrix(device, 1, seen->columns());
+}
 
 void SquaredLoss::differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) {
   require_windows(windows_, prediction, target, error);
   Device& device = error.device();
-  const Defines defines{{"DIMENSION", to_int(target.columns())}, {"LD", to_int(target.stride())}};
-  launch(device, device.programs().kernel("squared_loss.cl", "squared_loss", defines),
-         {{windows_.rows(), 1}}, prediction.buffer(), target.buffer(), to_int(windows_.count),
-         to_int(windows_.frames), to_int(windows_.lead), static_cast<float>(weight_),
-         error.buffer(), losses_.buffer(), to_int(losses_.stride()));
+  Defines defines{{"DIMENSION", to_int(target.columns())}, {"LD", to_int(target.stride())}};
+  if (seen_) defines["MASKED"] = 1;
+  const int count = to_int(windows_.count), frames = to_int(windows_.frames),
+            lead = to_int(windows_.lead);
+  const auto run = [&](const auto&... more) {
+    launch(device, device.programs().kernel("squared_loss.cl", "squared_loss", defines),
+           {{windows_.rows(), 1}}, prediction.buffer(), target.buffer(), count, frames, lead,
+           static_cast<float>(weight_), error.buffer(), losses_.buffer(), to_int(losses_.stride()),
+           more...);
+  };
+  if (seen_) {
+    require_windows(windows_, *seen_, target, error);
+    launch(device, device.programs().kernel("squared_loss.cl", "count_seen", defines),
+           {{target.columns(), 1}}, seen_->buffer(), count, frames, lead, seen_count_.buffer());
+    run(seen_->buffer(), seen_count_.buffer());
+  } else {
+    run();
+  }
   column_sum(losses_, 1.0F, 1.0F, sum_);
   ++steps_;
 }

@@ -7,14 +7,19 @@ namespace mcdbn {
 /// The mean squared error of a modality's standardized features.
 class SquaredLoss : public SequenceLoss {
  public:
-  SquaredLoss(Device& device, const SequenceWindows& windows, double weight);
+  /// @param seen like the target, 1 where it counts and 0 where it does not, read at each call; it
+  ///        must live on. The mean is over what counts. None: everything does.
+  SquaredLoss(Device& device, const SequenceWindows& windows, double weight,
+              const Matrix* seen = nullptr);
   void differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) override;
   double read_and_reset() override;
 
  private:
   SequenceWindows windows_;
   double weight_;
+  const Matrix* seen_;
   Matrix losses_, sum_;
+  Matrix seen_count_;  ///< [1 x dimension]
   std::size_t steps_ = 0;
 };
 

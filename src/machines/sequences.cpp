@@ -3,8 +3,23 @@
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
+namespace {
 
-Sequences Sequences::from_host(Device& device, std::span<const MatrixF> clips) {
+Matrix stacked(Device& device, std::span<const MatrixF> clips, Eigen::Index frames,
+               Eigen::Index columns) {
+  MatrixF all(frames, columns);
+  Eigen::Index first = 0;
+  for (const MatrixF& clip : clips) {
+    all.middleRows(first, clip.rows()) = clip;
+    first += clip.rows();
+  }
+  return Matrix::from_host(device, all);
+}
+
+}  // namespace
+
+Sequences Sequences::from_host(Device& device, std::span<const MatrixF> clips,
+                               std::span<const MatrixF> seen) {
   Sequences sequences;
   Eigen::Index frames = 0;
   const Eigen::Index columns = clips.empty() ? 0 : clips.front().cols();
@@ -14,10 +29,8 @@ Sequences Sequences::from_host(Device& device, std::span<const MatrixF> clips) {
         {static_cast<std::size_t>(frames), static_cast<std::size_t>(clip.rows())});
     frames += clip.rows();
   }
-  MatrixF all(frames, columns);
-  for (std::size_t i = 0; i < clips.size(); ++i)
-    all.middleRows(static_cast<Eigen::Index>(sequences.clips[i].first), clips[i].rows()) = clips[i];
-  sequences.values = Matrix::from_host(device, all);
+  sequences.values = stacked(device, clips, frames, columns);
+  if (!seen.empty()) sequences.seen = stacked(device, seen, frames, columns);
   return sequences;
 }
 

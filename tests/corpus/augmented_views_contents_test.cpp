@@ -72,12 +72,16 @@ TEST_CASE(
     unknown = unknown || track.array().isNaN().any();
     CHECK(views.tracks[i] ==
           track.array().isNaN().select(MatrixF::Zero(track.rows(), track.cols()), track));
+    CHECK((views.tracks_seen.at(i).array() == 1.0F - track.array().isNaN().cast<float>()).all());
     CHECK(views.poses[i] == modalities.encode_pose(view.motion, view.camera.camera_from_world));
     CHECK(views.clips[i].path == identify_clip(file).path);
     for (std::uint32_t j = 0; j < i; ++j)
       CHECK((views.poses[i].rows() != views.poses[j].rows() || views.poses[i] != views.poses[j]));
   }
   CHECK(unknown);  // so that the case covers limbs out of sight
+  CorpusConfig in_sight = config;
+  in_sight.augment.missing = 0;
+  CHECK(make_augmented_views(walks.files(), modalities, in_sight).tracks_seen.empty());
   CHECK(views.modalities.fps == modalities.fps);
   CHECK(views.modalities.pose_scale.mean() == modalities.pose_scale.mean());
 }
@@ -117,6 +121,7 @@ TEST_CASE("a person's views keep their tracks, poses, clips and numbers") {
   const auto check = [&](const TrainingSet& set, std::size_t at, std::size_t from) {
     CHECK(set.poses[at] == views.poses[from]);
     CHECK(set.tracks[at] == views.tracks[from]);
+    CHECK(set.tracks_seen.at(at) == views.tracks_seen.at(from));
     CHECK(set.clips[at].path == views.clips[from].path);
     CHECK(set.people[at] == views.people[from]);
   };

@@ -18,7 +18,7 @@ struct Clip {
 
 TrainingSet views_from(const std::vector<Clip>& clips) {
   const SmallFigure figure;
-  TrainingSet views{figure.modalities(), {}, {}, {}, {}};
+  TrainingSet views{figure.modalities(), {}, {}, {}, {}, {}};
   for (const Clip& clip : clips) {
     views.tracks.push_back(MatrixF::Zero(clip.frames, 4));
     views.poses.push_back(MatrixF::Zero(clip.frames, 6));

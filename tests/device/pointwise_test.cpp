@@ -179,6 +179,24 @@ TEST_CASE("small: drop-out keeps what the host's draws keep, and what is expecte
   });
 }
 
+TEST_CASE("small: every entry times that of another matrix, and nothing beside them") {
+  on_every_device([](Device& device) {
+    for (const Size& size : kSmallSizes) {
+      CAPTURE(size.rows);
+      CAPTURE(size.columns);
+      const auto rows = static_cast<Eigen::Index>(size.rows);
+      const MatrixF x = random_matrix(size.rows + 3, size.columns, 1),
+                    by = random_matrix(size.rows + 1, size.columns, 2);
+      const Matrix out = Matrix::from_host(device, x);
+      multiply(Rows(out, 2, size.rows), Rows(Matrix::from_host(device, by), 1, size.rows));
+      MatrixF want = x;
+      want.middleRows(2, rows).array() *= by.bottomRows(rows).array();
+      CHECK(out.to_host() == want);  // one rounding each
+      CHECK(padding_is_zero(out));
+    }
+  });
+}
+
 TEST_CASE("small: shapes that differ are refused") {
   on_every_device([](Device& device) {
     const Matrix x(device, 3, 5), y(device, 3, 6);
@@ -186,6 +204,7 @@ TEST_CASE("small: shapes that differ are refused") {
     const IndexBuffer index(device, {0, 1});
     CHECK_THROWS_AS(scaled_difference(x, y, 1.0F, x), ShapeError);
     CHECK_THROWS_AS(scaled_difference(x, x, 1.0F, y), ShapeError);
+    CHECK_THROWS_AS(multiply(x, y), ShapeError);
     CHECK_THROWS_AS(transpose(x, out), ShapeError);
     CHECK_THROWS_AS(column_sum(x, 1.0F, 0.0F, sum), ShapeError);
     CHECK_THROWS_AS(gather(x, x), ShapeError);

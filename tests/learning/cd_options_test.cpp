@@ -43,6 +43,14 @@ struct Scene {
           static_cast<std::int32_t>(shape.order + (7 * i + 3) % (kFrames - shape.order)));
   }
 
+  /// Every third number or so is out of sight, some frames as a whole.
+  void hide_some() {
+    seen = MatrixF::Ones(frames.rows(), frames.cols());
+    for (Eigen::Index t = 0; t < frames.rows(); ++t)
+      for (Eigen::Index i = 0; i < frames.cols(); ++i)
+        if ((5 * t + 3 * i) % 7 < 2 || t % 11 == 4) seen(t, i) = frames(t, i) = 0;
+  }
+
   RandomKey key(std::size_t step) const { return {seed, static_cast<std::uint32_t>(step), 9, 0}; }
 
   reference::CrbmBatch batch(std::size_t step) const {
@@ -52,6 +60,10 @@ struct Scene {
       const auto row = static_cast<Eigen::Index>(r);
       const Eigen::Index t = rows[step * kBatch + r];
       result.visible.row(row) = frames.row(t).cast<double>();
+      if (seen.size() > 0) {
+        result.seen.conservativeResize(row + 1, visible);
+        result.seen.row(row) = seen.row(t).cast<double>();
+      }
       for (Eigen::Index q = 0; q < order; ++q)
         result.history.block(row, q * visible, 1, visible) =
             frames.row(t - order + q).cast<double>();
@@ -100,7 +112,7 @@ struct Scene {
   CrbmShape shape;
   CdSettings settings;
   CrbmParameters start;
-  MatrixF frames;
+  MatrixF frames, seen;  ///< seen: empty where everything was
   std::vector<std::int32_t> rows;
   unsigned seed;
 };
@@ -114,6 +126,8 @@ void check_close(const char* name, const MatrixF& got, const MatrixD& want) {
 template <typename Rule>
 void check(Device& device, const Scene& scene, bool fused) {
   const Matrix frames = Matrix::from_host(device, scene.frames);
+  Matrix seen;
+  if (scene.seen.size() > 0) seen = Matrix::from_host(device, scene.seen);
   const IndexBuffer index(device, scene.rows);
   Crbm crbm(device, scene.start);
   const auto tile = choose_chain_tile(device, scene.shape, kBatch);
@@ -127,7 +141,7 @@ void check(Device& device, const Scene& scene, bool fused) {
     REQUIRE(want.closest_draw > 5e-5);
     const auto before = device.launch_count();
     trainer.step(Rows::indexed(frames, index, step * kBatch, kBatch), scene.rule(step),
-                 scene.key(step), losses);
+                 scene.key(step), losses, seen.empty() ? nullptr : &seen);
     if (trainer.tile())
       CHECK(device.launch_count() - before == (scene.settings.sparsity_strength > 0 ? 3 : 2));
     CHECK(std::abs(losses.read_and_reset().at(0) - want.loss) <= 10 * kTolerance);
@@ -162,14 +176,17 @@ CdSettings settings() {
 const CrbmShape kGaussian{5, 6, 2, VisibleKind::gaussian}, kBinary{7, 4, 1, VisibleKind::binary};
 
 template <typename Rule>
-void check_everywhere(CdSettings changed, bool fused_too = true, unsigned seed = 1) {
+void check_everywhere(CdSettings changed, bool fused_too = true, unsigned seed = 1,
+                      bool hide_some = false) {
   on_every_device([&](Device& device) {
     for (const CrbmShape& shape : {kGaussian, kBinary})
       for (const bool fused : {true, false}) {
         if (fused && !fused_too) continue;
         CAPTURE(shape.visible);
         CAPTURE(fused);
-        check<Rule>(device, Scene(shape, changed, seed), fused);
+        Scene scene(shape, changed, seed);
+        if (hide_some) scene.hide_some();
+        check<Rule>(device, scene, fused);
       }
   });
 }
@@ -214,6 +231,16 @@ TEST_CASE("small: fast weights move the chains and no parameter, as the double r
   changed.persistent = true;
   changed.fast_rate = 0.2;
   check_everywhere<PersistentContrastiveDivergence>(changed, false);
+}
+
+TEST_CASE("small: units out of sight stay at zero in every kind of chain, as in the reference") {
+  CdSettings changed = settings();
+  changed.sample_visible = true;
+  check_everywhere<ContrastiveDivergence>(changed, true, 1, true);
+  changed.persistent = true;
+  check_everywhere<PersistentContrastiveDivergence>(changed, true, 1, true);
+  changed.fast_rate = 0.2;
+  check_everywhere<PersistentContrastiveDivergence>(changed, false, 1, true);
 }
 
 TEST_CASE("small: the deviation of Gaussian units is learnt as the double reference learns it") {

@@ -52,6 +52,7 @@ void CdTraining::step(const CrbmBatch& given, const CdOptions& options, const Ch
       closest_draw = std::min(closest_draw, reference::closest_draw(visible, draws.visible(k)));
       visible = bernoulli(visible, draws.visible(k));
     }
+    if (batch.seen.size() > 0) visible.array() *= batch.seen.array();
     probability = hidden_probability(moved, visible, hidden_bias);
     if (k < options.gibbs_steps || options.persistent) hidden = drawn(probability, k);
   }

@@ -47,6 +47,9 @@ struct TrainingSet {
   std::vector<TrainingClip> clips;  ///< files as they were read; of augmented views, each view's
   /// Who is seen in each of `poses`, counted from 0; empty where nobody asked.
   std::vector<std::size_t> people;
+  /// What was seen of each of `tracks`, 1, and what was not, 0, where the track is at its mean;
+  /// empty where everything was.
+  std::vector<MatrixF> tracks_seen;
   std::size_t frames() const;
 };
 

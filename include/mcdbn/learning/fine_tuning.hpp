@@ -25,7 +25,8 @@ struct FineTuned {
 
 /// The stage that the paper leaves out and its reference [19] has: MinVI back-propagated through
 /// the whole network (unrolled_pass.hpp) on windows that run freely, as regeneration does. The last
-/// modality from the others (3D from 2D) weighs most; the other directions stay trained. The result
+/// modality from the others (3D from 2D) weighs most; the other directions stay trained, by what of
+/// their modality was seen (ModalityClips::seen; the last one's loss counts everything). The result
 /// is the moving average of the parameters: the last one or, where clips are held out, the last one
 /// before those fared worse. The observer may throw to stop.
 /// @param held_out sequences that are not learnt from and say when to stop, or none

@@ -15,6 +15,10 @@ struct ModalityClips {
   std::string name;  ///< in names of stages and tensors
   std::span<const MatrixF> clips;
   VisibleKind kind = VisibleKind::gaussian;
+  /// What was seen of each clip, 1, and what was not, 0, shaped as the clips; none: all of it. What
+  /// was not seen is 0 in the clip and teaches nothing: those units are no part of the lowest
+  /// machine for that frame, and no loss of the modality counts them.
+  std::span<const MatrixF> seen = {};
 
   std::size_t dimension() const {
     return clips.empty() ? 0 : static_cast<std::size_t>(clips.front().cols());
@@ -31,7 +35,8 @@ struct SynchronizedClips {
   std::size_t frames(std::size_t clip) const {
     return static_cast<std::size_t>(modalities.front().clips[clip].rows());
   }
-  /// @throws ShapeError without modalities or clips, or where they differ in clips or frames
+  /// @throws ShapeError without modalities or clips, or where they differ in clips or frames;
+  ///         where `seen` has another shape than its clips, or a clip a number that was not seen
   void check() const;
 };
 
@@ -49,6 +54,7 @@ struct ModalityMatrices {
   std::string name;
   std::vector<MatrixF> clips;
   VisibleKind kind = VisibleKind::gaussian;
+  std::vector<MatrixF> seen = {};  ///< as ModalityClips::seen
 };
 
 class MatrixSource : public SequenceSource {

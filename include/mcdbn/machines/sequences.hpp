@@ -18,9 +18,11 @@ struct Sequences {
   Matrix values;  ///< [all frames x dimension]
   std::vector<Clip> clips;
   std::size_t valid_from = 0;
+  Matrix seen{};  ///< like `values`: 1 what was seen, 0 what was not; empty: all was
 
-  /// @throws ShapeError if clips differ in columns
-  static Sequences from_host(Device& device, std::span<const MatrixF> clips);
+  /// @param seen of each clip, in its shape, or none  @throws ShapeError if clips differ in columns
+  static Sequences from_host(Device& device, std::span<const MatrixF> clips,
+                             std::span<const MatrixF> seen = {});
   static Sequences from_host(Device& device, const std::vector<MatrixF>& clips) {
     return from_host(device, std::span<const MatrixF>(clips));
   }

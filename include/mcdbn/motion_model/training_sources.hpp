@@ -20,7 +20,8 @@ class ClipSource : public SequenceSource {
  public:
   explicit ClipSource(const TrainingSet& set) : set_(set) {}
   SynchronizedClips sequences() const override {
-    return {{{kModalityNames[kTrack], set_.tracks}, {kModalityNames[kPose], set_.poses}},
+    return {{{kModalityNames[kTrack], set_.tracks, VisibleKind::gaussian, set_.tracks_seen},
+             {kModalityNames[kPose], set_.poses}},
             set_.people};
   }
 
