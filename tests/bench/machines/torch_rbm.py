@@ -1,12 +1,15 @@
-"""A binary RBM of MNIST's size, 784 units and 500 hidden, by CD-1: mcdbn-cl and PyTorch.
+"""A binary RBM of MNIST's size, 784 units and 500 hidden, by CD-1: mcdbn-cl, PyTorch and learnergy.
 
 The data are scikit-learn's digits, enlarged from 8 x 8 to 28 x 28 pixels.
 """
 
+import logging
 import statistics
+import time
 
 import numpy
 import torch
+from learnergy.models.bernoulli import RBM
 from program import Fitted
 from scipy.ndimage import zoom
 from sklearn.datasets import load_digits
@@ -27,15 +30,31 @@ def reconstruction_error(p, data):
     return float(((data - again) ** 2).mean())
 
 
+def by_learnergy(data, seed):
+    logging.disable(logging.CRITICAL)
+    torch.manual_seed(seed)
+    machine = RBM(n_visible=data.shape[1], n_hidden=HIDDEN, steps=1, learning_rate=RATE, momentum=0, decay=0,
+                  temperature=1, use_gpu=False)
+    units = torch.tensor(data, dtype=torch.float32)
+    rows = torch.utils.data.TensorDataset(units, torch.zeros(len(units)))
+    start = time.perf_counter()
+    machine.fit(rows, batch_size=BATCH, epochs=EPOCHS)
+    wall = time.perf_counter() - start
+    letters = {"W": machine.W, "a": machine.a, "b": machine.b}
+    p = {name: value.detach().numpy() for name, value in letters.items()}
+    return wall / EPOCHS, wall, reconstruction_error(p, data)
+
+
 def compare(rounds, cli):
     torch.set_num_threads(2)
     data = large_digits()
-    runs = {"PyTorch": [], "mcdbn-cl": []}
+    runs = {"PyTorch": [], "learnergy": [], "mcdbn-cl": []}
     for seed in range(1, rounds + 1):
         machine = TorchCrbm(data.shape[1], HIDDEN, 0, True, {"W": RATE}, seed, 0.0, 0.0)
         seconds = machine.fit([data], BATCH, EPOCHS)
         runs["PyTorch"].append((statistics.median(seconds), sum(seconds),
                                 reconstruction_error(machine.letters(), data)))
+        runs["learnergy"].append(by_learnergy(data, seed))
         fitted = Fitted([data], "rbm",
                         f"--hidden {HIDDEN} --batch {BATCH} --seed {seed} --binary-epochs {EPOCHS} "
                         f"--binary-rate {RATE} --binary-gibbs-steps 1 --binary-momentum 0 "
@@ -49,5 +68,6 @@ def compare(rounds, cli):
                for name, results in runs.items()}
     for name, (epoch, wall, error) in medians.items():
         print(f"| {name} | {1e3 * epoch:.1f} | {wall:.2f} | {error:.5f} |")
-    print(f"\nPyTorch's epoch takes {medians['PyTorch'][0] / medians['mcdbn-cl'][0]:.1f} times as long.",
-          flush=True)
+    for name in ("PyTorch", "learnergy"):
+        print(f"\n{name}'s epoch takes {medians[name][0] / medians['mcdbn-cl'][0]:.1f} times as long.",
+              flush=True)
