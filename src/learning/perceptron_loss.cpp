@@ -12,7 +12,6 @@ PerceptronLoss::PerceptronLoss(Mrbm& mrbm, std::size_t batch, const MrbmSettings
       weights_(mrbm.device(), batch, 1),
       data_energy_(Matrix::like(weights_)),
       end_energy_(Matrix::like(weights_)) {
-  settings_.sample_visible = true;
   make_matrices();
 }
 
@@ -31,7 +30,7 @@ void PerceptronLoss::draw_data(const RandomKey& key) {
 }
 
 void PerceptronLoss::add_gradients(const RandomKey& key, LossAccumulator& losses) {
-  draw_data(key);
+  if (settings_.sample_visible) draw_data(key);
   for (std::size_t m = 0; m < data_.size(); ++m) {
     const std::size_t free[] = {m};
     RandomKey own = key;
