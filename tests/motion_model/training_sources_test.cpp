@@ -1,0 +1,21 @@
+#include "mcdbn/motion_model/training_sources.hpp"
+
+#include <doctest/doctest.h>
+
+#include "features/small_figure.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+TEST_CASE("a training set's clips say what was seen of the tracks, and of nothing else") {
+  const SmallFigure figure;
+  TrainingSet set{figure.modalities(), {MatrixF::Zero(4, 3)}, {MatrixF::Ones(4, 2)}, {}, {}, {}};
+  CHECK(ClipSource(set).sequences().modalities[kTrack].seen.empty());
+  set.tracks_seen = {MatrixF::Zero(4, 3)};
+  set.tracks_seen[0](2, 1) = 1;
+  const SynchronizedClips clips = ClipSource(set).sequences();
+  CHECK_NOTHROW(clips.check());
+  REQUIRE(clips.modalities[kTrack].seen.size() == 1);
+  CHECK(clips.modalities[kTrack].seen[0] == set.tracks_seen[0]);
+  CHECK(clips.modalities[kPose].seen.empty());
+}
