@@ -210,8 +210,9 @@ TEST_CASE("write_report: every file, a page of its own without network") {
   EvaluationReport report = small_report();
   report.clips[0].name = "</script><b>";
   write_report(folder / "report", report);
-  for (const char* file : {"summary.json", "table_3.csv", "table_4.csv", "table_5.csv",
-                           "table_6.csv", "table_7.csv", "methods.csv", "fits.csv", "clips.csv"})
+  for (const char* file :
+       {"summary.json", "table_3.csv", "table_4.csv", "table_5.csv", "table_6.csv", "table_7.csv",
+        "methods.csv", "fits.csv", "clips.csv", "tracks.csv"})
     CHECK(std::filesystem::exists(folder / "report" / file));
   const std::string page = read_text_file(folder / "report" / "report.html");
   CHECK(page.starts_with("<!doctype html>"));
