@@ -61,7 +61,10 @@ void add_machine_option(CLI::App& command, std::filesystem::path& model) {
 Cdbn stack_of(const SavedMachine& saved, const std::filesystem::path& file) {
   if (const Crbm* crbm = std::get_if<Crbm>(&saved.machine)) return {{*crbm}};
   if (const Cdbn* cdbn = std::get_if<Cdbn>(&saved.machine)) return *cdbn;
-  throw InputError(fmt::format("{}: an MRBM; this command takes one modality", file.string()));
+  if (std::holds_alternative<Mrbm>(saved.machine))
+    throw InputError(
+        fmt::format("{}: an MRBM; its data are said by --modality NAME=FILE", file.string()));
+  throw InputError(fmt::format("{}: an MCDBN; this command takes a single machine", file.string()));
 }
 
 std::vector<MatrixF> scaled(const SavedMachine& saved, std::vector<MatrixF> data,

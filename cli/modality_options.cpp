@@ -52,4 +52,41 @@ std::vector<ModalityData> read_modalities(const std::vector<std::string>& said,
   return modalities;
 }
 
+const Mrbm& mrbm_of(const SavedMachine& saved, const std::filesystem::path& file,
+                    const char* option) {
+  if (const Mrbm* mrbm = std::get_if<Mrbm>(&saved.machine)) return *mrbm;
+  throw InputError(fmt::format("{}: no MRBM; {} is of one", file.string(), option));
+}
+
+std::size_t modality_of(const Mrbm& mrbm, const std::string& name, const char* option) {
+  const std::vector<Modality>& modalities = mrbm.shape().modalities;
+  const auto found = std::ranges::find(modalities, name, &Modality::name);
+  if (found == modalities.end())
+    throw ConfigError(fmt::format("{} {}: the MRBM has none of that name", option, name));
+  return static_cast<std::size_t>(found - modalities.begin());
+}
+
+MrbmUnits mrbm_units(Device& device, const SavedMachine& saved, const Mrbm& mrbm,
+                     const std::vector<ModalityData>& inputs, std::size_t copies) {
+  std::vector<MatrixF> given(mrbm.modality_count());
+  Eigen::Index rows = 1;
+  for (const ModalityData& input : inputs) {
+    const std::size_t m = modality_of(mrbm, input.name, "--modality");
+    given[m] = stacked(scaled(saved, input.data, mrbm.visible(m), input.files, m), 0);
+    if (!given[m].allFinite())
+      throw InputError(fmt::format("{}: not numbers throughout; a modality is given whole",
+                                   input.files.files.front().string()));
+    rows = given[m].rows();
+  }
+  MrbmUnits result;
+  for (std::size_t m = 0; m < given.size(); ++m) {
+    result.given.push_back(given[m].cols() > 0);
+    result.units.push_back(
+        result.given[m]
+            ? Matrix::from_host(device, given[m].replicate(static_cast<Eigen::Index>(copies), 1))
+            : Matrix(device, static_cast<std::size_t>(rows) * copies, mrbm.visible(m)));
+  }
+  return result;
+}
+
 }  // namespace mcdbn::cli

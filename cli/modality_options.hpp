@@ -23,4 +23,23 @@ void add_modality_option(CLI::App& command, std::vector<std::string>& said, cons
 std::vector<ModalityData> read_modalities(const std::vector<std::string>& said,
                                           const std::string& tensor);
 
+/// An MRBM's modalities as it sees them.
+struct MrbmUnits {
+  std::vector<Matrix> units;  ///< [rows x visible] of each, zeros where nothing is given
+  std::vector<bool> given;    ///< of each modality
+  std::size_t rows() const { return units.front().rows(); }
+};
+
+/// @param option that takes MRBMs only, for the error  @throws InputError for other machines
+const Mrbm& mrbm_of(const SavedMachine& saved, const std::filesystem::path& file,
+                    const char* option);
+
+/// @param option that said the name  @throws ConfigError for a name that the MRBM has not
+std::size_t modality_of(const Mrbm& mrbm, const std::string& name, const char* option);
+
+/// What was read, in the machine's order and by its scales, all rows `copies` times over; so many
+/// rows if nothing was read. @throws ConfigError, InputError for data that are not the machine's
+MrbmUnits mrbm_units(Device& device, const SavedMachine& saved, const Mrbm& mrbm,
+                     const std::vector<ModalityData>& inputs, std::size_t copies = 1);
+
 }  // namespace mcdbn::cli

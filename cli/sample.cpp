@@ -1,12 +1,13 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
 #include <memory>
 
 #include "commands.hpp"
-#include "matrix_options.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/sampling.hpp"
+#include "modality_options.hpp"
 #include "setting_flags.hpp"
 
 namespace mcdbn::cli {
@@ -15,9 +16,15 @@ namespace {
 struct SampleOptions {
   std::filesystem::path model, output;
   MatrixInput given;
+  std::vector<std::string> modalities;  ///< NAME=FILE, of an MRBM
+  std::string infer;                    ///< its modality that is wanted
   std::size_t count = 1;
   ChainSettings chains;
 };
+
+void log_chains(const Device& device, std::size_t chains, const SampleOptions& options) {
+  spdlog::info("{} chains of {} steps on {}", chains, options.chains.steps, device.info().name);
+}
 
 /// Rows [count x visible] of free chains.
 MatrixF free_samples(Device& device, const Cdbn& stack, const SampleOptions& options) {
@@ -25,8 +32,7 @@ MatrixF free_samples(Device& device, const Cdbn& stack, const SampleOptions& opt
     throw ConfigError(
         "--given: wanted by a machine with a history, a sequence whose rows to draw are NaN");
   const Matrix start = Matrix::filled_with_row(stack.layers.front().visible_mean, options.count);
-  spdlog::info("{} chains of {} steps on {}", options.count, options.chains.steps,
-               device.info().name);
+  log_chains(device, options.count, options);
   return sample(stack, start, options.chains).to_host();
 }
 
@@ -42,15 +48,42 @@ MatrixF given_samples(Device& device, const Cdbn& stack, const SavedMachine& sav
       sample_given(stack, Sequences::from_host(device, copies), options.chains).to_host(), 0);
 }
 
+/// The wanted modality of an MRBM's chains, in the units of its data: free chains, or those of each
+/// row of what is given, `count` times over.
+MatrixF mrbm_samples(Device& device, const SavedMachine& saved, const SampleOptions& options) {
+  const Mrbm& mrbm = mrbm_of(saved, options.model, "--modality and --infer");
+  if (!options.given.files.empty())
+    throw ConfigError("--given: what is given of an MRBM is said by --modality NAME=FILE");
+  if (options.infer.empty()) throw ConfigError("--infer: wanted by an MRBM, the modality to draw");
+  const std::size_t wanted = modality_of(mrbm, options.infer, "--infer");
+  const MrbmUnits modalities =
+      mrbm_units(device, saved, mrbm, read_modalities(options.modalities, options.given.tensor),
+                 options.count);
+  if (modalities.given[wanted])
+    throw ConfigError(fmt::format("--infer {}: it is given", options.infer));
+  log_chains(device, modalities.rows(), options);
+  const std::vector<Matrix> drawn =
+      sample(mrbm, modalities.units, modalities.given, modalities.rows(), options.chains);
+  return unscaled(saved, drawn[wanted].to_host(), wanted);
+}
+
+/// Of an RBM, a CRBM or a stack of them.
+MatrixF stack_samples(Device& device, const SavedMachine& saved, const SampleOptions& options) {
+  const Cdbn stack = stack_of(saved, options.model);
+  return unscaled(saved, options.given.files.empty()
+                             ? free_samples(device, stack, options)
+                             : given_samples(device, stack, saved, options));
+}
+
 void run_sample(const CommandContext& context, const SampleOptions& options) {
   check_matrix_output(options.output);
   check_settings(options.chains);
   Device device = Device::open({context.platform, context.device});
   const SavedMachine saved = load_machine(device, options.model);
-  const Cdbn stack = stack_of(saved, options.model);
-  put_matrix(options.output, unscaled(saved, options.given.files.empty()
-                                                 ? free_samples(device, stack, options)
-                                                 : given_samples(device, stack, saved, options)));
+  const bool joint = std::holds_alternative<Mrbm>(saved.machine) || !options.infer.empty() ||
+                     !options.modalities.empty();
+  put_matrix(options.output,
+             joint ? mrbm_samples(device, saved, options) : stack_samples(device, saved, options));
 }
 
 }  // namespace
@@ -62,6 +95,10 @@ void add_sample_command(CLI::App& app, CommandContext& context) {
   add_matrix_input(*command, options->given, "--given",
                    "Matrices of what is given, NaN (an empty cell) where a unit is to be drawn; "
                    "without them free chains of a machine without history");
+  add_modality_option(*command, options->modalities,
+                      "What is given of an MRBM's modalities, and stays; the others are drawn");
+  command->add_option("--infer", options->infer, "Modality of an MRBM whose draws are written")
+      ->type_name("NAME");
   add_setting_flag(
       *command, "--count",
       {"count", within(1, 1e6), "samples", "Free chains, or draws for all that is given"},
@@ -74,7 +111,8 @@ void add_sample_command(CLI::App& app, CommandContext& context) {
   add_quiet_option(*command, context);
   command->footer(
       "Example:\n  mcdbn-cl sample --model digits.safetensors --count 64 -o digits.npy\n"
-      "  mcdbn-cl sample --model digits.safetensors --given left_halves.csv --means >whole.csv");
+      "  mcdbn-cl sample --model digits.safetensors --given left_halves.csv --means >whole.csv\n"
+      "  mcdbn-cl sample --model m.safetensors --modality left=l.npy --infer right -o r.npy");
   command->callback([&context, options] {
     context.run = [&context, options] { run_sample(context, *options); };
   });

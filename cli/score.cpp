@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -8,11 +9,11 @@
 #include <optional>
 
 #include "commands.hpp"
-#include "matrix_options.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/energy.hpp"
 #include "mcdbn/machines/partition.hpp"
 #include "mcdbn/machines/sampling.hpp"
+#include "modality_options.hpp"
 #include "setting_flags.hpp"
 
 namespace mcdbn::cli {
@@ -21,6 +22,7 @@ namespace {
 struct ScoreOptions {
   std::filesystem::path model, output;
   MatrixInput data;
+  std::vector<std::string> modalities;  ///< NAME=FILE, of an MRBM
   bool log_partition = false;
   AisSettings annealing;
 };
@@ -36,11 +38,14 @@ Eigen::VectorXd column_of(const Sequences& numbers, std::size_t from) {
 }
 
 /// @return the mean over units of squared errors, a row each
+Eigen::VectorXd squared_errors(const MatrixF& data, const MatrixF& again) {
+  return (data - again).cast<double>().cwiseAbs2().rowwise().mean();
+}
+
 Eigen::VectorXd reconstruction_errors(const Cdbn& stack, const Sequences& data) {
   const Sequences again = reconstruct(stack, data);
-  const MatrixF difference =
-      stacked(data.to_host(), again.valid_from) - stacked(again.to_host(), again.valid_from);
-  return difference.cast<double>().cwiseAbs2().rowwise().mean();
+  return squared_errors(stacked(data.to_host(), again.valid_from),
+                        stacked(again.to_host(), again.valid_from));
 }
 
 std::vector<Score> scores_of(const Cdbn& stack, const Sequences& data, std::uint64_t seed) {
@@ -73,22 +78,67 @@ Score log_likelihood(const Score& free_energy, const LogPartition& partition,
   return {"log_likelihood", (-free_energy.values.array() - partition.value - scale).matrix()};
 }
 
-void print_scores(const CommandContext& context, const std::vector<Score>& scores,
-                  const std::optional<LogPartition>& partition) {
+/// The columns, and what else is known of the machine.
+struct Scores {
+  std::vector<Score> columns;
+  std::optional<LogPartition> partition;
+};
+
+Scores stack_scores(Device& device, const SavedMachine& saved, const ScoreOptions& options) {
+  const Cdbn stack = stack_of(saved, options.model);
+  if (options.data.files.empty()) throw ConfigError("data: no files");
+  const Sequences data = Sequences::from_host(
+      device,
+      scaled(saved, options.data.read(), stack.layers.front().shape().visible, options.data));
+  Scores scores{scores_of(stack, data, options.annealing.seed), {}};
+  if (options.log_partition) {
+    scores.partition = partition_of(stack, options.annealing);
+    scores.columns.push_back(log_likelihood(scores.columns.front(), *scores.partition, saved));
+  }
+  return scores;
+}
+
+/// Of each row of all modalities together, and the reconstruction error of each modality.
+Scores mrbm_scores(Device& device, const SavedMachine& saved, const ScoreOptions& options) {
+  const Mrbm& mrbm = mrbm_of(saved, options.model, "--modality");
+  if (options.log_partition)
+    throw ConfigError("--log-partition: an MRBM has none that is known; it takes a single RBM");
+  if (!options.data.files.empty())
+    throw ConfigError("data: those of an MRBM are said by --modality NAME=FILE");
+  const MrbmUnits data =
+      mrbm_units(device, saved, mrbm, read_modalities(options.modalities, options.data.tensor));
+  const std::vector<Modality>& modalities = mrbm.shape().modalities;
+  for (std::size_t m = 0; m < modalities.size(); ++m)
+    if (!data.given[m])
+      throw ConfigError(fmt::format("--modality {}=FILE: wanted, a score is of all modalities",
+                                    modalities[m].name));
+  const std::vector<Rows> rows(data.units.begin(), data.units.end());
+  const std::vector<Matrix> again = reconstruct(mrbm, rows);
+  Scores scores{{{"free_energy", free_energy(mrbm, rows).to_host().col(0).cast<double>()}}, {}};
+  for (std::size_t m = 0; m < modalities.size(); ++m)
+    scores.columns.push_back({"reconstruction_error_" + modalities[m].name,
+                              squared_errors(data.units[m].to_host(), again[m].to_host())});
+  return scores;
+}
+
+void print_scores(const CommandContext& context, const Scores& scores) {
+  const auto& [columns, partition] = scores;
   nlohmann::ordered_json report;
-  report["rows"] = scores.front().values.size();
+  report["rows"] = columns.front().values.size();
   if (partition) {
     report["log_partition"] = partition->value;
     report["log_partition_error"] = partition->standard_error;
   }
-  for (const Score& score : scores)
+  for (const Score& score : columns)
     report[score.name] = score.values.size() == 0 ? 0.0 : score.values.mean();
   if (context.json) {
     std::cout << report.dump(2) << '\n';
     return;
   }
+  std::size_t width = 24;
+  for (const auto& [name, value] : report.items()) width = std::max(width, name.size() + 1);
   for (const auto& [name, value] : report.items())
-    std::cout << fmt::format("{:<24}{:.6g}\n", name, value.get<double>());
+    std::cout << fmt::format("{:<{}}{:.6g}\n", name, width, value.get<double>());
 }
 
 void run_score(const CommandContext& context, const ScoreOptions& options) {
@@ -96,21 +146,15 @@ void run_score(const CommandContext& context, const ScoreOptions& options) {
   check_settings(options.annealing);
   Device device = Device::open({context.platform, context.device});
   const SavedMachine saved = load_machine(device, options.model);
-  const Cdbn stack = stack_of(saved, options.model);
-  const Sequences data = Sequences::from_host(
-      device,
-      scaled(saved, options.data.read(), stack.layers.front().shape().visible, options.data));
-  std::vector<Score> scores = scores_of(stack, data, options.annealing.seed);
-  std::optional<LogPartition> partition;
-  if (options.log_partition) {
-    partition = partition_of(stack, options.annealing);
-    scores.push_back(log_likelihood(scores.front(), *partition, saved));
-  }
-  print_scores(context, scores, partition);
+  const bool joint = std::holds_alternative<Mrbm>(saved.machine) || !options.modalities.empty();
+  const Scores scores =
+      joint ? mrbm_scores(device, saved, options) : stack_scores(device, saved, options);
+  print_scores(context, scores);
   if (options.output.empty()) return;
-  MatrixF table(scores.front().values.size(), static_cast<Eigen::Index>(scores.size()));
-  for (std::size_t i = 0; i < scores.size(); ++i)
-    table.col(static_cast<Eigen::Index>(i)) = scores[i].values.cast<float>();
+  MatrixF table(scores.columns.front().values.size(),
+                static_cast<Eigen::Index>(scores.columns.size()));
+  for (std::size_t i = 0; i < scores.columns.size(); ++i)
+    table.col(static_cast<Eigen::Index>(i)) = scores.columns[i].values.cast<float>();
   put_matrix(options.output, table);
 }
 
@@ -121,8 +165,9 @@ void add_score_command(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("score", "Says how well a single machine knows data, means over the rows");
   add_machine_option(*command, options->model);
-  add_matrix_input(*command, options->data, "data", "Matrices, each a sequence of its own")
-      ->required();
+  add_matrix_input(*command, options->data, "data", "Matrices, each a sequence of its own");
+  add_modality_option(*command, options->modalities,
+                      "Data of an MRBM, in place of these: every one of its modalities");
   command->add_flag("--log-partition", options->log_partition,
                     "Estimate log Z of an RBM by annealed importance sampling, and with it the "
                     "log-likelihood");
@@ -134,9 +179,11 @@ void add_score_command(CLI::App& app, CommandContext& context) {
   add_device_options(*command, context);
   command->footer(
       "Example:\n  mcdbn-cl score --model digits.safetensors digits.npy --log-partition --json\n"
+      "  mcdbn-cl score --model m.safetensors --modality left=l.npy --modality right=r.npy\n"
       "Free energy (of a stack: its top machine's), mean squared error of the mean-field\n"
       "reconstruction, and of a binary machine the pseudo-log-likelihood of scikit-learn's\n"
-      "score_samples. Scaled data are scored as the machine sees them, but for the "
+      "score_samples; of an MRBM the free energy of all modalities together, and each one's\n"
+      "reconstruction error. Scaled data are scored as the machine sees them, but for the "
       "log-likelihood.");
   command->callback(
       [&context, options] { context.run = [&context, options] { run_score(context, *options); }; });

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -24,37 +23,20 @@ struct TransformOptions {
   std::optional<std::size_t> steps;
 };
 
-std::size_t index_of(const std::vector<Modality>& modalities, const std::string& name) {
-  const auto found = std::ranges::find(modalities, name, &Modality::name);
-  if (found == modalities.end())
-    throw ConfigError(fmt::format("--modality {}: the MRBM has none of that name", name));
-  return static_cast<std::size_t>(found - modalities.begin());
-}
-
 /// Mean field of an MRBM with what is given clamped (eq 32, 33).
 /// @return the modality that is wanted, in the units of its data
 MatrixF inferred(Device& device, const SavedMachine& saved, const TransformOptions& options) {
   constexpr std::size_t kUsualSteps = 10;
-  const auto* mrbm = std::get_if<Mrbm>(&saved.machine);
-  if (!mrbm)
-    throw InputError(fmt::format("{}: no MRBM; --infer is of one", options.model.string()));
+  const Mrbm& mrbm = mrbm_of(saved, options.model, "--infer");
   const std::vector<ModalityData> inputs = read_modalities(options.modalities, options.data.tensor);
   if (inputs.empty()) throw ConfigError("--infer: wants what is given, --modality NAME=FILE");
-  const std::vector<Modality>& modalities = mrbm->shape().modalities;
-  const auto rows = static_cast<std::size_t>(stacked(inputs.front().data, 0).rows());
-  std::vector<Matrix> units;
-  std::vector<bool> present(modalities.size(), false);
-  for (const Modality& modality : modalities) units.emplace_back(device, rows, modality.visible);
-  for (const ModalityData& input : inputs) {
-    const std::size_t m = index_of(modalities, input.name);
-    present[m] = true;
-    units[m] = Matrix::from_host(
-        device, stacked(scaled(saved, input.data, modalities[m].visible, input.files, m), 0));
-  }
-  const std::size_t wanted = index_of(modalities, options.infer);
-  if (present[wanted]) throw ConfigError(fmt::format("--infer {}: it is given", options.infer));
-  mrbm->infer({units.begin(), units.end()}, present, options.steps.value_or(kUsualSteps));
-  return unscaled(saved, units[wanted].to_host(), wanted);
+  const MrbmUnits modalities = mrbm_units(device, saved, mrbm, inputs);
+  const std::size_t wanted = modality_of(mrbm, options.infer, "--infer");
+  if (modalities.given[wanted])
+    throw ConfigError(fmt::format("--infer {}: it is given", options.infer));
+  mrbm.infer({modalities.units.begin(), modalities.units.end()}, modalities.given,
+             options.steps.value_or(kUsualSteps));
+  return unscaled(saved, modalities.units[wanted].to_host(), wanted);
 }
 
 void run_transform(const CommandContext& context, const TransformOptions& options) {

@@ -216,7 +216,7 @@ TEST_CASE("fit: an MRBM of three modalities, and one of them inferred from the o
   check_refused(infer + " --infer b", 2, "wants what is given");
   check_refused(infer + " --modality a=" + path("a.npy") + " --infer w", 2, "none of that name");
   check_refused(infer + " --modality a=" + path("a.npy") + " --infer a", 2, "it is given");
-  check_refused(infer + " " + machines.bits(), 3, "an MRBM; this command takes one modality");
+  check_refused(infer + " " + machines.bits(), 3, "an MRBM; its data are said by --modality");
 }
 
 TEST_CASE("fit: data and flags that do not fit are refused") {

@@ -46,6 +46,41 @@ json parsed(const std::string& call) {
   return json::parse(output_of(call));
 }
 
+/// An MRBM of three modalities, the second one scaled, in a file, and 60 rows of each.
+class MrbmFiles {
+ public:
+  const mcdbn::Mrbm& mrbm() const { return std::get<mcdbn::Mrbm>(saved.machine); }
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::string model() const { return file("m.safetensors"); }
+  std::string modality(const std::string& name) const {
+    return " --modality " + name + "=" + file(name + ".npy");
+  }
+
+ private:
+  mcdbn::SavedMachine written() const {
+    const FittedMachines& machines = FittedMachines::instance();
+    const MatrixF bits = read_matrix(machines.bits()), values = read_matrix(machines.values());
+    mcdbn::write_matrix(file("a.npy"), bits.leftCols(2));
+    mcdbn::write_matrix(file("v.npy"), values);
+    mcdbn::write_matrix(file("b.npy"), bits.rightCols(3));
+    const auto random = mcdbn::MrbmParameters::random(
+        {{{"a", 2}, {"v", 5, mcdbn::VisibleKind::gaussian}, {"b", 3}}, 4}, 1.0, {7});
+    const mcdbn::SavedMachine made{mcdbn::Mrbm(usual_device(), random),
+                                   {{}, mcdbn::ColumnScale::of(std::vector{values}), {}}};
+    mcdbn::save_machine(model(), made);
+    return made;
+  }
+
+  ScratchFolder folder_;
+
+ public:
+  const mcdbn::SavedMachine saved = written();
+  /// The rows as the machine sees them.
+  const std::vector<MatrixF> seen = {read_matrix(file("a.npy")),
+                                     saved.scales[1].apply(read_matrix(file("v.npy"))),
+                                     read_matrix(file("b.npy"))};
+};
+
 }  // namespace
 
 TEST_CASE("transform: the hidden probabilities, and the reconstruction in the data's own units") {
@@ -153,6 +188,37 @@ TEST_CASE("score: the log-likelihood of scaled data is that of the data as they 
   CHECK_FALSE(report.contains("pseudo_log_likelihood"));
 }
 
+TEST_CASE("score: an MRBM's free energy of all modalities, and each one's reconstruction") {
+  if (!have_device()) return;
+  const MrbmFiles files;
+  const std::string call = "score --model " + files.model(), out = files.file("rows.npy");
+  // In another order than the machine's.
+  const json report = parsed(call + files.modality("b") + files.modality("v") +
+                             files.modality("a") + " --json -o " + out);
+  std::vector<mcdbn::Matrix> units;
+  for (const MatrixF& values : files.seen)
+    units.push_back(mcdbn::Matrix::from_host(usual_device(), values));
+  const std::vector<mcdbn::Rows> rows(units.begin(), units.end());
+  const MatrixF energy = mcdbn::free_energy(files.mrbm(), rows).to_host(), table = read_matrix(out);
+  const auto again = mcdbn::reconstruct(files.mrbm(), rows);
+  REQUIRE(table.rows() == 60);
+  REQUIRE(table.cols() == 4);
+  CHECK(table.col(0) == energy.col(0));
+  CHECK(report.size() == 5);
+  CHECK(report.at("rows") == 60);
+  CHECK(report.at("free_energy") == doctest::Approx(energy.cast<double>().mean()));
+  for (Eigen::Index m = 0; m < 3; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    const MatrixF errors = (again[i].to_host() - files.seen[i]).cwiseAbs2().rowwise().mean();
+    CHECK((table.col(m + 1) - errors).cwiseAbs().maxCoeff() < 1e-6F);
+    CHECK(report.at("reconstruction_error_" + files.mrbm().shape().modalities[i].name) ==
+          doctest::Approx(errors.mean()));
+  }
+  check_refused(call + files.modality("a") + files.modality("v"), 2, "--modality b=FILE: wanted");
+  check_refused(call + " x.npy", 2, "data: those of an MRBM");
+  check_refused(call + files.modality("a") + " --log-partition", 2, "an MRBM has none");
+}
+
 TEST_CASE("score: every option changes what its help says") {
   if (!have_device()) return;
   const FittedMachines& machines = FittedMachines::instance();
@@ -169,6 +235,10 @@ TEST_CASE("score: every option changes what its help says") {
                                   "--log-partition: a stack");
                     check_refused(other + machines.model("crbm") + " " + machines.values(), 2,
                                   "--log-partition: a machine with a history");
+                  }});
+  rows.push_back({"--modality", [&] {
+                    check_refused(call + " --modality a=" + machines.bits(), 3, "no MRBM");
+                    check_refused("score --model " + machines.model("rbm"), 2, "data: no files");
                   }});
   // What these do is compared with the library's own numbers above.
   for (const char* option : {"--temperatures", "--chains", "--seed"})
@@ -212,6 +282,36 @@ TEST_CASE("sample: free chains and what is given, in the data's own units") {
   CHECK(got.row(2) != got.row(6));
 }
 
+TEST_CASE("sample: a modality of an MRBM, free or with others given, in its own units") {
+  if (!have_device()) return;
+  const MrbmFiles files;
+  auto& device = usual_device();
+  const std::string call = "sample --quiet --model " + files.model();
+  const std::vector<mcdbn::Matrix> none(3, mcdbn::Matrix(device, 1, 1));
+  const auto free = mcdbn::sample(files.mrbm(), none, {false, false, false}, 9,
+                                  {.steps = 3, .seed = 4, .means = true});
+  CHECK(printed(call + " --infer v --count 9 --steps 3 --seed 4 --means") ==
+        files.saved.scales[1].undo(free[1].to_host()));
+
+  std::vector<mcdbn::Matrix> given = none;
+  given[1] = mcdbn::Matrix::from_host(device, files.seen[1].replicate(2, 1));
+  const auto drawn =
+      mcdbn::sample(files.mrbm(), given, {false, true, false}, 120, {.steps = 3, .seed = 5});
+  const MatrixF got =
+      printed(call + files.modality("v") + " --infer b --count 2 --steps 3 --seed 5");
+  CHECK(got == drawn[2].to_host());
+  CHECK(got.topRows(60) != got.bottomRows(60));
+
+  MatrixF holes = files.seen[0];
+  holes(7, 1) = std::numeric_limits<float>::quiet_NaN();
+  mcdbn::write_matrix(files.file("holes.npy"), holes);
+  check_refused(call, 2, "--infer: wanted by an MRBM");
+  check_refused(call + files.modality("v") + " --infer v", 2, "--infer v: it is given");
+  check_refused(call + " --infer v --given " + files.file("v.npy"), 2, "--given: what is given");
+  check_refused(call + " --infer v --modality a=" + files.file("holes.npy"), 3,
+                "holes.npy: not numbers throughout");
+}
+
 TEST_CASE("sample: every option changes what its help says") {
   if (!have_device()) return;
   const FittedMachines& machines = FittedMachines::instance();
@@ -229,6 +329,10 @@ TEST_CASE("sample: every option changes what its help says") {
                     CHECK(count_lines(plain.standard_output) == 20);
                     check_refused(use + " --count 0", 2, "--count");
                   }});
+  for (const std::string option : {"--modality", "--infer"})
+    rows.push_back({option, [&call, option] {
+                      check_refused(call + " " + option + " a=b", 3, "no MRBM; --modality and");
+                    }});
   // What these do is compared with the library's own draws above.
   for (const char* option : {"--steps", "--seed", "--means"}) rows.push_back({option, [] {}});
   rows.push_back(
