@@ -13,13 +13,14 @@ using namespace mcdbn::test;
 
 TEST_CASE(
     "small: CD-PercLoss learns from rows whose chain ends lower than the data, and no others") {
-  for (const Scene* scene : {&two(), &three()}) {
-    const MrbmSettings settings{.gibbs_steps = 2, .sample_visible = true};
+  for (const auto& [scene, sampled] :
+       {std::pair{&two(), false}, {&three(), false}, {&two(), true}, {&three(), true}}) {
+    const MrbmSettings settings{.gibbs_steps = 2, .sample_visible = sampled};
     reference::Mrbm want = zeros_like(scene->model);
     int lower = 0, higher = 0;
     for (std::size_t m = 0; m < scene->codes.size(); ++m) {
       ReferenceChain chain(*scene, settings);
-      chain.draw_data(kKey);
+      if (sampled) chain.draw_data(kKey);
       RandomKey key = kKey;
       key.stream = static_cast<std::uint16_t>(kKey.stream + m);
       chain.start(key);
@@ -35,12 +36,12 @@ TEST_CASE(
     }
     REQUIRE(lower > 0);
     REQUIRE(higher > 0);
-    on_every_device([&](Device& device) {
+    on_every_device([&, scene = scene](Device& device) {
       Mrbm mrbm(device, scene->start);
-      PerceptronLoss rule(mrbm, scene->rows(), {.gibbs_steps = 2}, OptimizerKind::none);
+      PerceptronLoss rule(mrbm, scene->rows(), settings, OptimizerKind::none);
       run(device, *scene, rule, 2);
       const MrbmParameters unlike = rule.gradients();  // the second step has other draws
-      PerceptronLoss again(mrbm, scene->rows(), {.gibbs_steps = 2}, OptimizerKind::none);
+      PerceptronLoss again(mrbm, scene->rows(), settings, OptimizerKind::none);
       run(device, *scene, again, 1);
       check_close(again.gradients(), want);
       CHECK(unlike.W[0] != again.gradients().W[0]);
