@@ -28,7 +28,7 @@ class FineTuningCase {
   FineTuningCase(const std::vector<SmallClip>& clips,
                  const std::array<std::vector<LayerSize>, 2>& sizes, std::size_t shared)
       : parameters(random_network({kTrack, figure.dimension()}, sizes, shared, 300)),
-        views{figure.modalities(), {}, {}, {}, {}} {
+        views{figure.modalities(), {}, {}, {}, {}, {}} {
     for (std::size_t i = 0; i < clips.size(); ++i) {
       views.poses.push_back(swaying(clips[i].frames, i));
       views.tracks.push_back(random_matrix(static_cast<std::size_t>(clips[i].frames), kTrack,
