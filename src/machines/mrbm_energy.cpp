@@ -35,7 +35,7 @@ Matrix shared_input(const Mrbm& mrbm, const std::vector<Rows>& units) {
             "free energy: the rows do not fit the MRBM");
   std::vector<std::size_t> all(units.size());
   std::iota(all.begin(), all.end(), 0);
-  const Matrix input(mrbm.device(), units.at(0).count, mrbm.hidden());
+  const Matrix input(mrbm.device(), units[0].count, mrbm.hidden());
   shared_units(mrbm, all, units, mrbm.b, {}, input);
   return input;
 }
@@ -71,8 +71,8 @@ Sequences free_energy(const Mcdbn& network, const std::vector<Sequences>& modali
     if (clip.frames <= result.valid_from + network.look_ahead) continue;
     const std::size_t first = clip.first + result.valid_from,
                       count = clip.frames - result.valid_from - network.look_ahead;
-    std::vector<Rows> rows;
-    for (std::size_t m = 0; m < codes.size(); ++m)
+    std::vector<Rows> rows{{codes[0].values, first + network.ahead(0), count}};
+    for (std::size_t m = 1; m < codes.size(); ++m)
       rows.emplace_back(codes[m].values, first + network.ahead(m), count);
     result.values.copy_rows_from(free_energy(network.mrbm, rows), 0, count, first);
   }
