@@ -35,7 +35,7 @@ Matrix shared_input(const Mrbm& mrbm, const std::vector<Rows>& units) {
             "free energy: the rows do not fit the MRBM");
   std::vector<std::size_t> all(units.size());
   std::iota(all.begin(), all.end(), 0);
-  const Matrix input(mrbm.device(), units[0].count, mrbm.hidden());
+  Matrix input(mrbm.device(), units[0].count, mrbm.hidden());
   shared_units(mrbm, all, units, mrbm.b, {}, input);
   return input;
 }
@@ -50,7 +50,7 @@ void free_energy_given_others(const Mrbm& mrbm, std::size_t m, const std::vector
 
 Matrix free_energy(const Mrbm& mrbm, const std::vector<Rows>& modalities) {
   const Matrix input = shared_input(mrbm, modalities);
-  const Matrix energy(mrbm.device(), input.rows(), 1);
+  Matrix energy(mrbm.device(), input.rows(), 1);
   for (std::size_t m = 0; m < modalities.size(); ++m)
     launch_energy(mrbm, m, modalities[m], input, m == 0 ? mrbm.hidden() : 0, energy, m > 0);
   return energy;

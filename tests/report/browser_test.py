@@ -241,7 +241,7 @@ class ReportPage(unittest.TestCase):
         self.assertGreater(len(self.all("#figure-list svg rect")), 8)
         for path in self.all("#figure-list svg path.curve"):
             self.assertNotIn("NaN", path.get_attribute("d"))
-        self.assertEqual(len(self.all("#table-list details")), 8)
+        self.assertEqual(len(self.all("#table-list details")), 9)
         self.assertGreater(len(self.all("#verdicts li")), 4)
         marked = [row.text for row in self.all("#table-list .mark")]
         self.assertGreater(len(marked), 0)
