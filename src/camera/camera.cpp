@@ -11,6 +11,7 @@
 #include <opencv2/core/eigen.hpp>
 
 #include "mcdbn/base/errors.hpp"
+#include "motion/body_size.hpp"
 
 namespace mcdbn {
 
@@ -73,9 +74,14 @@ Camera place_camera(const Motion& motion, const CameraPlacement& placement) {
   return place_camera(joint_positions(motion), placement);
 }
 
-Camera place_camera(const MatrixD& points, const CameraPlacement& placement) {
+Camera in_file_units(Camera camera, const Skeleton& skeleton) {
+  if (camera.unit_m) camera.translation *= *camera.unit_m * file_units_per_metre(skeleton);
+  camera.unit_m.reset();
+  return camera;
+}
+
+Camera camera_at_origin(const CameraPlacement& placement) {
   check(placement);
-  if (points.size() == 0) throw InputError("the clip has no frames; nothing to look at");
   Camera camera;
   camera.camera_from_world = camera_rotation(placement.azimuth_deg, placement.elevation_deg);
   camera.width_px = placement.width_px;
@@ -84,7 +90,12 @@ Camera place_camera(const MatrixD& points, const CameraPlacement& placement) {
   camera.cy_px = placement.height_px / 2.0;
   camera.fx_px = camera.fy_px =
       placement.height_px / 2.0 / std::tan(placement.field_of_view_deg * kRadians / 2);
+  return camera;
+}
 
+Camera place_camera(const MatrixD& points, const CameraPlacement& placement) {
+  Camera camera = camera_at_origin(placement);
+  if (points.size() == 0) throw InputError("the clip has no frames; nothing to look at");
   Eigen::Vector3d low = points.row(0).head<3>(), high = low;
   for (Eigen::Index column = 0; column < points.cols(); ++column) {
     low[column % 3] = std::min(low[column % 3], points.col(column).minCoeff());

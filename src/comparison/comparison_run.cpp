@@ -77,7 +77,7 @@ std::vector<EncodedClip> encode_training_clips(const Model& model, const TestRun
 void look_through_damage(EncodedClip& clip, const Model& model, const TrackDamage& damage,
                          std::uint64_t seed) {
   damage_track(clip.track, clip.motion.skeleton, damage, seed);
-  clip.track_features = model.modalities.encode_track(smooth_track(clip.track));
+  clip.track_features = model.modalities.encode_track(smooth_track(clip.track), clip.camera);
 }
 
 /// Reading is the first tenth of a run, regenerating up to seven tenths, then baselines.
@@ -97,7 +97,7 @@ class Progress {
 };
 
 ClipPlacement placement_of(const EncodedClip& truth, const TestRunOptions& options) {
-  return {truth.camera, truth.motion.skeleton, options.fit};
+  return {{truth.camera, truth.motion.skeleton}, options.fit};
 }
 
 /// What a method sees of the clip; what it does not it is left to fill in itself.
@@ -164,9 +164,8 @@ void regenerate_tracks(const Model& model, std::vector<ClipResult>& results) {
       const EncodedClip& clip = results[i].truth;
       const Track2d truth = project_motion(clip.motion, clip.camera);
       const auto error_px = [&](const MatrixF& standardized) {
-        return track_error_px(
-            truth, modalities.decode_track(standardized, truth.width_px, truth.height_px),
-            modalities.root_name());
+        return track_error_px(truth, modalities.decode_track(standardized, clip.camera),
+                              modalities.root_name());
       };
       const MatrixF& track = tracks[i - first];
       results[i].track = {error_px(track), error_px(MatrixF::Zero(track.rows(), track.cols()))};

@@ -75,28 +75,35 @@ TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const Corpus
   PoseFeatures pose_features = PoseFeatures::fit(all);
   TrackFeatures track_features =
       TrackFeatures::for_skeleton(pose_features.skeleton(), pose_features.root());
-  std::vector<Pair> pairs;
-  for (const Motion& motion : motions) {
-    const Camera camera = place_camera(motion, settings.camera);
-    pairs.push_back({track_features.encode(project_motion(motion, camera)),
-                     pose_features.encode(motion, camera.camera_from_world)});
-  }
-  const std::size_t without_views = pairs.size();
-  for (const AugmentedView& view : views)
-    pairs.push_back({track_features.encode(view.track),
-                     pose_features.encode(view.motion, view.camera.camera_from_world)});
-  TrainingSet set{{std::move(pose_features), std::move(track_features),
-                   Standardizer::fit(members(pairs, &Pair::pose)),
-                   Standardizer::fit(members(pairs, &Pair::track)), settings.fps, settings.camera},
+  TrainingSet set{{std::move(pose_features),
+                   std::move(track_features),
+                   {},
+                   {},
+                   settings.fps,
+                   settings.camera,
+                   true},
                   {},
                   {},
                   std::move(recorded),
                   {},
                   {}};
-  pairs.resize(without_views);
+  Modalities& modalities = set.modalities;
+  std::vector<Pair> pairs;
+  const auto add_pair = [&](const Motion& motion, const Track2d& track, const Camera& camera) {
+    pairs.push_back({modalities.track_values(track, camera),
+                     modalities.pose_values(motion, camera.camera_from_world)});
+  };
+  for (const Motion& motion : motions) {
+    const Camera camera = place_camera(motion, settings.camera);
+    add_pair(motion, project_motion(motion, camera), camera);
+  }
+  for (const AugmentedView& view : views) add_pair(view.motion, view.track, view.camera);
+  modalities.pose_scale = Standardizer::fit(members(pairs, &Pair::pose));
+  modalities.track_scale = Standardizer::fit(members(pairs, &Pair::track));
+  pairs.resize(motions.size());  // without views
   for (const Pair& pair : pairs) {
-    set.tracks.push_back(set.modalities.track_scale.apply(pair.track));
-    set.poses.push_back(set.modalities.pose_scale.apply(pair.pose));
+    set.tracks.push_back(modalities.track_scale.apply(pair.track));
+    set.poses.push_back(modalities.pose_scale.apply(pair.pose));
   }
   return set;
 }

@@ -136,6 +136,18 @@ MatrixD PoseFeatures::root_features(const MatrixD& features) const {
   return features.rightCols(kRootFeatures);
 }
 
+MatrixD PoseFeatures::turned(const MatrixD& features,
+                             const Eigen::Matrix3d& other_from_camera) const {
+  MatrixD result = features;
+  result.rightCols(kRootFeatures) = root_features(features);
+  const auto turn = [&](int first) {
+    result.middleCols<3>(first) = features.middleCols<3>(first) * other_from_camera.transpose();
+  };
+  for (int first = 0; first < dimension() - kRootFeatures; first += 3) turn(first);
+  turn(velocity_feature());
+  return result;
+}
+
 PoseFeatures PoseFeatures::restored(Skeleton skeleton, int root, std::vector<int> joints,
                                     RowVectorD fixed_channels) {
   const auto exists = [&](int joint) { return joint >= 0 && joint < skeleton.joint_count(); };

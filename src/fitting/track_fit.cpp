@@ -43,19 +43,6 @@ std::vector<std::string> tracked_joints(const TrackFeatures& features) {
   return names;
 }
 
-/// A camera of the model's view with the track's image size, at the world's origin.
-Camera default_camera(const CameraPlacement& placement, const Track2d& track) {
-  Camera camera;
-  camera.camera_from_world = camera_rotation(placement.azimuth_deg, placement.elevation_deg);
-  camera.width_px = track.width_px;
-  camera.height_px = track.height_px;
-  camera.fx_px = camera.fy_px =
-      0.5 * track.height_px / std::tan(placement.field_of_view_deg * EIGEN_PI / 360.0);
-  camera.cx_px = 0.5 * track.width_px;
-  camera.cy_px = 0.5 * track.height_px;
-  return camera;
-}
-
 /// RMS of some standardized deviations. @param columns of the features before standardizing; those
 /// that the standardizer dropped do not count. 1 if none is left.
 double rms_deviation(const Eigen::Ref<const MatrixF>& deviation, const Standardizer& scale,
@@ -107,10 +94,10 @@ class ClipFit {
           const KnownOfClip& known)
       : modalities_(modalities),
         skeleton_(known.skeleton ? *known.skeleton : modalities.pose_features.skeleton()),
-        camera_(known.camera ? *known.camera : default_camera(modalities.camera, track)),
+        camera_(in_file_units(known.camera_of(track, modalities), skeleton_)),
         names_(tracked_joints(modalities.track_features)),
         track_(track_rays(names_, track, camera_)),
-        features_(modalities.pose_scale.invert(prior.mean)) {
+        features_(modalities.pose_in_camera(prior.mean, camera_.camera_from_world)) {
     velocity_ = file_units_per_metre(skeleton_) *
                 modalities.pose_features.root_features(features_).rightCols(3) *
                 camera_.camera_from_world;
@@ -175,7 +162,7 @@ class ClipFit {
   Camera camera_;
   std::vector<std::string> names_;
   TrackRays track_;
-  MatrixD features_;  ///< not standardized
+  MatrixD features_;  ///< not standardized, along the camera's own axes
   MatrixD velocity_;  ///< of the root, world axes, file units per second
   double velocity_error_m_s2_;
   MatrixD root_;  ///< its path where the camera sees it, [frames x 3]

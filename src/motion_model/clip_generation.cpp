@@ -12,9 +12,9 @@ namespace {
 
 /// World, file units: the height as the features have it, the rest summed up from `start` on.
 /// @param root of PoseFeatures::root_features
-MatrixD root_path(const MatrixD& root, const Eigen::Matrix3d& camera_from_world, double fps,
+MatrixD root_path(const MatrixD& root, const Eigen::Matrix3d& axes_from_world, double fps,
                   double units_per_metre, const Eigen::Vector3d& start) {
-  MatrixD path = units_per_metre / fps * root.rightCols(3) * camera_from_world;
+  MatrixD path = units_per_metre / fps * root.rightCols(3) * axes_from_world;
   Eigen::RowVector3d position = start.transpose();
   for (Eigen::Index t = 0; t < path.rows(); ++t) {
     position += path.row(t);
@@ -36,8 +36,8 @@ std::vector<Motion> generate_clip(const Model& model, const Motion& seed,
         "the seed clip has {} frames at the model's {:g} fps, the network looks at {}; give a "
         "longer one",
         at_rate.frames(), modalities.fps, seed_frames(cdbn)));
-  const Eigen::Matrix3d camera_from_world =
-      camera_rotation(modalities.camera.azimuth_deg, modalities.camera.elevation_deg);
+  const Eigen::Matrix3d camera_from_world = camera_at_origin(modalities.camera).camera_from_world,
+                        axes_from_world = modalities.pose_axes(camera_from_world);
   const Skeleton& skeleton = at_rate.skeleton;
   const WorldPose last = forward_kinematics(skeleton, at_rate.channels.bottomRows(1));
   const Eigen::Vector3d start =
@@ -48,9 +48,9 @@ std::vector<Motion> generate_clip(const Model& model, const Motion& seed,
   for (const MatrixF& pose : poses) {
     const MatrixD features = modalities.pose_scale.invert(pose);
     motions.push_back(modalities.pose_features.decode(
-        features, camera_from_world, skeleton, modalities.fps,
-        root_path(modalities.pose_features.root_features(features), camera_from_world,
-                  modalities.fps, file_units_per_metre(skeleton), start)));
+        features, axes_from_world, skeleton, modalities.fps,
+        root_path(modalities.pose_features.root_features(features), axes_from_world, modalities.fps,
+                  file_units_per_metre(skeleton), start)));
   }
   return motions;
 }

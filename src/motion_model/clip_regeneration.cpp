@@ -29,12 +29,13 @@ MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const T
                   const ClipPlacement& placement,
                   const std::function<MatrixF(const MatrixF&)>& answer) {
   if (!features.array().isNaN().any()) return features;
+  const Camera camera = placement.camera_of(track, modalities);
   MatrixF filled = features;
   for (int round = 0; round < kGapRounds; ++round) {
     const Track2d shown =
         fit_to_track(PosePrior::around(answer(filled)), modalities, track, placement, placement.fit)
             .shown;
-    filled = features.array().isNaN().select(modalities.encode_track(shown), features);
+    filled = features.array().isNaN().select(modalities.encode_track(shown, camera), features);
   }
   return filled;
 }
@@ -45,9 +46,11 @@ std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
                                     TrackFeatures::FillCount* filled) {
   const Modalities& modalities = model.modalities;
   const Track2d at_rate = resample_track(track, modalities.fps);
-  const MatrixF features =
-      fill_gaps(modalities, modalities.encode_track(smooth_track(at_rate), filled), at_rate,
-                placement, [&](const MatrixF& seen) { return single_answer(model.network, seen); });
+  const MatrixF features = fill_gaps(
+      modalities,
+      modalities.encode_track(smooth_track(at_rate), placement.camera_of(track, modalities),
+                              filled),
+      at_rate, placement, [&](const MatrixF& seen) { return single_answer(model.network, seen); });
   const auto poses = regenerate(model.network, {features}, options);
   std::vector<Motion> motions;
   for (const MatrixF& pose : poses) {
@@ -62,16 +65,14 @@ std::vector<Track2d> regenerate_track(const Model& model, const Motion& clip,
                                       const RegenerationOptions& options,
                                       const std::optional<Camera>& camera) {
   const Modalities& modalities = model.modalities;
-  const CameraPlacement& view = modalities.camera;
-  const Eigen::Matrix3d camera_from_world =
-      camera ? camera->camera_from_world : camera_rotation(view.azimuth_deg, view.elevation_deg);
-  const MatrixF pose = modalities.encode_pose(resample(clip, modalities.fps), camera_from_world);
+  const Camera seen_by = camera.value_or(camera_at_origin(modalities.camera));
+  const MatrixF pose =
+      modalities.encode_pose(resample(clip, modalities.fps), seen_by.camera_from_world);
   std::vector<std::vector<MatrixF>> present(model.network.modality_count());
   present[kPose] = {pose};
   std::vector<Track2d> tracks;
   for (const MatrixF& track : regenerate(model.network, present, kTrack, options))
-    tracks.push_back(modalities.decode_track(track, camera ? camera->width_px : view.width_px,
-                                             camera ? camera->height_px : view.height_px));
+    tracks.push_back(modalities.decode_track(track, seen_by));
   return tracks;
 }
 

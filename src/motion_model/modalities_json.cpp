@@ -58,7 +58,8 @@ json modalities_json(const Modalities& modalities) {
           {"pose_scale", modalities.pose_scale.to_json()},
           {"track_scale", modalities.track_scale.to_json()},
           {"fps", modalities.fps},
-          {"camera", camera_json(modalities.camera)}};
+          {"camera", camera_json(modalities.camera)},
+          {"level_view", modalities.level_view}};
 }
 
 Modalities modalities_from(const json& entry) {
@@ -67,7 +68,8 @@ Modalities modalities_from(const json& entry) {
           Standardizer::from_json(entry.at("pose_scale")),
           Standardizer::from_json(entry.at("track_scale")),
           entry.at("fps"),
-          camera_from(entry.at("camera"))};
+          camera_from(entry.at("camera")),
+          entry.value("level_view", false)};  // models from before there was one
 }
 
 }  // namespace mcdbn

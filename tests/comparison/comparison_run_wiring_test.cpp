@@ -65,7 +65,7 @@ TestRunOptions plain_options(const Scene& scene) {
 EncodedClip damaged(const Scene& scene, std::size_t i, const TestRunOptions& options) {
   EncodedClip clip = encode_clip(scene.tests[i], scene.modalities, options.camera, false);
   damage_track(clip.track, clip.motion.skeleton, options.damage, options.regeneration.seed + i);
-  clip.track_features = scene.modalities.encode_track(smooth_track(clip.track));
+  clip.track_features = scene.modalities.encode_track(smooth_track(clip.track), clip.camera);
   return clip;
 }
 
@@ -255,7 +255,7 @@ TEST_CASE("a test run's baselines learn from the training clips and answer as th
         const auto predict = [&](const MatrixF& track) { return baseline->predict(track); };
         const MatrixF seen =
             fill_gaps(scene.modalities, truth.track_features, truth.track,
-                      {truth.camera, truth.motion.skeleton, std::nullopt}, predict);
+                      {{truth.camera, truth.motion.skeleton}, std::nullopt}, predict);
         check_regeneration(results[i].others.at(baseline->name()),
                            motion_of(scene, truth, predict(seen), std::nullopt), truth,
                            scene.modalities);

@@ -68,7 +68,7 @@ TEST_CASE(
     const Motion raw = load_clip(file, {.fps = 0, .keep_first_frame = false});
     const AugmentedView view =
         augmented_view(raw, config.fps, config.camera, config.augment, {config.seed, i, 192, 0});
-    const MatrixF track = modalities.encode_track(view.track);
+    const MatrixF track = modalities.encode_track(view.track, view.camera);
     unknown = unknown || track.array().isNaN().any();
     CHECK(views.tracks[i] ==
           track.array().isNaN().select(MatrixF::Zero(track.rows(), track.cols()), track));

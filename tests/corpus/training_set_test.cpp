@@ -1,5 +1,6 @@
 #include "mcdbn/corpus/training_set.hpp"
 #include "corpus/corpus_config.hpp"
+#include "mcdbn/camera/level_view.hpp"
 
 #include <doctest/doctest.h>
 
@@ -85,6 +86,10 @@ void check_set(const TrainingFiles& walks, const CorpusConfig& config,
   const Modalities& own = set.modalities;
   CHECK(own.fps == config.fps);
   CHECK(own.camera == config.camera);
+  CHECK(own.level_view);
+  const auto level_track = [&](const Track2d& track, const Camera& camera) {
+    return turn_track(track, camera, level_camera(camera, config.camera.field_of_view_deg));
+  };
   CHECK(set.people.empty());
   const std::vector<Motion> clips = clips_of(walks, config, phases);
   REQUIRE(set.tracks.size() == clips.size());
@@ -93,8 +98,10 @@ void check_set(const TrainingFiles& walks, const CorpusConfig& config,
   std::size_t frames = 0;
   for (std::size_t i = 0; i < clips.size(); ++i) {
     const Camera camera = place_camera(clips[i], config.camera);
-    const MatrixD track = own.track_features.encode(project_motion(clips[i], camera)),
-                  pose = own.pose_features.encode(clips[i], camera.camera_from_world);
+    const MatrixD track = own.track_features.encode(
+                      level_track(project_motion(clips[i], camera), camera)),
+                  pose =
+                      own.pose_features.encode(clips[i], level_rotation(camera.camera_from_world));
     CHECK(set.tracks[i] == own.track_scale.apply(track));
     CHECK(set.poses[i] == own.pose_scale.apply(pose));
     tracks.add(track);
@@ -109,8 +116,9 @@ void check_set(const TrainingFiles& walks, const CorpusConfig& config,
     for (int i = 0; i < views; ++i, ++key.step) {
       const AugmentedView view =
           augmented_view(raw_clip(file), config.fps, config.camera, in_sight, key);
-      tracks.add(own.track_features.encode(view.track));
-      poses.add(own.pose_features.encode(view.motion, view.camera.camera_from_world));
+      tracks.add(own.track_features.encode(level_track(view.track, view.camera)));
+      poses.add(
+          own.pose_features.encode(view.motion, level_rotation(view.camera.camera_from_world)));
     }
   check_scale(own.track_scale, tracks.values);
   check_scale(own.pose_scale, poses.values);

@@ -36,13 +36,13 @@ struct Scene {
   Camera camera = place_camera(truth, modalities.camera);
   Track2d hidden = project_motion(truth, camera);
   MatrixF pose = modalities.encode_pose(truth, camera.camera_from_world);
-  MatrixF whole = modalities.encode_track(hidden), features;
+  MatrixF whole = modalities.encode_track(hidden, camera), features;
 
   explicit Scene(double hidden_s = 1) {
     hide_arm(hidden, truth.skeleton, hidden_s, 1);
-    features = modalities.encode_track(hidden);
+    features = modalities.encode_track(hidden, camera);
   }
-  ClipPlacement placement() const { return {camera, truth.skeleton, std::nullopt}; }
+  ClipPlacement placement() const { return {{camera, truth.skeleton}, std::nullopt}; }
 };
 
 bool has_gap(const MatrixF& features) {
@@ -107,14 +107,14 @@ TEST_CASE("a joint that is never seen, without a camera and without a skeleton; 
   const int hand = scene.hidden.find("LeftHand");
   REQUIRE(hand >= 0);
   scene.hidden.confidence.col(hand).setZero();
-  scene.features = scene.modalities.encode_track(scene.hidden);
+  scene.features = scene.modalities.encode_track(scene.hidden, scene.camera);
   const auto truth = [&](const MatrixF&) { return scene.pose; };
   const MatrixF filled = fill_gaps(scene.modalities, scene.features, scene.hidden,
-                                   {std::nullopt, std::nullopt, TrackFitSettings{}}, truth);
+                                   {{std::nullopt, std::nullopt}, TrackFitSettings{}}, truth);
   CHECK_FALSE(has_gap(filled));
   CHECK(off_in_gap(filled, scene.whole, scene.features) < 0.01F);
   drop_joints(scene.hidden, 1, 1);
-  scene.features = scene.modalities.encode_track(scene.hidden);
+  scene.features = scene.modalities.encode_track(scene.hidden, scene.camera);
   CHECK_THROWS_AS(
       fill_gaps(scene.modalities, scene.features, scene.hidden, scene.placement(), truth),
       InputError);

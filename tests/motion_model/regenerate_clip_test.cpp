@@ -34,7 +34,7 @@ struct Scene {
         track(project_motion(clip, camera)) {
     add_pixel_noise(track, 2.0, 3);
   }
-  ClipPlacement placement() const { return {camera, clip.skeleton, std::nullopt}; }
+  ClipPlacement placement() const { return {{camera, clip.skeleton}, std::nullopt}; }
   Model model(Device& device) const {
     return {random_network(device, modalities), modalities, {}, {}};
   }
@@ -55,7 +55,8 @@ std::vector<Motion> step_by_step(const Model& model, const Track2d& track,
                                  const ClipPlacement& placement,
                                  const RegenerationOptions& options) {
   const Track2d at_rate = resample_track(track, model.modalities.fps);
-  MatrixF seen = model.modalities.encode_track(smooth_track(at_rate));
+  MatrixF seen = model.modalities.encode_track(smooth_track(at_rate),
+                                               placement.camera_of(track, model.modalities));
   seen = fill_gaps(model.modalities, seen, at_rate, placement,
                    [&](const MatrixF& some) { return single_answer(model.network, some); });
   std::vector<Motion> motions;
@@ -164,7 +165,7 @@ TEST_CASE("gaps are filled in three rounds, each from the answer to the round be
   Scene scene(30.0);
   scene.track.confidence.col(scene.track.find("LHand")).segment(10, 20).setZero();
   const Modalities& m = scene.modalities;
-  const MatrixF features = m.encode_track(scene.track);
+  const MatrixF features = m.encode_track(scene.track, scene.camera);
   const MatrixF truth = m.encode_pose(scene.clip, scene.camera.camera_from_world);
   std::vector<MatrixF> asked;
   // Each answer holds the arm elsewhere, so that every round shows.

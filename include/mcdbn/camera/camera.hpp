@@ -17,11 +17,17 @@ namespace mcdbn {
 /// A pinhole camera with OpenCV's distortion. Camera axes are OpenCV's: x right, y down, z forward.
 struct Camera {
   Eigen::Matrix3d camera_from_world = Eigen::Matrix3d::Identity();  ///< rotation
-  Eigen::Vector3d translation{0, 0, 0};  ///< x_camera = R·x_world + translation, file units
+  Eigen::Vector3d translation{0, 0, 0};  ///< x_camera = R·x_world + translation
   double fx_px = 1000, fy_px = 1000, cx_px = 960, cy_px = 540;
   std::vector<double> distortion;  ///< k1 k2 p1 p2 [k3 …], may be empty
   int width_px = 1920, height_px = 1080;
+  /// How many metres the translation's unit is; unset: it is in file units of the motion seen.
+  std::optional<double> unit_m;
 };
+
+/// The camera with its translation in file units of a motion of that skeleton: a person is taken
+/// to be 1.7 m tall. A camera without a unit is returned as it is.
+Camera in_file_units(Camera camera, const Skeleton& skeleton);
 
 /// Where to put a camera that looks at a clip. Azimuth 0 looks along the clip's −z axis
 /// (at a figure that faces +z), positive azimuth moves the camera to the figure's left (+x).
@@ -52,6 +58,10 @@ struct CameraPlacement {
 
 /// camera_from_world of that azimuth and elevation, with the world's +y up.
 Eigen::Matrix3d camera_rotation(double azimuth_deg, double elevation_deg);
+
+/// The placement's rotation and lens, the camera at the world's origin.
+/// @throws ConfigError if the placement has no pinhole camera's field of view, or no image
+Camera camera_at_origin(const CameraPlacement& placement);
 
 /// Aims a camera at the centre of the clip, with every joint of every frame in view.
 Camera place_camera(const Motion& motion, const CameraPlacement& placement);

@@ -52,6 +52,10 @@ class PoseFeatures {
   /// v_z (camera's frame, m/s on a 1.7 m body)
   MatrixD root_features(const MatrixD& features) const;
 
+  /// The same poses along the axes of another camera.
+  /// @param features [frames x dimension]  @param other_from_camera rotation  @throws ShapeError
+  MatrixD turned(const MatrixD& features, const Eigen::Matrix3d& other_from_camera) const;
+
   /// Features that were fitted before. @param joints, fixed_channels as those functions give them
   /// @throws InputError where sizes do not fit together
   static PoseFeatures restored(Skeleton skeleton, int root, std::vector<int> joints,

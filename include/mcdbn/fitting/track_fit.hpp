@@ -30,9 +30,15 @@ struct PosePrior {
 
 /// What is known of a clip besides its track.
 struct KnownOfClip {
-  std::optional<Camera> camera;  ///< unset: the model's own view, the clip put at the origin
+  std::optional<Camera> camera;  ///< unset: the assumed one, the clip put at the origin
   /// The person's own; unset: the model's, and the fit allows for other proportions.
   std::optional<Skeleton> skeleton;
+  AssumedView view = {};  ///< what is known of the camera that is assumed
+
+  /// The camera, or the one that is assumed for that track.
+  Camera camera_of(const Track2d& track, const Modalities& modalities) const {
+    return camera ? *camera : modalities.assumed_camera(view, track.width_px, track.height_px);
+  }
 };
 
 /// How far poses may be bent to meet the track. The defaults were chosen on the CMU walkers 02, 32,

@@ -41,7 +41,7 @@ std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
 /// the body's size too; nothing is fitted or projected.
 /// @param clip any skeleton with the model's joint names, at any rate
 /// @param camera whose axes the motion is seen along and whose image the pixels are of; unset: the
-///        model's own view. Its lens and its place are not asked: the network knows one of each.
+///        model's own view. Its place is not asked: the network knows one.
 /// @return the root first, then the other joints of the model
 /// @throws InputError if the clip lacks a joint of the model
 std::vector<Track2d> regenerate_track(const Model& model, const Motion& clip,

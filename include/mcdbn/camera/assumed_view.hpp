@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+
+namespace mcdbn {
+
+/// What somebody says of a camera that nobody calibrated; what is not said is assumed
+/// (Modalities::assumed_camera).
+struct AssumedView {
+  std::optional<double> pitch_deg;          ///< how far it looks down; at most 89 either way
+  std::optional<double> roll_deg;           ///< turned clockwise, seen from behind it
+  std::optional<double> field_of_view_deg;  ///< vertical
+};
+
+/// The vertical field of view of an image of that size whose longer side spans 60 degrees, the
+/// middle of the 40 to 80 that phones, webcams and camcorders have without zoom.
+double usual_field_of_view_deg(int width_px, int height_px);
+
+}  // namespace mcdbn
