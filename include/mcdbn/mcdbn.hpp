@@ -56,6 +56,7 @@
 #include "mcdbn/motion/joint_role.hpp"
 #include "mcdbn/motion/planted_foot.hpp"
 #include "mcdbn/motion/skeleton.hpp"
+#include "mcdbn/motion/skeleton_roles.hpp"
 #include "mcdbn/motion_model/clip_generation.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "mcdbn/motion_model/model_file.hpp"

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "motion/joint_sides.hpp"
+
+namespace mcdbn {
+
+/// What a joint's name calls it, its side apart. Some words mean one thing in one file and another
+/// in the next: a `leg` is a shank beside an `upleg`, and a thigh beside a `shin`.
+enum class JointWord {
+  hips,
+  neck,
+  head,
+  clavicle,
+  shoulder,
+  upper_arm,
+  arm,
+  forearm,
+  wrist,
+  hand,
+  fingers,
+  hip,
+  thigh,
+  leg,
+  shin,
+  ankle,
+  foot,
+  toe,
+};
+
+struct NamedJoint {
+  JointWord word = JointWord::hips;
+  Side side = Side::middle;
+};
+
+/// What the names say, one entry a joint; none where a name says nothing. What stands before a
+/// colon, what all names begin with (`Bip01_`) and digits at the end do not count.
+std::vector<std::optional<NamedJoint>> named_joints(const std::vector<std::string>& names);
+
+}  // namespace mcdbn
