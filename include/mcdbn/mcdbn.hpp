@@ -31,6 +31,7 @@
 #include "mcdbn/fitting/track_fit.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
+#include "mcdbn/formats/joint_map.hpp"
 #include "mcdbn/formats/track_csv.hpp"
 #include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/learning/epoch_report.hpp"

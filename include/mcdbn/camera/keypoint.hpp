@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "mcdbn/motion/joint_role.hpp"
 
@@ -11,10 +13,14 @@ namespace mcdbn {
 /// it.
 struct Keypoint {
   std::string name;  ///< as the detector's documents spell it
-  JointRole role = JointRole::pelvis;
+  /// The joint that carries the place; none where nothing is known of it (an animal's tail).
+  std::optional<JointRole> role;
   /// From the joint's centre to the place, as shares of body height, in the axes of a body that
   /// stands upright: x to its left, y up, z forward. It turns with the joint.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  /// Where the detector defines the place as halfway between two joints, as OpenPose does its
+  /// MidHip: those two. `role` and `offset` then say about where that is.
+  std::optional<std::pair<JointRole, JointRole>> halfway;
 };
 
 }  // namespace mcdbn
