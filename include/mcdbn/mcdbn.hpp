@@ -11,6 +11,7 @@
 #include "mcdbn/camera/camera.hpp"
 #include "mcdbn/camera/keypoint.hpp"
 #include "mcdbn/camera/level_view.hpp"
+#include "mcdbn/camera/side_swaps.hpp"
 #include "mcdbn/camera/track.hpp"
 #include "mcdbn/corpus/augmentation.hpp"
 #include "mcdbn/corpus/clip.hpp"

@@ -1,0 +1,249 @@
+#include "mcdbn/camera/side_swaps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace mcdbn {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using Swapped = std::vector<int>;  ///< 1 where swapped, one a frame
+
+/// The same place on both sides, frame by frame; not finite where it is unknown.
+struct PlacePair {
+  int left = 0, right = 0;  ///< columns
+  std::vector<std::array<Eigen::Vector2d, 2>> seen;
+};
+
+std::optional<LimbPair> limbs_of(JointRole role) {
+  using enum JointRole;
+  if (role >= left_shoulder && role <= left_hand) return LimbPair::arms;
+  if (role >= left_hip && role <= left_toe) return LimbPair::legs;
+  return {};
+}
+
+bool mirrored(const Keypoint& a, const Keypoint& b) {
+  const Eigen::Vector3d mirror(-1, 1, 1);
+  return a.role && b.role && *b.role == other_side(*a.role) &&
+         (a.offset.cwiseProduct(mirror) - b.offset).norm() < 1e-6;
+}
+
+/// A column's places in body heights; short gaps are bridged by straight lines.
+std::vector<Eigen::Vector2d> places(const Track2d& track, int column, double height_px,
+                                    int longest_gap) {
+  std::vector<Eigen::Vector2d> result;
+  int last = -1;
+  for (int t = 0; t < track.frames(); ++t) {
+    const bool seen = track.confidence(t, column) > 0;
+    result.emplace_back(seen ? track.x_px(t, column) / height_px : kNan,
+                        seen ? track.y_px(t, column) / height_px : kNan);
+    if (!result.back().allFinite()) continue;
+    if (last >= 0 && t - last <= longest_gap + 1)
+      for (int between = last + 1; between < t; ++between)
+        result[between] = result[last] + (result[t] - result[last]) * (between - last) / (t - last);
+    last = t;
+  }
+  return result;
+}
+
+std::vector<PlacePair> pairs_of(const Track2d& track, LimbPair limbs, double height_px,
+                                const SideSwapSettings& settings) {
+  const auto longest_gap = static_cast<int>(settings.longest_gap_s * track.fps);
+  std::vector<PlacePair> pairs;
+  const auto& keypoints = track.keypoints;
+  std::vector<bool> taken(keypoints.size(), false);
+  for (std::size_t l = 0; l < keypoints.size(); ++l) {
+    if (!keypoints[l].role || limbs_of(*keypoints[l].role) != limbs) continue;
+    for (std::size_t r = 0; r < keypoints.size(); ++r) {
+      if (taken[r] || !mirrored(keypoints[l], keypoints[r])) continue;
+      taken[r] = true;
+      PlacePair pair{static_cast<int>(l), static_cast<int>(r), {}};
+      const auto left = places(track, pair.left, height_px, longest_gap);
+      const auto right = places(track, pair.right, height_px, longest_gap);
+      for (std::size_t t = 0; t < left.size(); ++t) pair.seen.push_back({left[t], right[t]});
+      pairs.push_back(std::move(pair));
+      break;
+    }
+  }
+  return pairs;
+}
+
+/// The height of the body on the image, told from how far its joints are spread: on the image they
+/// reach over most of the body's height while it stands, so the usual frame counts.
+double body_height_px(const Track2d& track) {
+  constexpr double kSpreadOfHeight = 0.27;  // RMS distance from their centre, people who walk
+  std::vector<double> spreads;
+  for (int t = 0; t < track.frames(); ++t) {
+    std::vector<Eigen::Vector2d> seen;
+    Eigen::Vector2d sum(0, 0);
+    for (int joint = 0; joint < track.joint_count(); ++joint) {
+      const Eigen::Vector2d place(track.x_px(t, joint), track.y_px(t, joint));
+      if (!(track.confidence(t, joint) > 0) || !place.allFinite()) continue;
+      seen.push_back(place);
+      sum += place;
+    }
+    if (seen.size() < 3) continue;
+    double squares = 0;
+    for (const Eigen::Vector2d& place : seen)
+      squares += (place - sum / static_cast<double>(seen.size())).squaredNorm();
+    spreads.push_back(std::sqrt(squares / static_cast<double>(seen.size())));
+  }
+  if (spreads.empty()) return 0;
+  const auto middle = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
+  std::nth_element(spreads.begin(), middle, spreads.end());
+  return *middle / kSpreadOfHeight;
+}
+
+/// How far both places of a pair are from going on as they went, given which of the three frames up
+/// to `t` are swapped; 0 where one of them is unknown.
+double surprise(const PlacePair& pair, std::size_t t, const std::array<int, 3>& swapped,
+                double most) {
+  double sum = 0;
+  for (const int side : {0, 1}) {
+    const auto place = [&](std::size_t back) {
+      return pair.seen[t - back][side ^ swapped[2 - back]];
+    };
+    const double off = (place(0) - 2 * place(1) + place(2)).norm();
+    if (!std::isfinite(off)) return 0;
+    sum += std::min(off, most);
+  }
+  return sum;
+}
+
+/// The same of all pairs. Where a swap begins or ends a pair may stay on its sides: a detector may
+/// exchange the ankles alone.
+double surprise(const std::vector<PlacePair>& pairs, std::size_t t,
+                const std::array<int, 3>& swapped, double most) {
+  const bool switches = swapped[0] != swapped[1] || swapped[1] != swapped[2];
+  double sum = 0;
+  for (const PlacePair& pair : pairs) {
+    const double staying = surprise(pair, t, {0, 0, 0}, most);
+    sum += switches ? std::min(staying, surprise(pair, t, swapped, most)) : staying;
+  }
+  return sum;
+}
+
+/// The likeliest sequence. A state is what two frames in a row are: 2 · (the one before) + this.
+Swapped likeliest(const std::vector<PlacePair>& pairs, double fps,
+                  const SideSwapSettings& settings) {
+  const std::size_t frames = pairs.front().seen.size();
+  if (frames < 3) return Swapped(frames, 0);
+  const double per_frame = settings.swapped_cost_per_s / fps;
+  const auto cost_of = [&](int before, int now) {
+    return (before != now ? settings.switch_cost : 0) + per_frame * now;
+  };
+  std::array<double, 4> cost{};
+  for (int state = 0; state < 4; ++state)
+    cost[state] = cost_of(state >> 1, state & 1) + per_frame * (state >> 1);
+  std::vector<std::array<int, 4>> came_from(frames);  // the frame before the state's two
+  for (std::size_t t = 2; t < frames; ++t) {
+    std::array<double, 4> next;
+    for (int state = 0; state < 4; ++state) {
+      const int before = state >> 1, now = state & 1;
+      next[state] = kInfinity;
+      for (const int first : {0, 1}) {
+        const double total = cost[2 * first + before] +
+                             surprise(pairs, t, {first, before, now}, settings.most_surprise) +
+                             cost_of(before, now);
+        if (total >= next[state]) continue;
+        next[state] = total;
+        came_from[t][state] = first;
+      }
+    }
+    cost = next;
+  }
+  int state = static_cast<int>(std::ranges::min_element(cost) - cost.begin());
+  Swapped swapped(frames);
+  swapped[frames - 1] = state & 1;
+  for (std::size_t t = frames - 1; t >= 1; --t) {
+    swapped[t - 1] = state >> 1;
+    if (t >= 2) state = 2 * came_from[t][state] + (state >> 1);
+  }
+  return swapped;
+}
+
+/// Whether exchanging the pair in these frames makes it jump less at their ends.
+bool belongs(const PlacePair& pair, const SideSwap& swap, double most) {
+  const auto is_swapped = [&](int t) { return t >= swap.first_frame && t <= swap.last_frame; };
+  double exchanged = 0, left_alone = 0;
+  for (const int end : {swap.first_frame, swap.last_frame + 1}) {
+    for (int t = std::max(2, end); t < std::min<int>(end + 2, static_cast<int>(pair.seen.size()));
+         ++t) {
+      const auto frame = static_cast<std::size_t>(t);
+      exchanged +=
+          surprise(pair, frame, {is_swapped(t - 2), is_swapped(t - 1), is_swapped(t)}, most);
+      left_alone += surprise(pair, frame, {0, 0, 0}, most);
+    }
+  }
+  return exchanged <= left_alone;
+}
+
+void add_swaps(const std::vector<PlacePair>& pairs, LimbPair limbs, const Swapped& swapped,
+               double most, std::vector<SideSwap>& swaps) {
+  const auto frames = static_cast<int>(swapped.size());
+  for (int t = 0; t < frames; ++t) {
+    if (swapped[t] == 0) continue;
+    SideSwap swap{limbs, t, t, {}, {}};
+    while (swap.last_frame + 1 < frames && swapped[swap.last_frame + 1] != 0) ++swap.last_frame;
+    t = swap.last_frame;
+    for (const PlacePair& pair : pairs) {
+      if (!belongs(pair, swap, most)) continue;
+      swap.left.push_back(pair.left);
+      swap.right.push_back(pair.right);
+    }
+    if (!swap.left.empty()) swaps.push_back(std::move(swap));
+  }
+}
+
+std::string frames_of(const SideSwap& swap) {
+  if (swap.first_frame == swap.last_frame) return fmt::format("{}", swap.first_frame);
+  return fmt::format("{}-{}", swap.first_frame, swap.last_frame);
+}
+
+}  // namespace
+
+std::vector<SideSwap> find_side_swaps(const Track2d& track, const SideSwapSettings& settings) {
+  check_settings(settings);
+  std::vector<SideSwap> swaps;
+  const double height_px = body_height_px(track);
+  if (track.keypoints.empty() || !(height_px > 0)) return swaps;
+  for (const LimbPair limbs : {LimbPair::legs, LimbPair::arms}) {
+    const std::vector<PlacePair> pairs = pairs_of(track, limbs, height_px, settings);
+    if (pairs.empty()) continue;
+    add_swaps(pairs, limbs, likeliest(pairs, track.fps, settings), settings.most_surprise, swaps);
+  }
+  return swaps;
+}
+
+void exchange_sides(Track2d& track, const std::vector<SideSwap>& swaps) {
+  for (const SideSwap& swap : swaps)
+    for (std::size_t k = 0; k < swap.left.size(); ++k)
+      for (MatrixD* values : {&track.x_px, &track.y_px, &track.confidence})
+        for (int t = swap.first_frame; t <= swap.last_frame; ++t)
+          std::swap((*values)(t, swap.left[k]), (*values)(t, swap.right[k]));
+}
+
+std::string described(const std::vector<SideSwap>& swaps) {
+  std::string text;
+  std::optional<LimbPair> said;
+  for (const SideSwap& swap : swaps) {
+    const char* limbs = swap.limbs == LimbPair::legs ? "legs" : "arms";
+    if (!said)
+      text = fmt::format("{} swapped in frames {}", limbs, frames_of(swap));
+    else if (*said == swap.limbs)
+      text += fmt::format(", {}", frames_of(swap));
+    else
+      text += fmt::format("; {} in {}", limbs, frames_of(swap));
+    said = swap.limbs;
+  }
+  return text;
+}
+
+}  // namespace mcdbn
