@@ -40,8 +40,11 @@ MatrixD Modalities::pose_in_camera(const MatrixF& standardized,
 
 MatrixD Modalities::track_values(const Track2d& track, const Camera& seen_by,
                                  TrackFeatures::FillCount* filled) const {
-  if (!level_view) return track_features.encode(track, filled);
-  return track_features.encode(turn_track(track, seen_by, feature_camera(*this, seen_by)), filled);
+  const RowVectorD usual =
+      track_features.usual_squares(track_scale.mean(), track_scale.deviation());
+  if (!level_view) return track_features.encode(track, filled, usual);
+  return track_features.encode(turn_track(track, seen_by, feature_camera(*this, seen_by)), filled,
+                               usual);
 }
 
 MatrixF Modalities::encode_track(const Track2d& track, const Camera& seen_by,

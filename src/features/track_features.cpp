@@ -1,6 +1,7 @@
 #include "mcdbn/features/track_features.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,30 +22,44 @@ struct Pixels {
   MatrixD x, y;
 };
 
-Pixels select_joints(const Track2d& track, const std::vector<std::string>& joint_names,
-                     const std::string& root_name) {
+constexpr int kFewestJoints = 3;  ///< the root among them: with two nobody knows how a body stands
+
+std::vector<int> columns_of(const Track2d& track, const std::vector<std::string>& joint_names,
+                            const std::string& root_name) {
   std::vector<int> columns;
-  std::string missing;
+  std::vector<std::string> missing;
   const auto select = [&](const std::string& name) {
     columns.push_back(track.find(name));
-    if (columns.back() < 0) missing += (missing.empty() ? "" : ", ") + name;
+    if (columns.back() < 0) missing.push_back(name);
   };
   for (const std::string& name : joint_names) select(name);
   select(root_name);
-  if (!missing.empty()) {
-    throw InputError(fmt::format(
-        "the 2D track has no columns for the joints {}; name its joints as the model does",
-        missing));
-  }
-  Pixels pixels{MatrixD(track.frames(), columns.size()), MatrixD(track.frames(), columns.size())};
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    const auto seen = track.confidence.col(columns[k]).array() > 0 &&
-                      !track.x_px.col(columns[k]).array().isNaN() &&
-                      !track.y_px.col(columns[k]).array().isNaN();
-    pixels.x.col(k) = seen.select(track.x_px.col(columns[k]).array(), kNan);
-    pixels.y.col(k) = seen.select(track.y_px.col(columns[k]).array(), kNan);
+  const auto wanted = std::min<std::size_t>(kFewestJoints, columns.size());
+  if (columns.back() < 0 || columns.size() - missing.size() < wanted)
+    throw InputError(
+        fmt::format("the 2D track has no columns for the joints {}; {} are needed, {} among them",
+                    fmt::join(missing, ", "), kFewestJoints, root_name));
+  return columns;
+}
+
+Pixels select_joints(const Track2d& track, const std::vector<int>& columns) {
+  const auto count = static_cast<Eigen::Index>(columns.size());
+  Pixels pixels{MatrixD::Constant(track.frames(), count, kNan),
+                MatrixD::Constant(track.frames(), count, kNan)};
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const int column = columns[static_cast<std::size_t>(k)];
+    if (column < 0) continue;
+    const auto seen = track.confidence.col(column).array() > 0 &&
+                      !track.x_px.col(column).array().isNaN() &&
+                      !track.y_px.col(column).array().isNaN();
+    pixels.x.col(k) = seen.select(track.x_px.col(column).array(), kNan);
+    pixels.y.col(k) = seen.select(track.y_px.col(column).array(), kNan);
   }
   return pixels;
+}
+
+bool never_seen(const Pixels& pixels, Eigen::Index column) {
+  return pixels.x.col(column).array().isNaN().all();
 }
 
 /// Fills rows first..last-1 of one column from the numbers on both sides, or on the one side that
@@ -64,6 +79,7 @@ TrackFeatures::FillCount fill_short_gaps(Pixels& pixels, double fps) {
   const auto longest = static_cast<Eigen::Index>(TrackFeatures::kLongestGap_s * fps + 1e-6);
   const Eigen::Index frames = pixels.x.rows();
   for (Eigen::Index column = 0; column < pixels.x.cols(); ++column) {
+    if (never_seen(pixels, column)) continue;
     for (Eigen::Index first = 0; first < frames; ++first) {
       if (!std::isnan(pixels.x(first, column))) continue;
       Eigen::Index last = first;
@@ -87,25 +103,42 @@ MatrixD squared_distances(const MatrixD& x, const MatrixD& y) {
   return x.array().square() + y.array().square();
 }
 
-/// RMS distance of a frame's joints from the root; joints that are missing are stood in for by the
-/// others, each weighing as much as it usually makes up of the sum. NaN where less than half of the
-/// usual sum is there. @return [frames]
-std::vector<double> frame_sizes(const MatrixD& squared) {
-  RowVectorD share = RowVectorD::Zero(squared.cols());
+/// Each joint's usual part of the sum of squares: its mean over the frames that show it. A joint
+/// that none shows has the part that `usual` gives it beside the others, or none.
+RowVectorD usual_parts(const MatrixD& squared, const RowVectorD& usual) {
+  RowVectorD part = RowVectorD::Zero(squared.cols());
+  std::vector<Eigen::Index> unseen;
+  double seen_sum = 0, seen_usual = 0;
   for (Eigen::Index joint = 0; joint < squared.cols(); ++joint) {
     const auto known = !squared.col(joint).array().isNaN();
-    if (known.any()) {
-      share[joint] =
-          known.select(squared.col(joint).array(), 0.0).sum() / static_cast<double>(known.count());
+    if (!known.any()) {
+      unseen.push_back(joint);
+      continue;
     }
+    part[joint] =
+        known.select(squared.col(joint).array(), 0.0).sum() / static_cast<double>(known.count());
+    seen_sum += part[joint];
+    if (usual.size() > 0) seen_usual += usual[joint];
   }
+  if (seen_usual > 0)
+    for (const Eigen::Index joint : unseen) part[joint] = usual[joint] * seen_sum / seen_usual;
+  return part;
+}
+
+/// RMS distance of a frame's joints from the root; joints that are missing are stood in for by the
+/// others, each weighing as much as it usually makes up of the sum. NaN where less than half of the
+/// usual sum of those that are seen at all is there. @param usual as usual_parts  @return [frames]
+std::vector<double> frame_sizes(const MatrixD& squared, const RowVectorD& usual) {
+  const RowVectorD share = usual_parts(squared, usual);
+  const auto ever_seen = (!squared.array().isNaN()).colwise().any();
   const double whole = share.sum();
+  const double seen_whole = ever_seen.select(share.array(), 0.0).sum();
   std::vector<double> sizes(static_cast<std::size_t>(squared.rows()), kNan);
   for (Eigen::Index frame = 0; frame < squared.rows(); ++frame) {
     const auto known = !squared.row(frame).array().isNaN();
     const double part = known.select(share.array(), 0.0).sum();
     const double sum = known.select(squared.row(frame).array(), 0.0).sum();
-    if (part > 0 && part >= 0.5 * whole) {
+    if (part > 0 && part >= 0.5 * seen_whole) {
       sizes[frame] = std::sqrt(sum / part * whole / static_cast<double>(squared.cols()));
     }
   }
@@ -185,18 +218,22 @@ std::vector<std::string> TrackFeatures::feature_names() const {
   return names;
 }
 
-MatrixD TrackFeatures::encode(const Track2d& track, FillCount* filled) const {
-  Pixels pixels = select_joints(track, joint_names_, root_name_);
-  const FillCount count = fill_short_gaps(pixels, track.fps);
-  if (filled) *filled = count;
-
+MatrixD TrackFeatures::encode(const Track2d& track, FillCount* filled,
+                              const RowVectorD& usual_squares) const {
+  Pixels pixels = select_joints(track, columns_of(track, joint_names_, root_name_));
+  FillCount count = fill_short_gaps(pixels, track.fps);
   const auto joints = static_cast<Eigen::Index>(joint_names_.size());
+  for (Eigen::Index joint = 0; joint < joints; ++joint)
+    if (never_seen(pixels, joint))
+      count.unseen.push_back(joint_names_[static_cast<std::size_t>(joint)]);
+  if (filled) *filled = std::move(count);
+
   const Eigen::VectorXd root_x = pixels.x.col(joints), root_y = pixels.y.col(joints);
   const MatrixD x = pixels.x.leftCols(joints).colwise() - root_x;
   const MatrixD y = pixels.y.leftCols(joints).colwise() - root_y;
   const int half_width = std::max(2, static_cast<int>(std::lround(kSizeWindow_s * track.fps)));
   const std::vector<double> log_size =
-      smooth_log_sizes(frame_sizes(squared_distances(x, y)), half_width);
+      smooth_log_sizes(frame_sizes(squared_distances(x, y), usual_squares), half_width);
 
   MatrixD features(track.frames(), dimension());
   for (Eigen::Index frame = 0; frame < features.rows(); ++frame) {
@@ -238,6 +275,16 @@ Track2d TrackFeatures::decode(const MatrixD& features, double fps, int width_px,
     track.y_px.col(joint + 1) = root_y + size_px * features.col(2 * joint + 1).array();
   }
   return track;
+}
+
+RowVectorD TrackFeatures::usual_squares(const RowVectorD& mean, const RowVectorD& deviation) const {
+  if (mean.size() != dimension() || deviation.size() != dimension()) return {};
+  const auto joints = static_cast<Eigen::Index>(joint_names_.size());
+  const RowVectorD squares = mean.array().square() + deviation.array().square();
+  RowVectorD usual(joints);
+  for (Eigen::Index joint = 0; joint < joints; ++joint)
+    usual[joint] = squares[2 * joint] + squares[2 * joint + 1];
+  return usual;
 }
 
 nlohmann::json TrackFeatures::to_json() const {

@@ -163,6 +163,52 @@ TEST_CASE("track features: a missing limb does not shrink the body") {
   CHECK((features.col(6).array() - std::log(kSize_px / 1080)).abs().maxCoeff() < 1e-9);
 }
 
+TEST_CASE("track features: joints in no column are missing, and the body's size stays what it is") {
+  Track2d track = still_track();
+  const TrackFeatures features({"Hand", "Foot", "Extra"}, "Hips");
+  track.x_px.col(0).setConstant(960 + 24);
+  track.y_px.col(0).setConstant(540 - 32);
+  const MatrixD whole = features.encode(track);
+  // As over many clips: the feet do not move, the others do.
+  RowVectorD deviation = RowVectorD::Zero(features.dimension());
+  const RowVectorD usual = features.usual_squares(whole.row(0), deviation);
+  REQUIRE(usual.size() == 3);
+  CHECK(usual.sum() == doctest::Approx(3));
+  deviation[0] = 0.5;
+  CHECK(features.usual_squares(whole.row(0), deviation)[0] == doctest::Approx(usual[0] + 0.25));
+  CHECK(features.usual_squares(whole.row(0), RowVectorD()).size() == 0);
+
+  track.joint_names[3] = "Tail";  // the foot's
+  TrackFeatures::FillCount filled;
+  const MatrixD seen = features.encode(track, &filled, usual);
+  CHECK(filled.unseen == std::vector<std::string>{"Foot"});
+  CHECK(filled.missing == 0);
+  CHECK(filled.interpolated == 0);
+  CHECK(all_nan(seen.middleCols(2, 2)));
+  for (const int column : {0, 1, 4, 5, 6, 7, 8})
+    CHECK((seen.col(column) - whole.col(column)).cwiseAbs().maxCoeff() < 1e-9);
+  // A column that is empty throughout says as little.
+  Track2d empty = still_track();
+  empty.x_px.col(0) = track.x_px.col(0);
+  empty.y_px.col(0) = track.y_px.col(0);
+  lose(empty, "Foot", 0, 90);
+  TrackFeatures::FillCount of_empty;
+  const MatrixD same = features.encode(empty, &of_empty, usual);
+  CHECK(of_empty.unseen == filled.unseen);
+  CHECK((same.array().isNaN() == seen.array().isNaN()).all());
+  CHECK((same.rightCols<1>() - seen.rightCols<1>()).norm() < 1e-12);
+  // Nobody says what the foot is worth: then it is worth nothing.
+  const MatrixD alone = features.encode(track);
+  CHECK(alone(0, 8) == doctest::Approx(std::log(std::sqrt((900 + 1600) / 3.0) / 1080)));
+  // Half of what is seen at all is enough for a size.
+  Track2d half = track;
+  lose(half, "Extra", 30, 30);
+  CHECK(features.encode(half, nullptr, usual).col(8).allFinite());
+
+  track.joint_names[0] = "Nose";
+  CHECK_THROWS_WITH_AS(features.encode(track), doctest::Contains("Foot, Extra"), InputError);
+}
+
 TEST_CASE("track features: without the root there is nothing to measure from") {
   Track2d track = still_track();
   lose(track, "Hips", 40, 10);

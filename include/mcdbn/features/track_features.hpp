@@ -35,14 +35,24 @@ class TrackFeatures {
   std::vector<std::string> feature_names() const;
 
   struct FillCount {
-    int interpolated = 0;
-    int missing = 0;
+    int interpolated = 0;             ///< joint-frames
+    int missing = 0;                  ///< joint-frames, of joints that some frame shows
+    std::vector<std::string> unseen;  ///< joints, the root aside, that no frame shows
   };
   /// Joined by name. Gaps of at most `kLongestGap_s` are interpolated (held at the track's ends);
-  /// what is longer stays NaN, and so does all of a frame without its root joint.
-  /// @param filled if given, how many joint-frames were interpolated and how many stay missing
-  /// @return [frames x dimension]  @throws InputError if a joint of the model is in no column
-  MatrixD encode(const Track2d& track, FillCount* filled = nullptr) const;
+  /// what is longer stays NaN, and so do all of a frame without its root joint and a joint that is
+  /// in no column.
+  /// @param filled if given, what was interpolated and what stays missing
+  /// @param usual_squares as usual_squares() tells them, for the size of a body of which joints are
+  ///        never seen; empty: they then make up nothing of it
+  /// @return [frames x dimension]
+  /// @throws InputError if the root, or all but one other joint of the model, are in no column
+  MatrixD encode(const Track2d& track, FillCount* filled = nullptr,
+                 const RowVectorD& usual_squares = {}) const;
+  /// The mean square of each joint's distance from the root, in squared sizes.
+  /// @param mean, deviation of the features over many clips; of another length: nothing is known
+  /// @return [joint_names()], or nothing
+  RowVectorD usual_squares(const RowVectorD& mean, const RowVectorD& deviation) const;
   /// Back to pixels on an image of that size: the root first, then joint_names(), confidence 1. The
   /// root's place and the body's size are features too, so nothing else has to be known; of
   /// encode() it is the inverse wherever nothing was missing.
