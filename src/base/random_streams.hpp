@@ -28,6 +28,10 @@ inline constexpr std::uint16_t kMissingJoints = 203;
 inline constexpr std::uint16_t kHiddenArm = 204;
 inline constexpr std::uint16_t kHiddenLimbs = 205;
 inline constexpr std::uint16_t kGeneration = 206;
+inline constexpr std::uint16_t kDetector = 207;  ///< of each column of its track
+inline constexpr std::uint16_t kDetectorSwaps = 208;
+inline constexpr std::uint16_t kRandomCamera = 209;
+inline constexpr std::uint16_t kOtherBody = 213;
 // Of a single machine (machines/sampling.hpp, energy.hpp, partition.hpp).
 inline constexpr std::uint16_t kChains = 210;
 inline constexpr std::uint16_t kFlippedUnits = 211;

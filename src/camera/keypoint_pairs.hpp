@@ -1,0 +1,21 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "mcdbn/camera/keypoint.hpp"
+
+namespace mcdbn {
+
+/// The columns of both legs, or of both arms, left before right.
+struct LimbPairs {
+  std::vector<std::pair<int, int>> columns;  ///< all that move when the limbs are exchanged
+  std::vector<std::pair<int, int>> telling;  ///< of them those that are far from the trunk
+};
+
+/// Hips, knees, ankles and what the feet carry; knees and ankles tell.
+LimbPairs leg_pairs(const std::vector<Keypoint>& keypoints);
+/// Shoulders, elbows, wrists and hands; elbows and wrists tell.
+LimbPairs arm_pairs(const std::vector<Keypoint>& keypoints);
+
+}  // namespace mcdbn
