@@ -20,11 +20,16 @@ void roll(Camera& camera, double angle_deg) {
   camera.translation = turn * camera.translation;
 }
 
+/// With room for what lies above and before the outermost joints: head, hands and feet.
 bool all_in_view(const Camera& camera, const MatrixD& points) {
+  constexpr double kMargin = 0.05;
+  const double margin_x = kMargin * camera.width_px, margin_y = kMargin * camera.height_px;
   const MatrixD pixels = project_points(camera, points);
   const auto x = pixels(Eigen::all, Eigen::seqN(0, pixels.cols() / 2, 2)).array(),
              y = pixels(Eigen::all, Eigen::seqN(1, pixels.cols() / 2, 2)).array();
-  return (x >= 0 && x <= camera.width_px && y >= 0 && y <= camera.height_px).all();
+  return (x >= margin_x && x <= camera.width_px - margin_x && y >= margin_y &&
+          y <= camera.height_px - margin_y)
+      .all();
 }
 
 }  // namespace
