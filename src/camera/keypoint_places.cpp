@@ -13,25 +13,6 @@ namespace {
 
 using enum JointRole;
 
-/// x to the body's left, y up along its trunk, z forward, as columns. None without hips and a
-/// joint above them.
-std::optional<Eigen::Matrix3d> trunk_axes(const WorldPose& pose, const SkeletonRoles& roles) {
-  const auto at = [&](JointRole role) -> const Eigen::Vector3d& {
-    return pose.position[static_cast<std::size_t>(roles.joint(role))];
-  };
-  if (!roles.has(left_hip) || !roles.has(right_hip)) return {};
-  const Eigen::Vector3d hips = (at(left_hip) + at(right_hip)) / 2;
-  for (const JointRole top : {neck, chest, head, spine}) {
-    if (!roles.has(top)) continue;
-    const Eigen::Vector3d left = (at(left_hip) - at(right_hip)).normalized(),
-                          forward = left.cross(at(top) - hips).normalized();
-    Eigen::Matrix3d axes;
-    axes << left, forward.cross(left), forward;
-    if (axes.allFinite() && axes.determinant() > 0.5) return axes;
-  }
-  return {};
-}
-
 /// The trunk's axes in the rest pose, if that stands: thighs and shanks below the hips.
 std::optional<Eigen::Matrix3d> standing_axes(const WorldPose& rest, const SkeletonRoles& roles) {
   constexpr double kSteep = 0.7;
@@ -40,18 +21,6 @@ std::optional<Eigen::Matrix3d> standing_axes(const WorldPose& rest, const Skelet
   const Eigen::Vector3d leg = rest.position[static_cast<std::size_t>(roles.joint(left_ankle))] -
                               rest.position[static_cast<std::size_t>(roles.joint(left_hip))];
   return -leg.normalized().dot(axes->col(1)) > kSteep ? axes : std::nullopt;
-}
-
-WorldPose rest_pose(const Skeleton& skeleton) {
-  RowVectorD channels = RowVectorD::Zero(skeleton.channel_count());
-  for (int j = 0; j < skeleton.joint_count(); ++j) {
-    const Joint& joint = skeleton.joints[static_cast<std::size_t>(j)];
-    for (std::size_t k = 0; k < joint.channels.size(); ++k)
-      if (!is_rotation(joint.channels[k]))
-        channels[skeleton.first_channel(j) + static_cast<int>(k)] =
-            joint.offset[axis_of(joint.channels[k])];
-  }
-  return forward_kinematics(skeleton, channels);
 }
 
 /// For each joint what turns offsets in upright axes into the joint's own.
@@ -85,7 +54,46 @@ std::vector<WorldPose> poses_of(const Motion& motion) {
   return poses;
 }
 
+/// The channels of the rest pose, in one frame.
+RowVectorD rest_channels(const Skeleton& skeleton) {
+  RowVectorD channels = RowVectorD::Zero(skeleton.channel_count());
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const Joint& joint = skeleton.joints[static_cast<std::size_t>(j)];
+    for (std::size_t k = 0; k < joint.channels.size(); ++k)
+      if (!is_rotation(joint.channels[k]))
+        channels[skeleton.first_channel(j) + static_cast<int>(k)] =
+            joint.offset[axis_of(joint.channels[k])];
+  }
+  return channels;
+}
+
 }  // namespace
+
+std::optional<Eigen::Matrix3d> trunk_axes(const WorldPose& pose, const SkeletonRoles& roles) {
+  const auto at = [&](JointRole role) -> const Eigen::Vector3d& {
+    return pose.position[static_cast<std::size_t>(roles.joint(role))];
+  };
+  if (!roles.has(left_hip) || !roles.has(right_hip)) return {};
+  const Eigen::Vector3d hips = (at(left_hip) + at(right_hip)) / 2;
+  for (const JointRole top : {neck, chest, head, spine}) {
+    if (!roles.has(top)) continue;
+    const Eigen::Vector3d left = (at(left_hip) - at(right_hip)).normalized(),
+                          forward = left.cross(at(top) - hips).normalized();
+    Eigen::Matrix3d axes;
+    axes << left, forward.cross(left), forward;
+    if (axes.allFinite() && axes.determinant() > 0.5) return axes;
+  }
+  return {};
+}
+
+WorldPose rest_pose(const Skeleton& skeleton) {
+  return forward_kinematics(skeleton, rest_channels(skeleton));
+}
+
+MatrixD rest_places(const Skeleton& skeleton, const SkeletonRoles& roles,
+                    const std::vector<Keypoint>& keypoints) {
+  return keypoint_places({skeleton, 1, rest_channels(skeleton)}, roles, keypoints);
+}
 
 MatrixD role_positions(const Motion& motion, const SkeletonRoles& roles) {
   MatrixD positions =

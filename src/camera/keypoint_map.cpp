@@ -1,0 +1,183 @@
+#include "camera/keypoint_map.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "camera/keypoint_places.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "motion/body_size.hpp"
+
+namespace mcdbn {
+namespace {
+
+using enum JointRole;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kFewestJoints = 3;
+/// How well a detector hits its place at all, in body heights.
+constexpr double kHit = 0.01;
+/// How far an answer's joints are turned wrong, which takes a place on a lever with them.
+constexpr double kTurn_rad = 0.3;
+
+/// The column whose keypoint is the joint itself, or -1.
+int column_of(const std::vector<Keypoint>& keypoints, JointRole role) {
+  const auto found = std::ranges::find_if(keypoints, [&](const Keypoint& keypoint) {
+    return keypoint.role == role && !keypoint.halfway && keypoint.offset.norm() < 0.02;
+  });
+  return found == keypoints.end() ? -1 : static_cast<int>(found - keypoints.begin());
+}
+
+bool seen(const Track2d& track, Eigen::Index frame, int column) {
+  return track.confidence(frame, column) > 0 && std::isfinite(track.x_px(frame, column)) &&
+         std::isfinite(track.y_px(frame, column));
+}
+
+Eigen::Vector2d pixel(const Track2d& track, Eigen::Index frame, int column) {
+  return {track.x_px(frame, column), track.y_px(frame, column)};
+}
+
+/// The middle of two columns; NaN unless both are seen.
+Eigen::Vector2d middle(const Track2d& track, Eigen::Index frame, int left, int right) {
+  if (left < 0 || right < 0 || !seen(track, frame, left) || !seen(track, frame, right))
+    return {kNan, kNan};
+  return 0.5 * (pixel(track, frame, left) + pixel(track, frame, right));
+}
+
+}  // namespace
+
+KeypointMap::KeypointMap(const std::vector<Keypoint>& keypoints, const Skeleton& skeleton,
+                         const SkeletonRoles& roles)
+    : keypoints_(keypoints), roles_(roles) {
+  const double height = body_height(skeleton);
+  const WorldPose rest = rest_pose(skeleton);
+  const auto axes = trunk_axes(rest, roles).value_or(Eigen::Matrix3d::Identity());
+  const MatrixD places = rest_places(skeleton, roles, keypoints);
+  const auto add = [&](JointRole role, std::vector<int> columns) {
+    if (!roles.has(role)) return;
+    Eigen::Vector3d place(0, 0, 0);
+    for (const int column : columns)
+      place +=
+          places.row(0).segment<3>(3 * column).transpose() / static_cast<double>(columns.size());
+    if (!place.allFinite()) return;
+    const int joint = roles.joint(role);
+    const auto known = std::ranges::find(joints_, joint);
+    const auto index = static_cast<std::size_t>(known - joints_.begin());
+    if (known == joints_.end()) {
+      joints_.push_back(joint);
+      names_.push_back(skeleton.joints[static_cast<std::size_t>(joint)].name);
+    }
+    const Eigen::Vector3d offset = place - rest.position[static_cast<std::size_t>(joint)];
+    readings_.push_back({index, std::move(columns), axes.transpose() * offset / height});
+  };
+  for (std::size_t k = 0; k < keypoints.size(); ++k)
+    if (keypoints[k].role) add(*keypoints[k].role, {static_cast<int>(k)});
+  for (const auto& [role, left] : {std::pair{pelvis, left_hip}, std::pair{neck, left_shoulder}}) {
+    const int left_column = column_of(keypoints, left),
+              right_column = column_of(keypoints, other_side(left));
+    const bool told = std::ranges::find(joints_, roles.joint(role)) != joints_.end();
+    if (!told && left_column >= 0 && right_column >= 0) add(role, {left_column, right_column});
+  }
+  const bool has_pelvis = std::ranges::find(joints_, roles.joint(pelvis)) != joints_.end();
+  if (joints_.size() < kFewestJoints || !has_pelvis)
+    throw InputError(fmt::format(
+        "the 2D track shows too little of the body: {} of the model's joints ({}); at least {} are "
+        "needed, the pelvis or both hips among them",
+        joints_.size(), fmt::join(names_, ", "), kFewestJoints));
+
+  const auto centre = [&](JointRole left) -> Eigen::Vector3d {
+    return 0.5 * (rest.position[static_cast<std::size_t>(roles.joint(left))] +
+                  rest.position[static_cast<std::size_t>(roles.joint(other_side(left)))]);
+  };
+  if (!roles.has(left_hip) || !roles.has(right_hip)) return;
+  hip_width_ = (rest.position[static_cast<std::size_t>(roles.joint(left_hip))] -
+                rest.position[static_cast<std::size_t>(roles.joint(right_hip))])
+                   .norm() /
+               height;
+  if (roles.has(left_shoulder) && roles.has(right_shoulder))
+    trunk_length_ = (centre(left_shoulder) - centre(left_hip)).norm() / height;
+}
+
+KeypointMap::Displacements KeypointMap::seen_displacements(const Track2d& track) const {
+  Displacements result{
+      MatrixD::Zero(track.frames(), 2 * static_cast<Eigen::Index>(readings_.size())), {}};
+  for (const Reading& reading : readings_) result.uncertain.push_back(std::abs(reading.offset.z()));
+  const int left = column_of(keypoints_, left_hip), right = column_of(keypoints_, right_hip),
+            left_top = column_of(keypoints_, left_shoulder),
+            right_top = column_of(keypoints_, right_shoulder);
+  for (Eigen::Index t = 0; t < track.frames(); ++t) {
+    // Pixels of one body height to the left and up, as the body is seen.
+    const Eigen::Vector2d hips = middle(track, t, left, right);
+    const Eigen::Vector2d up = (middle(track, t, left_top, right_top) - hips) / trunk_length_;
+    if (!up.allFinite() || !(hip_width_ > 0)) continue;
+    const Eigen::Vector2d leftward = (pixel(track, t, left) - pixel(track, t, right)) / hip_width_;
+    for (std::size_t k = 0; k < readings_.size(); ++k) {
+      const Eigen::Vector3d& offset = readings_[k].offset;
+      result.px.row(t).segment<2>(2 * static_cast<Eigen::Index>(k)) =
+          (leftward * offset.x() + up * offset.y()).transpose();
+    }
+  }
+  return result;
+}
+
+Track2d KeypointMap::without(const Track2d& track, const Displacements& displacements) const {
+  Track2d result = track;
+  result.keypoints.clear();
+  result.joint_names = names_;
+  const auto count = static_cast<Eigen::Index>(names_.size());
+  for (MatrixD* values : {&result.x_px, &result.y_px, &result.confidence})
+    *values = MatrixD::Zero(track.frames(), count);
+  MatrixD weights = MatrixD::Zero(track.frames(), count);
+  for (std::size_t k = 0; k < readings_.size(); ++k) {
+    const Reading& reading = readings_[k];
+    const auto joint = static_cast<Eigen::Index>(reading.joint);
+    const double variance = kHit * kHit + displacements.uncertain[k] * displacements.uncertain[k];
+    for (Eigen::Index t = 0; t < track.frames(); ++t) {
+      const Eigen::Vector2d place =
+          middle(track, t, reading.columns.front(), reading.columns.back());
+      const Eigen::Vector2d shift =
+          displacements.px.row(t).segment<2>(2 * static_cast<Eigen::Index>(k)).transpose();
+      if (!place.allFinite() || !shift.allFinite()) continue;
+      const double confidence = std::min(track.confidence(t, reading.columns.front()),
+                                         track.confidence(t, reading.columns.back()));
+      const double weight = confidence * (kHit * kHit / variance);
+      weights(t, joint) += weight;
+      result.x_px(t, joint) += weight * (place - shift).x();
+      result.y_px(t, joint) += weight * (place - shift).y();
+      result.confidence(t, joint) += weight * confidence;
+    }
+  }
+  const auto told = weights.array() > 0;
+  result.x_px = told.select(result.x_px.array() / weights.array(), kNan);
+  result.y_px = told.select(result.y_px.array() / weights.array(), kNan);
+  result.confidence = told.select(result.confidence.array() / weights.array(), 0.0);
+  return result;
+}
+
+Track2d KeypointMap::joints_of(const Track2d& track) const {
+  return without(track, seen_displacements(track));
+}
+
+Track2d KeypointMap::joints_of(const Track2d& track, const Motion& answer,
+                               const Camera& camera) const {
+  if (answer.frames() != track.frames())
+    throw ShapeError(fmt::format("KeypointMap::joints_of: an answer of {} frames to a track of {}",
+                                 answer.frames(), track.frames()));
+  const MatrixD places = project_points(camera, keypoint_places(answer, roles_, keypoints_));
+  const MatrixD joints = project_points(camera, joint_positions(answer));
+  Displacements displacements{
+      MatrixD(track.frames(), 2 * static_cast<Eigen::Index>(readings_.size())), {}};
+  for (std::size_t k = 0; k < readings_.size(); ++k) {
+    const Reading& reading = readings_[k];
+    const int one = reading.columns.front(), other = reading.columns.back();
+    displacements.px.middleCols<2>(2 * static_cast<Eigen::Index>(k)) =
+        0.5 * (places.middleCols<2>(2 * one) + places.middleCols<2>(2 * other)) -
+        joints.middleCols<2>(2 * joints_[reading.joint]);
+    displacements.uncertain.push_back(kTurn_rad * reading.offset.norm());
+  }
+  return without(track, displacements);
+}
+
+}  // namespace mcdbn
