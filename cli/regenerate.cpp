@@ -13,10 +13,10 @@
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
-#include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "sample_path.hpp"
 #include "sampling_options.hpp"
+#include "track_options.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -25,6 +25,7 @@ constexpr const char *kToPose = "pose", *kToTrack = "track";
 
 struct RegenerateOptions {
   std::filesystem::path model, input, output, camera, skeleton;
+  TrackReadOptions track;
   SamplingOptions sampling;
   std::string to = kToPose, fit;
 };
@@ -51,7 +52,7 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
   if (!options.skeleton.empty()) placement.skeleton = read_bvh(options.skeleton).skeleton;
   placement.fit = track_fit(options.fit);
   TrackFeatures::FillCount filled;
-  const Track2d track = read_track(options.input);
+  const Track2d track = read_tracks_with_notices(options.input, options.track).people.front();
   const auto motions = regenerate_clip(model, track, placement, regeneration, &filled);
   if (filled.interpolated + filled.missing > 0)
     spdlog::info("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
@@ -96,7 +97,9 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand(
       "regenerate", "Regenerates 3D motion, as BVH, from a 2D track; or a track from motion");
   command->add_option("--model", options->model, "Trained model")->required()->type_name("FILE");
-  command->add_option("--input", options->input, "2D track, CSV; with --to track a BVH clip")
+  command
+      ->add_option("--input", options->input,
+                   "2D track, a file or a folder; with --to track a BVH clip")
       ->required()
       ->type_name("FILE");
   command
@@ -120,6 +123,7 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
       ->add_option("--skeleton", options->skeleton,
                    "BVH whose skeleton to use, of the same joint names")
       ->type_name("FILE");
+  add_track_options(*command, options->track);
   add_sampling_options(*command, options->sampling,
                        "Variations; several are written as out_01.bvh … (default: 1)");
   add_fit_option(*command, options->fit, "default: track");

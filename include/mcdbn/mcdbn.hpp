@@ -9,6 +9,7 @@
 #include "mcdbn/base/settings.hpp"
 #include "mcdbn/camera/assumed_view.hpp"
 #include "mcdbn/camera/camera.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/camera/keypoint.hpp"
 #include "mcdbn/camera/level_view.hpp"
 #include "mcdbn/camera/side_swaps.hpp"

@@ -3,48 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string_view>
 
 #include "base/text_file.hpp"
+#include "formats/csv_text.hpp"
+#include "formats/joint_naming.hpp"
 #include "formats/track_formats.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
 
 namespace mcdbn {
 
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::string_view kSpace = " \t\r";
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(kSpace);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (;;) {
-    const auto end = text.find(separator);
-    parts.push_back(trimmed(text.substr(0, end)));
-    if (end == std::string_view::npos) return parts;
-    text.remove_prefix(end + 1);
-  }
-}
-
-/// The number that the whole of `text` is, if it is one; `nan` is one, infinity is not.
-std::optional<double> number(std::string_view text) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || std::isinf(value)) return {};
-  return value;
-}
-
 /// Where a column's numbers go.
 enum class Quantity { time, x, y, confidence };
 struct Column {
@@ -75,6 +50,9 @@ class TrackReader {
     return std::move(track_);
   }
 
+  bool says_fps() const { return says_fps_; }
+  bool says_size() const { return says_width_ && says_height_; }
+
  private:
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(fmt::format("{}:{}: {}", name_, line_, what));
@@ -91,6 +69,7 @@ class TrackReader {
       if (!(value > 0) || (key != "fps" && (value != std::floor(value) || value > 1e6))) {
         fail(fmt::format("{} has no usable value; write a number above 0, as in {}=30", word, key));
       }
+      (key == "fps" ? says_fps_ : key == "width_px" ? says_width_ : says_height_) = true;
       if (key == "fps") track_.fps = value;
       if (key == "width_px") track_.width_px = static_cast<int>(value);
       if (key == "height_px") track_.height_px = static_cast<int>(value);
@@ -207,11 +186,13 @@ class TrackReader {
     track_.confidence = gone.select(0.0, track_.confidence);
     if (columns_.front().quantity == Quantity::time && frames > 1) {
       track_.fps = static_cast<double>(frames - 1) / (rows_.back()[0] - rows_.front()[0]);
+      says_fps_ = true;
     }
   }
 
   std::string name_;
   int line_ = 0;
+  bool says_fps_ = false, says_width_ = false, says_height_ = false;
   Track2d track_;
   std::vector<Column> columns_;
   std::vector<RowVectorD> rows_;
@@ -219,6 +200,56 @@ class TrackReader {
 
 std::string cell(double value) {
   return std::isnan(value) ? std::string() : fmt::format("{}", value);
+}
+
+bool recognises(const TrackSource& source) {
+  if (source.is_folder()) return false;
+  std::string_view text = source.text();
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  while (!text.empty()) {
+    const auto end = std::min(text.find('\n'), text.size());
+    const std::string_view line = trimmed(text.substr(0, end));
+    if (!line.empty() && line.front() != '#') return line.find("_x_px") != std::string_view::npos;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return false;
+}
+
+/// Whether the columns are a detector's, not a skeleton's: most are called as in one of the joint
+/// sets.
+bool are_a_detectors(const std::vector<std::string>& names) {
+  const auto known = std::ranges::count_if(names, [](const std::string& name) {
+    return std::ranges::any_of(joint_sets(), [&](const JointSet& set) {
+      return std::ranges::find(set.keypoints, name, &Keypoint::name) != set.keypoints.end();
+    });
+  });
+  return 2 * known > static_cast<std::ptrdiff_t>(names.size());
+}
+
+SeenPeople read(const TrackSource& source) {
+  TrackReader reader(source.name());
+  const Track2d track = reader.read(source.text());
+  SeenPeople people;
+  people.in_pixels = true;
+  if (are_a_detectors(track.joint_names))
+    name_joints(people, track.joint_names);
+  else
+    people.joint_names = track.joint_names;
+  for (Eigen::Index frame = 0; frame < track.frames(); ++frame) {
+    const auto row_of = [&](const MatrixD& values) {
+      return std::vector<double>(values.row(frame).begin(), values.row(frame).end());
+    };
+    people.frames[frame] = {
+        {row_of(track.x_px), row_of(track.y_px), row_of(track.confidence), 1}};
+  }
+  if (reader.says_fps()) people.fps = track.fps;
+  people.image_size = ImageSize{track.width_px, track.height_px};
+  if (!reader.says_size())
+    people.notices.push_back(
+        fmt::format("the file does not say the image's size: {} x {} px are "
+                    "taken; say it by `image-size`",
+                    track.width_px, track.height_px));
+  return people;
 }
 
 }  // namespace
@@ -250,16 +281,9 @@ void write_track_csv(const std::filesystem::path& path, const Track2d& track) {
 }
 
 TrackFormat track_csv_format() {
-  return {"csv", "columns joint_x_px, joint_y_px, joint_confidence and time_s",
-          [](std::string_view start) {
-            const std::string_view text =
-                start.starts_with("\xEF\xBB\xBF") ? start.substr(3) : start;
-            for (const std::string_view line : split(text, '\n'))
-              if (!line.empty() && line.front() != '#')
-                return line.find("_x_px") != std::string_view::npos;
-            return false;
-          },
-          read_track_csv, write_track_csv};
+  return {"csv", "our own: columns joint_x_px, joint_y_px, joint_confidence and time_s",
+          {},    recognises,
+          read,  write_track_csv};
 }
 
 }  // namespace mcdbn

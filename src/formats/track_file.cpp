@@ -4,57 +4,70 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "formats/track_formats.hpp"
+#include "formats/track_reading.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
 
-std::string start_of(const std::filesystem::path& path) {
-  constexpr std::size_t kStart = 4096;
-  std::ifstream file(path, std::ios::binary);
-  std::string start(kStart, '\0');
-  if (!file || !(file.read(start.data(), kStart) || file.eof()))
-    throw InputError(fmt::format("{}: cannot be read", path.string()));
-  start.resize(static_cast<std::size_t>(file.gcount()));
-  return start;
-}
-
 std::string names() {
   std::vector<std::string> all;
-  for (const TrackFormat& format : track_formats()) all.emplace_back(format.name);
+  for (const TrackFormat& format : track_formats()) all.push_back(format.name);
   return fmt::format("{}", fmt::join(all, ", "));
+}
+
+const TrackFormat* format_of(const TrackSource& source) {
+  const auto found = std::ranges::find_if(
+      track_formats(), [&](const TrackFormat& format) { return format.recognises(source); });
+  return found == track_formats().end() ? nullptr : &*found;
+}
+
+const TrackFormat& format_to_read(const TrackSource& source, const std::string& asked) {
+  if (!asked.empty()) return track_format(asked);
+  if (const TrackFormat* recognised = format_of(source)) return *recognised;
+  if (source.is_folder() && source.json_files().empty())
+    throw InputError(fmt::format("{}: no .json files in this folder", source.name()));
+  // JSON that cannot be parsed says where.
+  if (source.is_folder()) source.json_of(source.json_files().front());
+  if (const char first = source.first_letter(); first == '{' || first == '[') source.json();
+  throw InputError(
+      fmt::format("{}: not a 2D track of a known format ({})", source.name(), names()));
 }
 
 }  // namespace
 
 const std::vector<TrackFormat>& track_formats() {
-  static const std::vector<TrackFormat> formats{track_csv_format()};
+  static const std::vector<TrackFormat> formats{track_csv_format(), track_openpose_format(),
+                                                track_coco_format()};
   return formats;
 }
 
-const TrackFormat* track_format_of(const std::filesystem::path& path) {
-  const std::string start = start_of(path);
-  const auto found = std::ranges::find_if(
-      track_formats(), [&](const TrackFormat& format) { return format.recognises(start); });
-  return found == track_formats().end() ? nullptr : &*found;
+const TrackFormat& track_format(const std::string& name) {
+  const auto named = std::ranges::find(track_formats(), name, &TrackFormat::name);
+  if (named == track_formats().end())
+    throw InputError(fmt::format("no track format is called {}; there are: {}", name, names()));
+  return *named;
 }
 
-Track2d read_track(const std::filesystem::path& path, const std::string& format) {
-  if (format.empty()) {
-    const TrackFormat* recognised = track_format_of(path);
-    if (recognised == nullptr)
-      throw InputError(
-          fmt::format("{}: not a 2D track of a known format ({})", path.string(), names()));
-    return recognised->read(path);
-  }
-  const auto named = std::ranges::find_if(
-      track_formats(), [&](const TrackFormat& known) { return format == known.name; });
-  if (named == track_formats().end())
-    throw InputError(fmt::format("no track format is called {}; there are: {}", format, names()));
-  return named->read(path);
+const TrackFormat* track_format_of(const std::filesystem::path& path) {
+  return format_of(TrackSource(path));
+}
+
+TrackReading read_tracks(const std::filesystem::path& path, const TrackReadOptions& options) {
+  const TrackSource source(path);
+  const TrackFormat& format = format_to_read(source, options.format);
+  TrackReading reading = tracks_of(format.read(source), options, source.name());
+  reading.format = format.name;
+  return reading;
+}
+
+Track2d read_track(const std::filesystem::path& path, const TrackReadOptions& options,
+                   std::vector<std::string>* notices) {
+  TrackReading reading = read_tracks(path, options);
+  if (notices != nullptr) *notices = std::move(reading.notices);
+  return std::move(reading.people.front());
 }
 
 }  // namespace mcdbn

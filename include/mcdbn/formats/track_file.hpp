@@ -1,34 +1,75 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "mcdbn/camera/track.hpp"
 
 namespace mcdbn {
 
+class TrackSource;
+struct SeenPeople;
+
 /// One format of 2D tracks: a source file of its own, and a line in track_file.cpp.
 struct TrackFormat {
-  const char* name;   ///< as people give it
-  const char* about;  ///< one line
-  /// Whether a file that begins with this text is of this format. @param start its first 4 KB
-  bool (*recognises)(std::string_view start);
-  /// @throws InputError `file:line: what`
-  Track2d (*read)(const std::filesystem::path& path);
-  /// Writes atomically; none: read only.
-  void (*write)(const std::filesystem::path& path, const Track2d& track);
+  std::string name;   ///< as people give it
+  std::string about;  ///< one line
+  /// Names of the joint_sets() that its files hold; empty: the file names its joints itself.
+  std::vector<std::string> joint_sets;
+  /// Whether the content is of this format. @throws InputError if it cannot be read
+  bool (*recognises)(const TrackSource& source);
+  /// @throws InputError `file:line: what`, of JSON `file: key's path: what`
+  SeenPeople (*read)(const TrackSource& source);
+  /// Writes atomically, a folder file by file; none: read only.
+  /// @throws InputError if the format has no room for these joints
+  void (*write)(const std::filesystem::path& path, const Track2d& track) = nullptr;
 };
 
 /// All that there are.
 const std::vector<TrackFormat>& track_formats();
 
-/// The format that recognises the file's content, or none. @throws InputError if it cannot be read
+/// The format of that name. @throws InputError, listing the formats
+const TrackFormat& track_format(const std::string& name);
+
+/// The format that recognises the content of a file, or of a folder of files, or none.
+/// @throws InputError if it cannot be read
 const TrackFormat* track_format_of(const std::filesystem::path& path);
 
-/// @param format a name of track_formats(); empty: recognised by content
-/// @throws InputError, listing the formats if none recognises the file
-Track2d read_track(const std::filesystem::path& path, const std::string& format = {});
+struct ImageSize {
+  int width_px = 0, height_px = 0;
+  bool operator==(const ImageSize&) const = default;
+};
+
+/// What a track file may leave open.
+struct TrackReadOptions {
+  std::string format = {};                   ///< a name of track_formats(); empty: by content
+  std::string person = "largest";            ///< largest, all, or a number: 1 is the largest
+  std::optional<double> fps = std::nullopt;  ///< unset: the file's, else 30
+  /// Unset: the file's, else guessed from what was seen.
+  std::optional<ImageSize> image_size = std::nullopt;
+};
+
+/// The people of a track file, each followed over all frames of it.
+struct TrackReading {
+  std::string format;                ///< a name of track_formats()
+  std::string joint_set;             ///< a name of joint_sets(); empty: the file's own joints
+  long long first_frame = 0;         ///< the file's own number of the first frame
+  int people_seen = 0;               ///< those who were followed, chosen or not
+  std::vector<Track2d> people;       ///< those chosen, the largest first
+  std::vector<std::string> notices;  ///< what was assumed, guessed, left out or scaled
+};
+
+/// Reads a file, or a folder with a file for each frame. Joints that were not seen are NaN with
+/// confidence 0, and so is whoever was not seen in a frame. Confidences are from 0 to 1: a file's
+/// that overshoot (to 1.5) are cut at 1, greater ones divided by the file's 95 % quantile.
+/// @throws InputError as the format does; if no format recognises the content; if nobody of that
+/// number was seen
+TrackReading read_tracks(const std::filesystem::path& path, const TrackReadOptions& options = {});
+
+/// The first person of read_tracks. @param notices what it tells, if anyone wants to know
+Track2d read_track(const std::filesystem::path& path, const TrackReadOptions& options = {},
+                   std::vector<std::string>* notices = nullptr);
 
 }  // namespace mcdbn

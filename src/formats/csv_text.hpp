@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace mcdbn {
+
+std::string_view trimmed(std::string_view text);
+
+/// The parts between separators, each trimmed.
+std::vector<std::string_view> split(std::string_view text, char separator);
+
+/// The number that the whole of `text` is, if it is one; `nan` is one, infinity is not.
+std::optional<double> number(std::string_view text);
+
+}  // namespace mcdbn

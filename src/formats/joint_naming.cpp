@@ -1,0 +1,173 @@
+#include "formats/joint_naming.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "camera/body_places.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
+
+namespace mcdbn {
+namespace {
+
+struct CountedSets {
+  std::size_t joints;
+  std::vector<std::string> sets;  ///< candidates, the usual one first
+};
+
+const std::vector<CountedSets>& counted_sets() {
+  static const std::vector<CountedSets> sets{
+      {17, {"COCO_17", "H36M_17"}},
+      {18, {"COCO_18"}},
+      {23, {"COCO_23"}},
+      {25, {"BODY_25", "BODY_25B"}},
+      {26, {"HALPE_26"}},
+      {33, {"MEDIAPIPE_33"}},
+      {133, {"COCO_23"}},   // COCO-WholeBody
+      {135, {"BODY_25B"}},  // OpenPose's BODY_135
+      {136, {"HALPE_26"}},  // Halpe-136
+  };
+  return sets;
+}
+
+/// Bones that are there in every joint set of a human, or not at all.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kBones{{
+    {"left_shoulder", "left_elbow"},
+    {"right_shoulder", "right_elbow"},
+    {"left_elbow", "left_wrist"},
+    {"right_elbow", "right_wrist"},
+    {"left_hip", "left_knee"},
+    {"right_hip", "right_knee"},
+    {"left_knee", "left_ankle"},
+    {"right_knee", "right_ankle"},
+    {"left_shoulder", "right_shoulder"},
+    {"left_hip", "right_hip"},
+    {"nose", "left_eye"},
+    {"nose", "right_eye"},
+    {"left_eye", "left_ear"},
+    {"right_eye", "right_ear"},
+}};
+
+std::ptrdiff_t index_of(const JointSet& set, std::string_view place) {
+  const auto found = std::ranges::find_if(set.keypoints, [&](const Keypoint& keypoint) {
+    return place_name_of(keypoint.name) == place;
+  });
+  return found == set.keypoints.end() ? -1 : found - set.keypoints.begin();
+}
+
+/// The mean length of the bones that the joints make as this set, over all people.
+double mean_bone(const SeenPeople& people, const JointSet& set) {
+  double sum = 0, bones = 0;
+  for (const auto& [from, to] : kBones) {
+    const std::ptrdiff_t a = index_of(set, from), b = index_of(set, to);
+    if (a < 0 || b < 0) continue;
+    for (const auto& [number, frame] : people.frames)
+      for (const SeenPerson& person : frame) {
+        if (!(person.confidence[a] > 0) || !(person.confidence[b] > 0)) continue;
+        sum += std::hypot(person.x_px[a] - person.x_px[b], person.y_px[a] - person.y_px[b]);
+        ++bones;
+      }
+  }
+  return bones > 0 ? sum / bones : std::numeric_limits<double>::infinity();
+}
+
+void set_length(SeenPeople& people, std::size_t joints) {
+  for (auto& [number, frame] : people.frames)
+    for (SeenPerson& person : frame)
+      for (std::vector<double>* values : {&person.x_px, &person.y_px, &person.confidence})
+        values->resize(joints);
+}
+
+/// Joints of every person. @throws InputError if they differ
+std::size_t joint_count(const SeenPeople& people, const std::string& file) {
+  std::size_t count = 0;
+  for (const auto& [number, frame] : people.frames)
+    for (const SeenPerson& person : frame) {
+      if (count != 0 && person.x_px.size() != count)
+        throw InputError(fmt::format("{}: people of {} joints and, in frame {}, of {}", file, count,
+                                     number, person.x_px.size()));
+      count = person.x_px.size();
+    }
+  return count;
+}
+
+}  // namespace
+
+void name_joints_by_count(SeenPeople& people, const std::string& file,
+                          const std::vector<std::string>& names) {
+  const std::size_t count = joint_count(people, file);
+  if (count == 0)
+    throw InputError(fmt::format("{}: nobody in any frame, so its joints are not known", file));
+  if (names.size() == count) {
+    name_joints(people, names);
+    return;
+  }
+  const auto counted = std::ranges::find(counted_sets(), count, &CountedSets::joints);
+  if (counted == counted_sets().end()) {
+    people.notices.push_back(fmt::format("{} joints: no joint set of that count is known", count));
+    for (std::size_t joint = 0; joint < count; ++joint)
+      people.joint_names.push_back(fmt::format("joint_{}", joint));
+    people.keypoints = keypoints_of(people.joint_names);
+    return;
+  }
+  std::string likeliest = counted->sets.front();
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const std::string& name : counted->sets)
+    if (const double length = mean_bone(people, joint_set(name)); length < shortest) {
+      shortest = length;
+      likeliest = name;
+    }
+  SeenPeople named = people_of_set(likeliest);
+  people.joint_names = std::move(named.joint_names);
+  people.keypoints = std::move(named.keypoints);
+  set_length(people, people.joint_names.size());
+}
+
+void name_joints(SeenPeople& people, std::vector<std::string> names) {
+  people.keypoints = keypoints_of(names);
+  people.joint_names = std::move(names);
+}
+
+SeenPerson person_in_json(const JsonPlace& keypoints) {
+  if (keypoints.size() > 0 && keypoints.at(0).is_list()) {
+    SeenPerson person;
+    for (const JsonPlace& joint : keypoints.list()) {
+      const std::vector<double> numbers = joint.numbers();
+      if (numbers.size() < 2)
+        joint.fail(fmt::format("{} numbers; x and y are needed", numbers.size()));
+      person.x_px.push_back(numbers[0]);
+      person.y_px.push_back(numbers[1]);
+      person.confidence.push_back(numbers.size() < 3 ? 1.0 : numbers[2]);
+    }
+    mark_missing(person);
+    return person;
+  }
+  const std::vector<double> numbers = keypoints.numbers();
+  if (numbers.size() % 3 != 0)
+    keypoints.fail(
+        fmt::format("{} numbers; x, y and confidence of each joint are needed", numbers.size()));
+  return person_of(numbers, numbers.size() / 3, 3);
+}
+
+SeenPerson person_in_json(const JsonPlace& keypoints, const JsonPlace& scores) {
+  SeenPerson person;
+  const std::vector<double> confidence = scores.numbers();
+  for (const JsonPlace& joint : keypoints.list()) {
+    const std::vector<double> numbers = joint.numbers();
+    if (numbers.size() < 2)
+      joint.fail(fmt::format("{} numbers; x and y are needed", numbers.size()));
+    person.x_px.push_back(numbers[0]);
+    person.y_px.push_back(numbers[1]);
+  }
+  if (confidence.size() != person.x_px.size())
+    scores.fail(fmt::format("{} scores of {} joints", confidence.size(), person.x_px.size()));
+  person.confidence = confidence;
+  mark_missing(person);
+  return person;
+}
+
+}  // namespace mcdbn

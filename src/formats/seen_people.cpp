@@ -1,0 +1,69 @@
+#include "formats/seen_people.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
+
+namespace mcdbn {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+SeenPeople people_of_set(std::string_view set) {
+  SeenPeople people;
+  people.keypoints = joint_set(set).keypoints;
+  for (const Keypoint& keypoint : people.keypoints) people.joint_names.push_back(keypoint.name);
+  return people;
+}
+
+SeenPerson person_of(const std::vector<double>& numbers, std::size_t joints, std::size_t stride) {
+  SeenPerson person;
+  for (std::size_t joint = 0; joint < joints; ++joint) {
+    const double* at = numbers.data() + joint * stride;
+    person.x_px.push_back(at[0]);
+    person.y_px.push_back(at[1]);
+    person.confidence.push_back(stride < 3 ? 1.0 : at[2]);
+  }
+  mark_missing(person);
+  return person;
+}
+
+void mark_missing(SeenPerson& person) {
+  for (std::size_t joint = 0; joint < person.x_px.size(); ++joint) {
+    double &x = person.x_px[joint], &y = person.y_px[joint], &c = person.confidence[joint];
+    if (std::isfinite(x) && std::isfinite(y) && c > 0 && (x != 0 || y != 0)) continue;
+    x = y = kNan;
+    c = 0;
+  }
+}
+
+std::vector<double> numbers_of(const Track2d& track, int frame) {
+  std::vector<double> numbers;
+  for (int joint = 0; joint < track.joint_count(); ++joint) {
+    const double x = track.x_px(frame, joint), y = track.y_px(frame, joint);
+    const double confidence = track.confidence(frame, joint);
+    if (std::isfinite(x) && std::isfinite(y) && confidence > 0)
+      numbers.insert(numbers.end(), {x, y, confidence});
+    else
+      numbers.insert(numbers.end(), {0.0, 0.0, 0.0});
+  }
+  return numbers;
+}
+
+const std::string& set_to_write(const Track2d& track, const std::vector<std::string>& sets,
+                                const std::string& format) {
+  const JointSet* set = joint_set_of(track.joint_names);
+  const auto found = set == nullptr ? sets.end() : std::ranges::find(sets, set->name);
+  if (found == sets.end())
+    throw InputError(fmt::format(
+        "the format {} has room for the joints of {} in their order, not for these {}: {}", format,
+        fmt::join(sets, ", "), track.joint_count(), fmt::join(track.joint_names, ", ")));
+  return *found;
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mcdbn/base/matrices.hpp"
+#include "mcdbn/camera/keypoint.hpp"
+#include "mcdbn/formats/track_file.hpp"
+
+namespace mcdbn {
+
+/// One person in one frame, each [joints]. A joint that was not seen: NaN and confidence 0.
+struct SeenPerson {
+  std::vector<double> x_px, y_px, confidence;
+  std::optional<long long> id;  ///< the file's own number of the person
+};
+
+/// What a track file says, before the people are followed over the frames.
+struct SeenPeople {
+  std::vector<std::string> joint_names;
+  std::vector<Keypoint> keypoints;  ///< as in Track2d
+  /// By the file's own numbers of frames.
+  std::map<long long, std::vector<SeenPerson>> frames;
+  std::optional<double> fps;
+  std::optional<ImageSize> image_size;
+  bool in_pixels = false;  ///< else coordinates that are all small are shares of the image
+  std::vector<std::string> notices;
+};
+
+/// Joints of one of joint_sets().
+SeenPeople people_of_set(std::string_view set);
+
+/// x, y, confidence of each joint, one behind the other. Missing: confidence 0, x = y = 0, NaN.
+/// @param stride numbers a joint: 2 (all confidences 1) or 3 and more (the third one is taken)
+SeenPerson person_of(const std::vector<double>& numbers, std::size_t joints, std::size_t stride);
+
+/// Sets x, y and confidence to missing where one of them says so.
+void mark_missing(SeenPerson& person);
+
+/// The joints of a track that a format writes, as rows: x, y, confidence of each joint, 0 0 0 where
+/// it is missing.
+std::vector<double> numbers_of(const Track2d& track, int frame);
+
+/// The joint set that the track's columns are, of those that the format has.
+/// @throws InputError naming the format's sets
+const std::string& set_to_write(const Track2d& track, const std::vector<std::string>& sets,
+                                const std::string& format);
+
+}  // namespace mcdbn

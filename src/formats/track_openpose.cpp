@@ -1,0 +1,143 @@
+// OpenPose: `--write_json`, a folder with a file for each frame, or one such file; and what others
+// write in this layout (Pose2Sim's RTMPose: HALPE_26; tf-pose-estimation: COCO_18).
+// Facts: OpenPose's doc/02_output.md.
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "base/text_file.hpp"
+#include "formats/frame_numbers.hpp"
+#include "formats/joint_naming.hpp"
+#include "formats/track_formats.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const char* const kName = "openpose";
+const std::vector<std::string> kSets{"BODY_25", "BODY_25B", "COCO_18", "HALPE_26",
+                                     "COCO_17", "COCO_23",  "H36M_17"};
+
+bool recognises(const TrackSource& source) {
+  const auto first = source.first_json_if_any();
+  if (!first) return false;
+  if (first->is_list()) return first->size() > 0 && first->at(0).has("people");
+  return first->has("people") && (*first)["people"].is_list();
+}
+
+/// -1, [-1] and nothing say nothing.
+std::optional<long long> person_id(const JsonPlace& person) {
+  if (!person.has("person_id")) return {};
+  JsonPlace id = person["person_id"];
+  if (id.is_list()) {
+    if (id.size() == 0) return {};
+    id = id.at(0);
+  }
+  const long long number = id.whole_number();
+  return number < 0 ? std::nullopt : std::optional(number);
+}
+
+std::vector<SeenPerson> people_of(const JsonPlace& frame) {
+  std::vector<SeenPerson> people;
+  for (const JsonPlace& person : frame["people"].list()) {
+    // Version 1.0 wrote `pose_keypoints`.
+    const bool old = !person.has("pose_keypoints_2d") && person.has("pose_keypoints");
+    const JsonPlace keypoints = person[old ? "pose_keypoints" : "pose_keypoints_2d"];
+    if (keypoints.is_list() && keypoints.size() == 0) continue;  // a face or a hand alone
+    people.push_back(person_in_json(keypoints));
+    people.back().id = person_id(person);
+  }
+  return people;
+}
+
+/// @param number none: the names say nothing, so their order does
+void add_file(SeenPeople& people, const TrackSource& source, const fs::path& file,
+              long long number) {
+  const json content = source.json_of(file);
+  if (!people.frames.emplace(number, people_of(JsonPlace(content, file.string()))).second)
+    throw InputError(fmt::format("{}: a second file of frame {}; give a folder of one camera alone",
+                                 file.string(), number));
+}
+
+SeenPeople read_folder(const TrackSource& source) {
+  std::vector<std::string> names;
+  for (const fs::path& file : source.json_files()) names.push_back(file.stem().string());
+  const auto numbers = frame_numbers(names);
+  SeenPeople people;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const fs::path& file = source.json_files()[i];
+    if (numbers[i])
+      add_file(people, source, file, *numbers[i]);
+    else if (names.size() == 1)
+      add_file(people, source, file, 0);
+    else
+      people.notices.push_back(
+          fmt::format("{} has no frame number and is left out", file.filename().string()));
+  }
+  return people;
+}
+
+SeenPeople read(const TrackSource& source) {
+  SeenPeople people;
+  if (source.is_folder()) {
+    people = read_folder(source);
+  } else if (const JsonPlace content = source.json(); content.is_list()) {
+    for (const JsonPlace& frame : content.list())
+      people.frames.emplace(static_cast<long long>(people.frames.size()), people_of(frame));
+  } else {
+    const auto number = frame_numbers({source.path().stem().string()}).front();
+    people.frames.emplace(number.value_or(0), people_of(content));
+  }
+  name_joints_by_count(people, source.name());
+  return people;
+}
+
+std::string frame_text(const Track2d& track, int frame) {
+  json people = json::array();
+  if ((track.confidence.row(frame).array() > 0).any())
+    people.push_back({{"person_id", {-1}},
+                      {"pose_keypoints_2d", numbers_of(track, frame)},
+                      {"face_keypoints_2d", json::array()},
+                      {"hand_left_keypoints_2d", json::array()},
+                      {"hand_right_keypoints_2d", json::array()},
+                      {"pose_keypoints_3d", json::array()},
+                      {"face_keypoints_3d", json::array()},
+                      {"hand_left_keypoints_3d", json::array()},
+                      {"hand_right_keypoints_3d", json::array()}});
+  return json{{"version", 1.3}, {"people", people}}.dump();
+}
+
+/// A folder beside it is filled, then renamed: no half of a track is left behind.
+void write(const fs::path& path, const Track2d& track) {
+  set_to_write(track, kSets, kName);
+  const fs::path temporary = path.string() + ".tmp";
+  std::error_code error;
+  if (fs::exists(path, error) && !fs::is_empty(path, error))
+    throw InputError(fmt::format(
+        "{}: is there already; the track is a folder of files, give a new name", path.string()));
+  fs::remove_all(temporary, error);
+  make_folder(temporary);
+  const std::string name =
+      path.filename().empty() ? path.parent_path().filename().string() : path.filename().string();
+  for (int frame = 0; frame < track.frames(); ++frame)
+    write_text_file(temporary / fmt::format("{}_{:012}_keypoints.json", name, frame),
+                    frame_text(track, frame));
+  fs::rename(temporary, path, error);
+  if (error) {
+    fs::remove_all(temporary, error);
+    throw InputError(fmt::format("{}: the folder cannot be made", path.string()));
+  }
+}
+
+}  // namespace
+
+TrackFormat track_openpose_format() {
+  return {kName, "OpenPose's JSON, a folder with a file a frame or one file",
+          kSets, recognises,
+          read,  write};
+}
+
+}  // namespace mcdbn

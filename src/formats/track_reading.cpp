@@ -1,0 +1,247 @@
+#include "formats/track_reading.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "formats/people_following.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
+
+namespace mcdbn {
+namespace {
+
+using Frames = std::vector<std::vector<SeenPerson>>;
+
+constexpr double kUsualFps = 30.0;
+constexpr ImageSize kUsualImage{1920, 1080};
+/// Coordinates up to here are shares of the image: no body in pixels is that small.
+constexpr double kLargestShare = 3.0;
+constexpr double kPatience_s = 1.5;
+/// Frames by number may be so many times those that are there; beyond, the numbers are no time.
+constexpr long long kSparse = 10, kFewFrames = 100;
+
+struct Extent {
+  double least_x = 1e300, most_x = -1e300, least_y = 1e300, most_y = -1e300;
+};
+
+template <typename Visit>
+void for_each_joint(Frames& frames, const Visit& visit) {
+  for (auto& people : frames)
+    for (SeenPerson& person : people)
+      for (std::size_t joint = 0; joint < person.x_px.size(); ++joint)
+        if (person.confidence[joint] > 0)
+          visit(person.x_px[joint], person.y_px[joint], person.confidence[joint]);
+}
+
+/// The frames in their order, with empty ones where numbers are missing.
+Frames frames_by_number(SeenPeople& seen, std::vector<std::string>& notices) {
+  const long long first = seen.frames.begin()->first, last = seen.frames.rbegin()->first;
+  const auto count = static_cast<long long>(seen.frames.size());
+  long long step = 0;
+  for (const auto& [number, people] : seen.frames) step = std::gcd(step, number - first);
+  step = std::max(step, 1LL);
+  const bool sparse = (last - first) / step >= kSparse * count + kFewFrames;
+  if (sparse)
+    notices.push_back(fmt::format(
+        "the numbers of its {} frames run from {} to {}: they are taken one after the other", count,
+        first, last));
+  else if (step > 1)
+    notices.push_back(fmt::format(
+        "its frames are numbered in steps of {}: they are taken one after the other", step));
+  Frames frames(static_cast<std::size_t>(sparse ? count : (last - first) / step + 1));
+  std::size_t next = 0;
+  for (auto& [number, people] : seen.frames)
+    frames[sparse ? next++ : static_cast<std::size_t>((number - first) / step)] = std::move(people);
+  return frames;
+}
+
+Extent extent_of(Frames& frames) {
+  Extent extent;
+  for_each_joint(frames, [&](double x, double y, double) {
+    extent.least_x = std::min(extent.least_x, x);
+    extent.most_x = std::max(extent.most_x, x);
+    extent.least_y = std::min(extent.least_y, y);
+    extent.most_y = std::max(extent.most_y, y);
+  });
+  return extent;
+}
+
+/// The smallest usual image that holds everything that was seen, but for 2 %: detectors guess a
+/// little beyond the edge.
+ImageSize guessed_image(const Extent& extent) {
+  constexpr std::array<std::pair<int, int>, 7> kUsual{{{640, 480},
+                                                       {1280, 720},
+                                                       {1920, 1080},
+                                                       {2560, 1440},
+                                                       {2704, 1520},
+                                                       {3840, 2160},
+                                                       {7680, 4320}}};
+  const auto holds = [&](int width_px, int height_px) {
+    return extent.most_x <= 1.02 * width_px && extent.most_y <= 1.02 * height_px;
+  };
+  for (const auto& [long_side, short_side] : kUsual) {
+    if (holds(long_side, short_side)) return {long_side, short_side};
+    if (holds(short_side, long_side)) return {short_side, long_side};
+  }
+  const auto whole = [](double extent) {
+    return static_cast<int>(std::ceil(std::min(extent, 1e6)));
+  };
+  return {std::max(whole(extent.most_x), 1), std::max(whole(extent.most_y), 1)};
+}
+
+/// Coordinates that are shares of the image become pixels. @return the image's size
+ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadOptions& options,
+                        std::vector<std::string>& notices) {
+  const Extent extent = extent_of(frames);
+  const std::optional<ImageSize> known = options.image_size ? options.image_size : seen.image_size;
+  if (extent.most_x < extent.least_x) return known.value_or(kUsualImage);  // nothing was seen
+  const bool shares = !seen.in_pixels && std::max({-extent.least_x, -extent.least_y, extent.most_x,
+                                                   extent.most_y}) <= kLargestShare;
+  if (!shares) {
+    if (known) return *known;
+    const ImageSize guess = guessed_image(extent);
+    notices.push_back(fmt::format(
+        "the file does not say the image's size: taken as {} x {} px, which holds all that was "
+        "seen (x to {:.0f}, y to {:.0f}); say it by `image-size`",
+        guess.width_px, guess.height_px, extent.most_x, extent.most_y));
+    return guess;
+  }
+  const ImageSize size = known.value_or(kUsualImage);
+  notices.push_back(fmt::format(
+      "coordinates are shares of the image, taken as {} x {} px{}", size.width_px, size.height_px,
+      known ? "" : ", for the file does not say its size; say it by `image-size`"));
+  for_each_joint(frames, [&](double& x, double& y, double) {
+    x *= size.width_px;
+    y *= size.height_px;
+  });
+  return size;
+}
+
+/// Heat maps overshoot 1 a little; other scales end where nearly all of the file's values do.
+void limit_confidences(Frames& frames, std::vector<std::string>& notices) {
+  std::vector<double> all;
+  for_each_joint(frames, [&](double, double, double c) { all.push_back(c); });
+  const auto greatest = std::ranges::max_element(all);
+  if (greatest == all.end() || *greatest <= 1) return;
+  double scale = 1;
+  if (*greatest > 1.5) {
+    const auto nearly_last = all.begin() + static_cast<std::ptrdiff_t>((all.size() - 1) * 95 / 100);
+    const double largest = *greatest;
+    std::ranges::nth_element(all, nearly_last);
+    scale = std::max(*nearly_last, 1.0);
+    notices.push_back(
+        fmt::format("confidences up to {:.4g} are divided by {:.4g}, their 95 % "
+                    "quantile, and cut at 1",
+                    largest, scale));
+  } else {
+    notices.push_back(fmt::format("confidences up to {:.4g} are cut at 1", *greatest));
+  }
+  for_each_joint(frames, [&](double, double, double& c) { c = std::min(c / scale, 1.0); });
+}
+
+Track2d track_of(const SeenPeople& seen, const Frames& frames, const Followed& followed) {
+  const auto rows = static_cast<Eigen::Index>(frames.size());
+  const auto joints = static_cast<Eigen::Index>(seen.joint_names.size());
+  Track2d track;
+  track.joint_names = seen.joint_names;
+  track.keypoints = seen.keypoints;
+  track.x_px = track.y_px =
+      MatrixD::Constant(rows, joints, std::numeric_limits<double>::quiet_NaN());
+  track.confidence = MatrixD::Zero(rows, joints);
+  for (Eigen::Index frame = 0; frame < rows; ++frame) {
+    if (followed[frame] < 0) continue;
+    const SeenPerson& person = frames[frame][followed[frame]];
+    for (Eigen::Index joint = 0; joint < joints; ++joint) {
+      track.x_px(frame, joint) = person.x_px[joint];
+      track.y_px(frame, joint) = person.y_px[joint];
+      track.confidence(frame, joint) = person.confidence[joint];
+    }
+  }
+  return track;
+}
+
+/// Without those who were seen for less than half a second and a tenth of the frames.
+void drop_fleeting(std::vector<Followed>& people, double fps, std::vector<std::string>& notices) {
+  if (people.size() < 2) return;
+  const auto seen_frames = [](const Followed& followed) -> long {
+    return std::ranges::count_if(followed, [](int person) { return person >= 0; });
+  };
+  long longest = 0;
+  for (const Followed& followed : people) longest = std::max(longest, seen_frames(followed));
+  const double few = std::min(fps / 2, static_cast<double>(people.front().size()) / 10);
+  const long least = std::min(static_cast<long>(std::ceil(few)), longest);
+  const std::size_t before = people.size();
+  std::erase_if(people, [&](const Followed& followed) { return seen_frames(followed) < least; });
+  if (const std::size_t dropped = before - people.size(); dropped > 0)
+    notices.push_back(fmt::format("{} more {} seen for less than {} frames, and left out", dropped,
+                                  dropped == 1 ? "body was" : "bodies were", least));
+}
+
+/// Which of the people are wanted.
+std::vector<std::size_t> chosen(const std::string& person, std::size_t people,
+                                const std::string& file, std::vector<std::string>& notices) {
+  if (person == "largest") {
+    if (people > 1)
+      notices.push_back(
+          fmt::format("{} people: the largest is taken; say another by `person`", people));
+    return {0};
+  }
+  if (person == "all") {
+    std::vector<std::size_t> all(people);
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  std::size_t number = 0;
+  const char* end = person.data() + person.size();
+  const auto [rest, error] = std::from_chars(person.data(), end, number);
+  if (error != std::errc() || rest != end || number == 0)
+    throw ConfigError(fmt::format("`person` {}: say largest, all, or a number from 1 on", person));
+  if (number > people)
+    throw InputError(fmt::format("{}: no person {}: {} seen", file, number,
+                                 people == 1 ? "one was" : fmt::format("{} were", people)));
+  return {number - 1};
+}
+
+}  // namespace
+
+TrackReading tracks_of(SeenPeople seen, const TrackReadOptions& options, const std::string& file) {
+  if (seen.frames.empty()) throw InputError(fmt::format("{}: no frames", file));
+  TrackReading reading;
+  reading.notices = std::move(seen.notices);
+  reading.first_frame = seen.frames.begin()->first;
+  if (const JointSet* set = joint_set_of(seen.joint_names)) reading.joint_set = set->name;
+  Frames frames = frames_by_number(seen, reading.notices);
+  for (auto& people : frames)
+    std::erase_if(people, [](const SeenPerson& person) {
+      return std::ranges::none_of(person.confidence, [](double c) { return c > 0; });
+    });
+  const ImageSize size = put_in_pixels(frames, seen, options, reading.notices);
+  limit_confidences(frames, reading.notices);
+  if (!options.fps && !seen.fps)
+    reading.notices.push_back(
+        fmt::format("the file does not say its rate: {} frames a second are taken; say it by `fps`",
+                    kUsualFps));
+  const double fps = options.fps ? *options.fps : seen.fps.value_or(kUsualFps);
+  std::vector<Followed> people =
+      follow_people(frames, static_cast<int>(std::clamp(kPatience_s * fps, 1.0, 1000.0)));
+  drop_fleeting(people, fps, reading.notices);
+  reading.people_seen = static_cast<int>(people.size());
+  // A track in which nobody was seen is one, of missing joints.
+  if (people.empty()) people.emplace_back(frames.size(), -1);
+  for (const std::size_t person : chosen(options.person, people.size(), file, reading.notices)) {
+    Track2d track = track_of(seen, frames, people[person]);
+    track.fps = fps;
+    track.width_px = size.width_px;
+    track.height_px = size.height_px;
+    reading.people.push_back(std::move(track));
+  }
+  return reading;
+}
+
+}  // namespace mcdbn

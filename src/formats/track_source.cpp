@@ -1,0 +1,78 @@
+#include "formats/track_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "base/text_file.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+
+namespace fs = std::filesystem;
+
+TrackSource::TrackSource(fs::path path) : path_(std::move(path)) {
+  std::error_code error;
+  if (!fs::exists(path_, error))
+    throw InputError(fmt::format("{}: no such file or folder", path_.string()));
+  is_folder_ = fs::is_directory(path_, error);
+  if (!is_folder_) {
+    json_files_ = {path_};
+    return;
+  }
+  for (fs::directory_iterator entry(path_, error), end; !error && entry != end;
+       entry.increment(error))
+    if (entry->path().extension() == ".json") json_files_.push_back(entry->path());
+  if (error) throw InputError(fmt::format("{}: the folder cannot be read", path_.string()));
+  std::ranges::sort(json_files_);
+}
+
+const std::string& TrackSource::text() const {
+  if (!text_) text_ = read_text_file(path_);
+  return *text_;
+}
+
+char TrackSource::first_letter() const {
+  if (is_folder_) return '\0';
+  std::string_view start = text();
+  if (start.starts_with("\xEF\xBB\xBF")) start.remove_prefix(3);
+  const auto found = start.find_first_not_of(" \t\r\n");
+  return found == std::string_view::npos ? '\0' : start[found];
+}
+
+std::optional<JsonPlace> TrackSource::json_if_any() const {
+  if (first_letter() != '{' && first_letter() != '[') return {};
+  if (!json_) {
+    try {
+      json_ = parse_json(text(), name());
+    } catch (const InputError&) {
+      return {};
+    }
+  }
+  return JsonPlace(*json_, name());
+}
+
+JsonPlace TrackSource::json() const {
+  if (!json_) json_ = parse_json(text(), name());
+  return JsonPlace(*json_, name());
+}
+
+std::optional<JsonPlace> TrackSource::first_json_if_any() const {
+  if (!is_folder_) return json_if_any();
+  if (json_files_.empty()) return {};
+  if (!first_json_) {
+    try {
+      first_json_ = json_of(json_files_.front());
+    } catch (const InputError&) {
+      return {};
+    }
+  }
+  return JsonPlace(*first_json_, json_files_.front().string());
+}
+
+nlohmann::json TrackSource::json_of(const fs::path& file) const {
+  return parse_json(read_text_file(file), file.string());
+}
+
+}  // namespace mcdbn

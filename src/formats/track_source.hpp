@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/json_text.hpp"
+
+namespace mcdbn {
+
+/// The file, or the folder of files, that a track is read from. What was read once is kept, so that
+/// all formats may look at it.
+class TrackSource {
+ public:
+  /// @throws InputError if there is no such file or folder
+  explicit TrackSource(std::filesystem::path path);
+
+  const std::filesystem::path& path() const { return path_; }
+  std::string name() const { return path_.string(); }
+  bool is_folder() const { return is_folder_; }
+  /// The .json files of a folder, sorted by name; of a file it alone.
+  const std::vector<std::filesystem::path>& json_files() const { return json_files_; }
+
+  /// The file's bytes. @throws InputError also if it is a folder
+  const std::string& text() const;
+  /// The first letter of the text that is no space.
+  char first_letter() const;
+  /// The file's JSON if it is one that can be parsed; none: a folder, or other content.
+  std::optional<JsonPlace> json_if_any() const;
+  /// @throws InputError `file:line: what`
+  JsonPlace json() const;
+  /// Of the first file of a folder, or of the file.
+  std::optional<JsonPlace> first_json_if_any() const;
+  /// Of one of json_files(); it is not kept.
+  nlohmann::json json_of(const std::filesystem::path& file) const;
+
+ private:
+  std::filesystem::path path_;
+  bool is_folder_ = false;
+  std::vector<std::filesystem::path> json_files_;
+  mutable std::optional<std::string> text_;
+  mutable std::optional<nlohmann::json> json_, first_json_;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,66 @@
+// Every 2D track of the shared data is read, and is what its README says.
+#include "mcdbn/formats/track_file.hpp"
+
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+#include "shared_data.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+struct RealTrack {
+  std::string path, format, joint_set;
+  int joints, frames, people;
+};
+
+const std::vector<RealTrack>& real_tracks() {
+  static const std::vector<RealTrack> tracks{
+      {"formats/openpose_body25_single", "openpose", "BODY_25", 25, 40, 1},
+      {"formats/openpose_coco18_tfpose", "openpose", "COCO_18", 18, 1, 1},
+      {"formats/rtmpose_halpe26_openposejson", "openpose", "HALPE_26", 26, 20, 1},
+      {"pose2d/openpose-treadmill/27", "openpose", "BODY_25", 25, 90, 2},
+      {"pose2d/openpose-treadmill/32", "openpose", "BODY_25", 25, 90, 2},
+      {"pose2d/openpose-treadmill/95", "openpose", "BODY_25", 25, 90, 1},
+      {"pose2d/S00_P00_SingleParticipant/S00_P00_T01_BalancingTrial/pose/cam01_json", "openpose",
+       "BODY_25B", 25, 100, 2},
+      {"pose2d/S00_P00_SingleParticipant/S00_P00_T01_BalancingTrial/pose/cam02_json", "openpose",
+       "BODY_25B", 25, 100, 2},
+      {"pose2d/S00_P00_SingleParticipant/S00_P00_T01_BalancingTrial/pose/cam03_json", "openpose",
+       "BODY_25B", 25, 100, 1},
+      {"pose2d/S00_P00_SingleParticipant/S00_P00_T01_BalancingTrial/pose/cam04_json", "openpose",
+       "BODY_25B", 25, 100, 1},
+      {"pose2d/S00_P00_SingleParticipant/S00_P00_T00_StaticTrial/pose/cam01_json", "openpose",
+       "BODY_25B", 25, 12, 1},
+      {"formats/coco17_annotation/test_coco.json", "coco", "COCO_17", 17, 4, 6},
+      {"formats/coco17_results/person_keypoints_val2014_fakekeypoints100_results.json", "coco",
+       "COCO_17", 17, 47, 10},
+  };
+  return tracks;
+}
+
+}  // namespace
+
+TEST_CASE("real tracks: every file is recognised and read as what it is") {
+  for (const RealTrack& real : real_tracks()) {
+    CAPTURE(real.path);
+    if (!have_shared_data(real.path, "real tracks")) continue;
+    const TrackReading reading = read_tracks(shared_data() / real.path, {.person = "all"});
+    for (const std::string& notice : reading.notices) INFO(notice);
+    CHECK(reading.format == real.format);
+    CHECK(reading.joint_set == real.joint_set);
+    CHECK(reading.people_seen == real.people);
+    REQUIRE(!reading.people.empty());
+    const Track2d& track = reading.people.front();
+    CHECK(track.joint_count() == real.joints);
+    CHECK(track.frames() == real.frames);
+    CHECK(track.keypoints.size() == track.joint_names.size());
+    CHECK((track.confidence.array() >= 0).all());
+    CHECK((track.confidence.array() <= 1).all());
+    CHECK((track.x_px.array().isNaN() == (track.confidence.array() == 0)).all());
+  }
+}
