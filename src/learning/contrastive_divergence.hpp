@@ -61,8 +61,7 @@ class ContrastiveDivergence : public LearningRule {
   /// Adds the mean squared reconstruction error of a unit to `losses` slot 0.
   /// @param rows the current frames, indexed, at most `largest_batch` of them
   /// @param seen what was seen in the frames' matrix, 1 or 0, in its shape: the rest, which has to
-  /// be
-  ///        0 there, is no part of the machine in that frame: 0 in every reconstruction too, so
+  ///        be 0 there, is no part of the machine in that frame: 0 in every reconstruction too, so
   ///        that it moves neither hidden units nor parameters. None: everything was seen
   /// @throws ShapeError, also where `seen` is given while a deviation is learnt
   void step(const Rows& rows, const CdRule& rule, const RandomKey& key, LossAccumulator& losses,

@@ -71,8 +71,7 @@ void MrbmChains::run(std::span<const std::size_t> free, const RandomKey& key, bo
     for (const std::size_t m : free) {
       GemmOptions down = mean_of_units(mrbm_.kind(m));
       if (settings_.sample_visible) {
-        down.sampling =
-            mrbm_.kind(m) == VisibleKind::binary ? Sampling::bernoulli : Sampling::gaussian;
+        down.sampling = sampling_of(mrbm_.kind(m));
         down.sample = &chain[m];
         down.random = key;
         down.random.phase = static_cast<std::uint16_t>(kVisiblePhase + k * chain.size() + m);

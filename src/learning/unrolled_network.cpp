@@ -14,9 +14,9 @@ constexpr float kCenter = 0.5F;
 constexpr const char* kMrbmPrefix = "mrbm.";
 
 /// What moving the units' zero by `sign` halves does to the biases.
-CrbmParameters shifted(CrbmParameters layer, float sign) {
+CrbmParameters shifted(CrbmParameters layer, Below below, float sign) {
   const float hidden = sign * kCenter;
-  const float visible = layer.shape.kind == VisibleKind::binary ? sign * kCenter : 0.0F;
+  const float visible = below == Below::code ? sign * kCenter : 0.0F;
   layer.b += visible * (layer.W.colwise().sum() + layer.B.colwise().sum());
   layer.a += hidden * layer.W.rowwise().sum().transpose() + visible * layer.A.colwise().sum();
   layer.visible_mean.array() -= visible;
@@ -29,6 +29,10 @@ MrbmParameters shifted(MrbmParameters mrbm, float sign) {
     mrbm.a[m] += sign * kCenter * mrbm.W[m].rowwise().sum().transpose();
   }
   return mrbm;
+}
+
+Below below_of(std::size_t layer) {
+  return layer == 0 ? Below::data : Below::code;
 }
 
 /// `track.0.`
@@ -46,8 +50,6 @@ std::vector<ParameterShape> parameter_shapes(const Mcdbn& network) {
   };
   for (std::size_t m = 0; m < network.modality_count(); ++m) {
     const auto& layers = network.cdbns[m].layers;
-    if (layers.front().shape().kind != VisibleKind::gaussian)
-      throw ShapeError("fine-tuning: the lowest layers are Gaussian, or are left as they are");
     for (std::size_t i = 0; i < layers.size(); ++i)
       add(Crbm::parameter_shapes(layers[i].shape()), prefix_of(network.modality(m), i));
   }
@@ -57,11 +59,11 @@ std::vector<ParameterShape> parameter_shapes(const Mcdbn& network) {
 
 }  // namespace
 
-CrbmParameters centered(CrbmParameters layer) {
-  return shifted(std::move(layer), 1.0F);
+CrbmParameters centered(CrbmParameters layer, Below below) {
+  return shifted(std::move(layer), below, 1.0F);
 }
-CrbmParameters uncentered(CrbmParameters layer) {
-  return shifted(std::move(layer), -1.0F);
+CrbmParameters uncentered(CrbmParameters layer, Below below) {
+  return shifted(std::move(layer), below, -1.0F);
 }
 MrbmParameters centered(MrbmParameters mrbm) {
   return shifted(std::move(mrbm), 1.0F);
@@ -92,7 +94,7 @@ UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t
   for (std::size_t m = 0; m < layers_.size(); ++m)
     for (const Crbm& layer : start.cdbns[m].layers) {
       const std::string prefix = prefix_of(start.modality(m), layers_[m].size());
-      const CrbmParameters own = centered(layer.to_host());
+      const CrbmParameters own = centered(layer.to_host(), below_of(layers_[m].size()));
       own.write(parameters_.part(prefix));
       layers_[m].emplace_back(parameters_.part(prefix), gradients.part(prefix), own.shape,
                               own.visible_mean);
@@ -133,8 +135,10 @@ Mcdbn UnrolledNetwork::averaged() {
   Mcdbn result{std::vector<Cdbn>(layers_.size()), Mrbm(device(), uncentered(mrbm_.to_host())),
                look_ahead_, mean_field_steps_};
   for (std::size_t m = 0; m < layers_.size(); ++m)
-    for (const Layer& layer : layers_[m])
-      result.cdbns[m].layers.emplace_back(device(), uncentered(layer.crbm.to_host()));
+    for (const Layer& layer : layers_[m]) {
+      auto& own = result.cdbns[m].layers;
+      own.emplace_back(device(), uncentered(layer.crbm.to_host(), below_of(own.size())));
+    }
   exchange_averages();
   result.fills_gaps = false;
   return result;

@@ -11,8 +11,10 @@ namespace mcdbn {
 /// The same layer over units about zero: binary units are probabilities less one half, so that what
 /// weights do is told apart from what biases do, by Adam and by weight decay (Montavon and Müller
 /// 2012). Nothing that the layer computes changes but the half.
-CrbmParameters centered(CrbmParameters layer);
-CrbmParameters uncentered(CrbmParameters layer);
+/// @param below what the visible units are: a code is moved, data stay as they are
+enum class Below { data, code };
+CrbmParameters centered(CrbmParameters layer, Below below);
+CrbmParameters uncentered(CrbmParameters layer, Below below);
 MrbmParameters centered(MrbmParameters mrbm);
 MrbmParameters uncentered(MrbmParameters mrbm);
 
@@ -21,7 +23,6 @@ MrbmParameters uncentered(MrbmParameters mrbm);
 class UnrolledNetwork {
  public:
   /// @param mean_field_steps that the result takes too, whatever `start` took
-  /// @throws ShapeError unless the lowest layers are Gaussian
   UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t mean_field_steps);
   UnrolledNetwork(const UnrolledNetwork&) = delete;
   UnrolledNetwork& operator=(const UnrolledNetwork&) = delete;

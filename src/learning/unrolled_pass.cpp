@@ -36,11 +36,27 @@ GemmOptions added() {
   return options;
 }
 
+/// What turns a layer's visible units' input into them, in the form of unrolled_network.hpp.
+Activation visible_activation(VisibleKind kind, bool is_lowest) {
+  if (kind == VisibleKind::gaussian) return Activation::none;
+  return is_lowest ? Activation::sigmoid : Activation::centered_sigmoid;
+}
+
 GemmOptions through_units(const Rows* units, float kept_share = 1.0F) {
   GemmOptions options;
   options.activation = Activation::centered_sigmoid_gradient;
   options.factor = units;
   options.kept_share = kept_share;
+  return options;
+}
+
+/// The same backwards. @param units those of the layer that the error is of
+GemmOptions through_visible(VisibleKind kind, bool is_lowest, const Rows* units, float kept_share) {
+  if (!is_lowest) return through_units(units, kept_share);
+  GemmOptions options;
+  if (kind == VisibleKind::gaussian) return options;
+  options.activation = Activation::sigmoid_gradient;
+  options.factor = units;
   return options;
 }
 
@@ -158,8 +174,7 @@ void UnrolledPass::down_pass() {
   for (std::size_t i = down_layers_.size(); i-- > 0;) {
     const Crbm& layer = down_layers_[i].crbm;
     const bool is_top = i + 1 == down_layers_.size();
-    const bool is_binary = layer.shape().kind == VisibleKind::binary;
-    const Activation activation = is_binary ? Activation::centered_sigmoid : Activation::none;
+    const Activation activation = visible_activation(layer.shape().kind, i == 0);
     const std::size_t order = layer.shape().order_A();
     ++drop_out_key_.phase;
     for (std::size_t frame = windows_.first; frame < windows_.frames; ++frame) {
@@ -176,7 +191,7 @@ void UnrolledPass::down_pass() {
         options.activation = activation;
         gemm(layer.history_for_A(state), layer.A, state, options);
       }
-      if (is_binary) drop_out(state, 1);  // the same units in every frame
+      if (i > 0) drop_out(state, 1);  // the same units in every frame
     }
   }
 }
@@ -192,17 +207,16 @@ void UnrolledPass::down_pass_backward() {
   for (std::size_t i = 0; i < down_layers_.size(); ++i) {
     UnrolledNetwork::Layer& layer = down_layers_[i];
     const std::size_t order = layer.crbm.shape().order_A();
-    const bool is_binary = layer.crbm.shape().kind == VisibleKind::binary;
     Matrix& errors = state_errors_[i];
     // Through time: what a frame did to those that had it as history.
     for (std::size_t frame = windows_.frames; frame-- > first;) {
       const Rows state = at(states_[i], frame), error = at(errors, frame);
-      GemmOptions options = is_binary ? through_units(&state, kept_share_) : GemmOptions{};
+      GemmOptions options = through_visible(layer.crbm.shape().kind, i == 0, &state, kept_share_);
       options.beta = 1.0F;
       if (order > 0)
         gemm(following(errors, frame, windows_.count, windows_.frames, order), layer.A_following,
              error, options);
-      else if (is_binary)
+      else if (options.activation != Activation::none)
         apply_epilogue(error, options);
     }
     const Rows error = Rows(errors, first, rows_ - first);

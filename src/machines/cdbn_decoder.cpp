@@ -3,16 +3,12 @@
 #include <algorithm>
 
 #include "base/random_streams.hpp"
-#include "device/gemm.hpp"
 #include "device/pointwise.hpp"
+#include "machines/unit_kinds.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
-
-Activation activation_of(const Crbm& layer) {
-  return layer.shape().kind == VisibleKind::binary ? Activation::sigmoid : Activation::none;
-}
 
 std::vector<Matrix> at_training_mean(const Cdbn& cdbn, std::size_t rows) {
   std::vector<Matrix> states;
@@ -91,7 +87,7 @@ void CdbnDecoder::down_pass(std::size_t frame, bool top_is_driven) {
     if (is_top) {
       // The state holds a + code·Wᵀ: what is left is the history's part.
       options.beta = 1.0F;
-      options.activation = activation_of(layer);
+      options.activation = activation_of(layer.shape().kind);
       gemm(layer.history_for_A(state), layer.A, state, options);
       continue;
     }
@@ -99,7 +95,7 @@ void CdbnDecoder::down_pass(std::size_t frame, bool top_is_driven) {
     gemm(layer.history_for_A(state), layer.A, state, options);
     GemmOptions from_above;
     from_above.beta = 1.0F;
-    from_above.activation = activation_of(layer);
+    from_above.activation = activation_of(layer.shape().kind);
     gemm(at(states_[i + 1], frame), layer.W_transposed, state, from_above);
   }
 }
@@ -117,14 +113,11 @@ void CdbnDecoder::sample_top_layer(std::size_t frame, const RegenerationOptions&
   top.dynamic_visible_bias(state, below_bias_);
   top.dynamic_hidden_bias(state, top_bias_);
   RandomKey key{options.seed, static_cast<std::uint32_t>(frame), random_streams::kDecoder, 0};
-  GemmOptions down, up;
+  GemmOptions down = mean_of_units(top.shape().kind), up = mean_of_units(VisibleKind::binary);
   down.bias = &below_bias_;
-  down.activation = activation_of(top);
-  down.sampling =
-      top.shape().kind == VisibleKind::binary ? Sampling::bernoulli : Sampling::gaussian;
+  down.sampling = sampling_of(top.shape().kind);
   down.sample = &below_sample;
   up.bias = &top_bias_;
-  up.activation = Activation::sigmoid;
   up.sampling = Sampling::bernoulli;
   up.sample = &top_sample;
   down.temperature = up.temperature = static_cast<float>(options.drawn_share());

@@ -2,21 +2,13 @@
 
 #include "base/random_streams.hpp"
 #include "device/gemm.hpp"
-#include "device/kernel_arguments.hpp"
+#include "machines/energy_kernel.hpp"
 #include "machines/own_units.hpp"
 #include "machines/sequence_blocks.hpp"
 #include "mcdbn/base/random.hpp"
 
 namespace mcdbn {
 namespace {
-
-cl::Kernel& energy_kernel(const Crbm& crbm, const char* name) {
-  Device& device = crbm.device();
-  return device.programs().kernel(
-      "energy.cl", name,
-      {{"VEC", vector_width(device)},
-       {"GAUSSIAN", crbm.shape().kind == VisibleKind::gaussian ? 1 : 0}});
-}
 
 /// Free energies of rows under dynamic biases that are known.
 class RowEnergies {
@@ -36,11 +28,11 @@ class RowEnergies {
     GemmOptions bias;
     bias.bias = &hidden_bias_;
     gemm(visible, crbm_.W, input_, bias);
-    launch(crbm_.device(), energy_kernel(crbm_, "free_energy"), {{visible.count, 1}},
-           visible.matrix->buffer(), visible.offset(), visible.stride(), visible_bias_.buffer(),
-           to_int(visible_bias_.stride()), to_int(crbm_.shape().visible), input_.buffer(),
-           to_int(input_.stride()), to_int(crbm_.shape().hidden), out.matrix->buffer(),
-           out.offset(), out.stride(), 0);
+    launch(crbm_.device(), energy_kernel(crbm_.device(), "free_energy", crbm_.shape().kind),
+           {{visible.count, 1}}, visible.matrix->buffer(), visible.offset(), visible.stride(),
+           visible_bias_.buffer(), to_int(visible_bias_.stride()), to_int(crbm_.shape().visible),
+           input_.buffer(), to_int(input_.stride()), to_int(crbm_.shape().hidden),
+           out.matrix->buffer(), out.offset(), out.stride(), 0);
   }
 
  private:
@@ -95,16 +87,16 @@ Sequences pseudo_log_likelihood(const Crbm& crbm, const Sequences& visible, std:
     const IndexBuffer units = drawn_units(crbm, block.first, block.frames, seed);
     Matrix flipped(crbm.device(), block.frames, crbm.shape().visible);
     flipped.copy_rows_from(visible.values, block.first, block.frames, 0);
-    launch(crbm.device(), energy_kernel(crbm, "flip_units"), {{block.frames, 1}}, flipped.buffer(),
-           to_int(flipped.stride()), units.buffer());
+    launch(crbm.device(), energy_kernel(crbm.device(), "flip_units", crbm.shape().kind),
+           {{block.frames, 1}}, flipped.buffer(), to_int(flipped.stride()), units.buffer());
     const Matrix other(crbm.device(), block.frames, 1);
     RowEnergies{crbm, rows}.write(flipped, other);
     const Rows own(energies.values, block.first, block.frames);
     const Rows out(result.values, block.first, block.frames);
-    launch(crbm.device(), energy_kernel(crbm, "log_sigmoid_difference"), {{block.frames, 1}},
-           other.buffer(), to_int(other.stride()), own.matrix->buffer(), own.offset(), own.stride(),
-           static_cast<float>(crbm.shape().visible), out.matrix->buffer(), out.offset(),
-           out.stride());
+    launch(crbm.device(), energy_kernel(crbm.device(), "log_sigmoid_difference", crbm.shape().kind),
+           {{block.frames, 1}}, other.buffer(), to_int(other.stride()), own.matrix->buffer(),
+           own.offset(), own.stride(), static_cast<float>(crbm.shape().visible),
+           out.matrix->buffer(), out.offset(), out.stride());
   }
   return result;
 }

@@ -7,6 +7,7 @@
 #include "base/random_streams.hpp"
 #include "device/kernel_arguments.hpp"
 #include "device/row_tile.hpp"
+#include "machines/unit_kinds.hpp"
 
 namespace mcdbn {
 namespace {
@@ -61,13 +62,11 @@ void run_composed(const Crbm& crbm, const Matrix& state, const Frames& frames,
   const Matrix sample = Matrix::like(hidden), hidden_bias = Matrix::like(hidden);
   const Matrix visible_bias(crbm.device(), frames.sequences, crbm.shape().visible);
   const Rows hidden_sample(sample);
-  GemmOptions up, down;
+  GemmOptions up = mean_of_units(VisibleKind::binary), down = mean_of_units(crbm.shape().kind);
   up.bias = &hidden_bias;
-  up.activation = Activation::sigmoid;
   up.temperature = static_cast<float>(options.temperature);
   up.random = key_of(options);
   down.bias = &visible_bias;
-  if (crbm.shape().kind == VisibleKind::binary) down.activation = Activation::sigmoid;
   for (std::size_t frame = frames.first; frame < frames.end; ++frame) {
     const auto at = [&](std::size_t t) {
       return Rows::strided(state, t, frames.sequences, frames.end);

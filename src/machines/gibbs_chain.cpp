@@ -1,21 +1,19 @@
 #include "machines/gibbs_chain.hpp"
 
-#include "device/gemm.hpp"
+#include "machines/unit_kinds.hpp"
 
 namespace mcdbn {
 namespace {
 
 GemmOptions hidden_units(const Matrix& bias) {
-  GemmOptions options;
+  GemmOptions options = mean_of_units(VisibleKind::binary);
   options.bias = &bias;
-  options.activation = Activation::sigmoid;
   return options;
 }
 
 GemmOptions visible_units(const Crbm& crbm, const Matrix& bias) {
-  GemmOptions options;
+  GemmOptions options = mean_of_units(crbm.shape().kind);
   options.bias = &bias;
-  if (crbm.shape().kind == VisibleKind::binary) options.activation = Activation::sigmoid;
   return options;
 }
 
@@ -53,8 +51,7 @@ void GibbsChain::infer_visible(const Rows& hidden, const Rows& out) const {
 
 void GibbsChain::draw_visible(const Rows& hidden, const RandomKey& key, const Rows& out) const {
   GemmOptions options = visible_units(crbm_, visible_bias_);
-  options.sampling =
-      crbm_.shape().kind == VisibleKind::binary ? Sampling::bernoulli : Sampling::gaussian;
+  options.sampling = sampling_of(crbm_.shape().kind);
   options.sample = &out;
   options.random = key;
   gemm(hidden, crbm_.W_transposed, visible_mean_, options);

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "device/gemm.hpp"
+#include "machines/unit_kinds.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 
 namespace mcdbn {
@@ -44,13 +44,6 @@ inline void drive_of(const Mrbm& mrbm, std::span<const std::size_t> present,
     options.bias = nullptr;
     options.beta = 1.0F;
   }
-}
-
-/// The mean of a modality's units, as an epilogue.
-inline GemmOptions mean_of_units(VisibleKind kind) {
-  GemmOptions options;
-  if (kind == VisibleKind::binary) options.activation = Activation::sigmoid;
-  return options;
 }
 
 }  // namespace mcdbn

@@ -49,8 +49,7 @@ std::vector<std::size_t> indices_where(const std::vector<bool>& flags, bool valu
 /// The epilogue of a pass: means, and with a temperature their draws in their place.
 GemmOptions units_options(VisibleKind kind, const Rows& units, const MrbmChainOptions& options,
                           std::size_t pass) {
-  GemmOptions epilogue;
-  if (kind == VisibleKind::binary) epilogue.activation = Activation::sigmoid;
+  GemmOptions epilogue = mean_of_units(kind);
   if (options.temperature == 0.0F) return epilogue;
   epilogue.sampling = kind == VisibleKind::binary ? options.sampling : Sampling::gaussian;
   epilogue.sample = &units;

@@ -3,27 +3,22 @@
 #include <algorithm>
 #include <numeric>
 
-#include "device/kernel_arguments.hpp"
+#include "machines/energy_kernel.hpp"
 #include "machines/mean_field.hpp"
 #include "mcdbn/machines/energy.hpp"
 
 namespace mcdbn {
 namespace {
 
-cl::Kernel& energy_kernel(Device& device, const char* name, bool gaussian) {
-  return device.programs().kernel("energy.cl", name,
-                                  {{"VEC", vector_width(device)}, {"GAUSSIAN", gaussian ? 1 : 0}});
-}
-
 /// Of modality m its visible term, and with `hidden` units that of the shared ones.
 /// @param input of the shared units [rows x hidden]
 void launch_energy(const Mrbm& mrbm, std::size_t m, const Rows& units, const Matrix& input,
                    std::size_t hidden, const Matrix& out, bool add) {
   Device& device = mrbm.device();
-  launch(device, energy_kernel(device, "free_energy", mrbm.kind(m) == VisibleKind::gaussian),
-         {{units.count, 1}}, units.matrix->buffer(), units.offset(), units.stride(),
-         mrbm.a[m].buffer(), 0, to_int(units.columns), input.buffer(), to_int(input.stride()),
-         to_int(hidden), out.buffer(), 0, to_int(out.stride()), add ? 1 : 0);
+  launch(device, energy_kernel(device, "free_energy", mrbm.kind(m)), {{units.count, 1}},
+         units.matrix->buffer(), units.offset(), units.stride(), mrbm.a[m].buffer(), 0,
+         to_int(units.columns), input.buffer(), to_int(input.stride()), to_int(hidden),
+         out.buffer(), 0, to_int(out.stride()), add ? 1 : 0);
 }
 
 /// Of the shared units, from all modalities. @return [rows x hidden]
@@ -81,8 +76,8 @@ Sequences free_energy(const Mcdbn& network, const std::vector<Sequences>& modali
 
 void weigh_lower(const Matrix& x, const Matrix& y, float weight, const Matrix& out) {
   Device& device = out.device();
-  launch(device, energy_kernel(device, "weigh_lower", false), {{out.rows(), 1}}, x.buffer(),
-         y.buffer(), to_int(x.stride()), weight, out.buffer(), to_int(out.stride()));
+  launch(device, energy_kernel(device, "weigh_lower", VisibleKind::binary), {{out.rows(), 1}},
+         x.buffer(), y.buffer(), to_int(x.stride()), weight, out.buffer(), to_int(out.stride()));
 }
 
 }  // namespace mcdbn

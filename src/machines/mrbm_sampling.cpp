@@ -50,7 +50,7 @@ std::vector<Matrix> sample(const Mrbm& mrbm, const std::vector<Matrix>& modaliti
     if (given[m]) continue;
     const Rows units(result[m]);
     GemmOptions draw;
-    draw.sampling = mrbm.kind(m) == VisibleKind::binary ? Sampling::bernoulli : Sampling::gaussian;
+    draw.sampling = sampling_of(mrbm.kind(m));
     draw.sample = &units;
     draw.random = {settings.seed, 1, random_streams::kChains, static_cast<std::uint16_t>(m)};
     apply_epilogue(units, draw);

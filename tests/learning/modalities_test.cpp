@@ -14,6 +14,7 @@
 #include "mcdbn/learning/fine_tuning.hpp"
 #include "mcdbn/learning/greedy_schedule.hpp"
 #include "mcdbn/machines/energy.hpp"
+#include "mcdbn/machines/generation.hpp"
 #include "mcdbn/machines/machine_file.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 #include "reference/finite_difference.hpp"
@@ -150,10 +151,11 @@ TEST_CASE("reference: multi-prediction of Gaussian modalities is the gradient of
   CHECK((numeric - exact).cwiseAbs().maxCoeff() < 1e-8);
 }
 
-TEST_CASE("the unrolled pass of three modalities: each is predicted from the two others") {
+TEST_CASE("the unrolled pass of three modalities, one binary: each is predicted from the others") {
   constexpr SequenceWindows kWindows{.count = 2, .frames = 7, .first = 3, .lead = 4};
   constexpr std::size_t kMeanFieldSteps = 2;
   const std::array<std::size_t, 3> visible{3, 4, 2}, hidden{4, 3, 5}, order{2, 1, 3};
+  const std::array<VisibleKind, 3> kind{kGaussian, kBinary, kGaussian};
   MrbmShape shape{{{"one", hidden[0]}, {"two", hidden[1]}, {"three", hidden[2]}}, 4};
   MrbmParameters mrbm = MrbmParameters::zeros(shape);
   std::vector<CrbmParameters> layers;
@@ -161,7 +163,7 @@ TEST_CASE("the unrolled pass of three modalities: each is predicted from the two
   reference::UnrolledModel model;
   for (std::size_t m = 0; m < 3; ++m) {
     const auto seed = static_cast<unsigned>(100 * m);
-    layers.push_back(random_layer({visible[m], hidden[m], order[m], kGaussian}, seed));
+    layers.push_back(random_layer({visible[m], hidden[m], order[m], kind[m]}, seed));
     mrbm.W[m] = random_matrix(hidden[m], 4, seed + 20, 0.8F);
     mrbm.a[m] = random_matrix(1, hidden[m], seed + 21, 0.5F);
     frames.push_back(random_matrix(kWindows.rows(), visible[m], seed + 22));
@@ -234,6 +236,7 @@ TEST_CASE("the unrolled pass of three modalities: each is predicted from the two
             want.stacks[m][0].weights - 0.5 * want.stacks[m][0].visible_bias.transpose() *
                                             RowVectorD::Ones(want.stacks[m][0].weights.cols());
         check(network.layers(m)[0].gradient.W, own);
+        check(network.layers(m)[0].gradient.a, want.stacks[m][0].visible_bias);
         check(network.layers(m)[0].gradient.b, want.stacks[m][0].hidden_bias);
         const MatrixD shared =
             want.mrbm.weights[m] -
@@ -289,6 +292,24 @@ TEST_CASE("three modalities are trained greedily, fine-tuned and regenerated fro
     }
     CHECK_THROWS_AS(regenerate(tuned, {{}, {}, {}}, 3), ShapeError);
 
+    // A free sample of all three: one leads, each other follows from those that are there.
+    GenerationOptions free_run;
+    free_run.frames = 12;
+    free_run.samples = 2;
+    free_run.gibbs_steps = 3;
+    const std::vector<MatrixF> seeds(clips.modalities[1].clips.begin(),
+                                     clips.modalities[1].clips.end());
+    const auto free_sample = generate(tuned, 1, seeds, free_run);
+    REQUIRE(free_sample.size() == 3);
+    CHECK(free_sample[1] == generate(tuned.cdbns[1], seeds, free_run));
+    for (std::size_t m = 0; m < 3; ++m) REQUIRE(free_sample[m].size() == 4);
+    MatrixF lead(seeds[1].rows() + 12, seeds[1].cols());
+    lead << seeds[1], free_sample[1][3];
+    const MatrixF first = regenerate(tuned, {{}, {lead}, {}}, 0).front();
+    CHECK(free_sample[0][3] == first.bottomRows(12));
+    CHECK(free_sample[2][3] == regenerate(tuned, {{first}, {lead}, {}}, 2).front().bottomRows(12));
+    CHECK_THROWS_AS(generate(tuned, 3, seeds, free_run), ShapeError);
+
     // It comes back from a file of its own, without a skeleton.
     const ScratchFolder folder;
     save_machine(folder / "network.safetensors", {tuned});
@@ -319,20 +340,34 @@ TEST_CASE("three modalities are trained greedily, fine-tuned and regenerated fro
   });
 }
 
-TEST_CASE("a lowest layer of binary units is learnt, but not fine-tuned") {
+TEST_CASE("a lowest layer of binary units is learnt and fine-tuned: it predicts probabilities") {
   std::vector<ModalityMatrices> modalities = three_modalities();
   modalities.pop_back();
   for (MatrixF& clip : modalities[0].clips) clip = (clip.array() > 0).cast<float>();
   modalities[0].kind = kBinary;
   const MatrixSource source(std::move(modalities));
+  LearningSettings settings = small_settings();
+  settings.hidden = settings.mrbm_hidden = 16;
+  settings.fine_tuning.steps = 300;
+  settings.fine_tuning.rate = 2e-2;
+  settings.fine_tuning.reverse = 1.0;
+  const SequenceLossMaker squares = [](Device& device, const SequenceWindows& windows) {
+    return std::make_unique<SquaredLoss>(device, windows, 1.0);
+  };
   on_every_device([&](Device& device) {
-    const Mcdbn network = train_greedy(device, source, small_settings());
-    CHECK(network.cdbns[0].layers[0].shape().kind == kBinary);
-    CHECK(network.cdbns[1].layers[0].shape().kind == kGaussian);
-    CHECK_THROWS_AS(UnrolledNetwork(device, network, 2), ShapeError);
+    const Mcdbn greedy = train_greedy(device, source, settings);
+    CHECK(greedy.cdbns[0].layers[0].shape().kind == kBinary);
+    CHECK(greedy.cdbns[1].layers[0].shape().kind == kGaussian);
     const auto clips = source.sequences().modalities;
-    const MatrixF answer = regenerate(network, {{}, {clips[1].clips[0]}}, 0).front();
-    CHECK(answer.minCoeff() >= 0.0F);  // probabilities
-    CHECK(answer.maxCoeff() <= 1.0F);
+    const auto error_of = [&](const Mcdbn& network) {
+      const MatrixF answer = regenerate(network, {{}, {clips[1].clips[1]}}, 0).front();
+      CHECK(answer.minCoeff() >= 0.0F);  // probabilities
+      CHECK(answer.maxCoeff() <= 1.0F);
+      return (answer - clips[0].clips[1]).squaredNorm() / static_cast<float>(answer.size());
+    };
+    const Mcdbn tuned = fine_tune(device, greedy, source, nullptr, settings, squares).network;
+    CHECK(tuned.cdbns[0].layers[0].shape().kind == kBinary);
+    CHECK(error_of(tuned) < 0.8F * error_of(greedy));
+    CHECK(error_of(tuned) < 0.2F);  // a half everywhere has 0.25
   });
 }

@@ -192,7 +192,7 @@ reference::DropOut drawn_for(const SmallNetwork& small, std::size_t present, std
 
 TEST_CASE("centered parameters come back as they were") {
   const CrbmParameters own = layer(6, 7, VisibleKind::binary, 3);
-  const CrbmParameters back = uncentered(centered(own));
+  const CrbmParameters back = uncentered(centered(own, Below::code), Below::code);
   CHECK((back.a - own.a).cwiseAbs().maxCoeff() < 1e-5F);
   CHECK((back.b - own.b).cwiseAbs().maxCoeff() < 1e-5F);
   CHECK((back.visible_mean - own.visible_mean).cwiseAbs().maxCoeff() < 1e-6F);

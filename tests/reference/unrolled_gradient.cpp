@@ -31,7 +31,7 @@ UnrolledModel moved(UnrolledModel model, double by) {
   for (std::size_t m = 0; m < 2; ++m) {
     for (std::size_t i = 0; i < model.stacks[m].size(); ++i) {
       Crbm& layer = model.stacks[m][i];
-      const double visible = is_binary(layer) ? by : 0.0;
+      const double visible = i > 0 ? by : 0.0;
       layer.hidden_bias += visible * (layer.weights.colwise().sum());
       layer.hidden_bias += visible * (layer.hidden_history.colwise().sum());
       layer.visible_bias += by * layer.weights.rowwise().sum().transpose();
@@ -99,6 +99,12 @@ RowVectorD UnrolledGradient::through(const Units& units, Eigen::Index row,
   return result;
 }
 
+RowVectorD UnrolledGradient::through_data(const Units& units, Eigen::Index row,
+                                          const RowVectorD& error) {
+  const auto p = units.own.row(row).array();
+  return error.array() * p * (1.0 - p);
+}
+
 void UnrolledGradient::go_up() {
   const MatrixD* below = &values_;
   Eigen::Index valid = 0;
@@ -141,7 +147,9 @@ void UnrolledGradient::go_down() {
     for (Eigen::Index t = first_; t < frames_; ++t) {
       const RowVectorD input = layer.visible_bias + above->row(t) * layer.weights.transpose() +
                                history(units.dropped, t, order_A(layer)) * layer.visible_history;
-      units.own.row(t) = is_binary(layer) ? centered_sigmoid(input) : input;
+      units.own.row(t) = i > 0              ? centered_sigmoid(input)
+                         : is_binary(layer) ? RowVectorD(sigmoid(MatrixD(input)))
+                                            : input;
       drop(units, t);
     }
     above = &units.dropped;
@@ -160,8 +168,9 @@ MatrixD UnrolledGradient::back_down(UnrolledModel& sum, MatrixD error) const {
     const Eigen::Index order = order_A(layer), width = layer.visible_bias.size();
     MatrixD error_above = MatrixD::Zero(frames_, above.cols());
     for (Eigen::Index t = frames_; t-- > first_;) {
-      const RowVectorD input =
-          is_binary(layer) ? through(down_[i], t, error.row(t)) : RowVectorD(error.row(t));
+      const RowVectorD input = i > 0              ? through(down_[i], t, error.row(t))
+                               : is_binary(layer) ? through_data(down_[i], t, error.row(t))
+                                                  : RowVectorD(error.row(t));
       gradient.visible_bias += input;
       gradient.weights += input.transpose() * above.row(t);
       gradient.visible_history += history(down_[i].dropped, t, order).transpose() * input;

@@ -4,8 +4,8 @@
 
 namespace mcdbn::reference {
 
-/// The same network over units about zero: binary units are probabilities less one half, which the
-/// biases take up.
+/// The same network over units about zero: binary units but those of the data are probabilities
+/// less one half, which the biases take up.
 UnrolledModel centered(const UnrolledModel& model);
 UnrolledModel uncentered(const UnrolledModel& model);
 
@@ -32,6 +32,8 @@ class UnrolledGradient {
   static void drop(Units& units, Eigen::Index row);
   /// dL/d input from dL/d unit after drop-out.
   static RowVectorD through(const Units& units, Eigen::Index row, const RowVectorD& error);
+  /// The same of binary units of the data, which have no drop-out.
+  static RowVectorD through_data(const Units& units, Eigen::Index row, const RowVectorD& error);
 
   void go_up();
   void infer(int steps);

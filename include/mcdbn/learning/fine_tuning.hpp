@@ -31,7 +31,7 @@ struct FineTuned {
 /// before those fared worse. The observer may throw to stop.
 /// @param held_out sequences that are not learnt from and say when to stop, or none
 /// @param make_loss of the last modality
-/// @throws DivergenceError saying what to lower, ShapeError unless the lowest layers are Gaussian
+/// @throws DivergenceError saying what to lower, ShapeError
 FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& source,
                     const SequenceSource* held_out, const LearningSettings& settings,
                     const SequenceLossMaker& make_loss, const EpochObserver& observer = {});

@@ -55,8 +55,8 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
 MrbmParameters small_weights(const MrbmShape& shape, std::span<const Sequences> codes,
                              const LearningSettings& learning);
 
-/// The MRBM by multi-prediction on codes of each modality whose rows belong to the same frames, the
-/// first modality's look_ahead frames later.
+/// The MRBM, by the rule that the settings say, on codes of each modality whose rows belong to the
+/// same frames, the first modality's look_ahead frames later.
 Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
                 const LearningSettings& learning, std::uint16_t stream,
                 const EpochObserver& observer = {});

@@ -20,7 +20,7 @@ struct MachineSettings {
   std::size_t least_batches = 1;
   CdSettings gaussian = LearningSettings::greedy().gaussian;
   CdSettings binary = LearningSettings::greedy().binary;
-  decltype(LearningSettings::mrbm) mrbm = LearningSettings::greedy().mrbm;
+  MrbmSettings mrbm = LearningSettings::greedy().mrbm;
 
   /// @throws ConfigError naming the setting that is out of range
   void validate() const { check_settings(*this); }
@@ -54,7 +54,7 @@ Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind, std::siz
                std::size_t layers, const MachineSettings& settings,
                const EpochObserver& observer = {});
 
-/// An MRBM, fitted by multi-prediction on rows that belong together.
+/// An MRBM, fitted by the rule that the settings say on rows that belong together.
 /// @param modalities name and kind of each  @param data of each, as many rows in all
 /// @throws DivergenceError, ShapeError
 Mrbm fit_mrbm(Device& device, const std::vector<Modality>& modalities,

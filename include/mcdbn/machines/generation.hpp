@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mcdbn/machines/cdbn.hpp"
+#include "mcdbn/machines/regeneration.hpp"
 
 namespace mcdbn {
 
@@ -30,6 +31,16 @@ struct GenerationOptions {
 /// @throws ShapeError
 std::vector<MatrixF> generate(const Cdbn& cdbn, const std::vector<MatrixF>& seeds,
                               const GenerationOptions& options = {});
+
+/// A free sample of a whole MCDBN: the modality `leads` runs freely from its seeds (Algorithm 4),
+/// each other one is regenerated from it and those before (Algorithms 3 and 5).
+/// @param seeds of the modality that leads  @param others how the others are regenerated, one
+///        sample of each
+/// @return the new frames alone, result[modality][seed · samples + sample]  @throws ShapeError
+std::vector<std::vector<MatrixF>> generate(const Mcdbn& network, std::size_t leads,
+                                           const std::vector<MatrixF>& seeds,
+                                           const GenerationOptions& options = {},
+                                           RegenerationOptions others = {});
 
 /// Frames of a seed that generate() looks at: the history of all layers, one above another.
 std::size_t seed_frames(const Cdbn& cdbn);

@@ -21,8 +21,8 @@ struct SavedMachine {
 };
 
 /// One .safetensors file: tensors `W`, `A` … of a CRBM, `0.W` … of a CDBN, `NAME.0.W` … and
-/// `mrbm.W_NAME` … of an MCDBN, metadata with format
-/// version, shapes and settings. Written atomically. @throws InputError
+/// `mrbm.W_NAME` … of an MCDBN, metadata with format version, shapes and settings. Written
+/// atomically. @throws InputError
 void save_machine(const std::filesystem::path& path, const SavedMachine& saved);
 /// @throws InputError
 SavedMachine load_machine(Device& device, const std::filesystem::path& path);
