@@ -39,6 +39,17 @@ std::string options_of(const Defines& defines) {
   return options;
 }
 
+/// What tells a kernel from others. It is asked for at every launch: building the options there
+/// would take longer than many a launch does.
+std::string key_of(const std::string& file, const std::string& name, const Defines& defines) {
+  std::string key;
+  key.reserve(256);
+  key.append(file).append(1, ' ').append(name);
+  for (const auto& [define, value] : defines)
+    key.append(1, ' ').append(define).append(1, '=').append(value.text);
+  return key;
+}
+
 /// PoCL keeps what it compiles, and asked for a binary it compiles every kernel of the program once
 /// more, for no work-group size in particular: half of all the time that a first start took.
 bool driver_keeps_programs(const cl::Device& device) {
@@ -72,7 +83,7 @@ ProgramCache::ProgramCache(cl::Context context, cl::Device device)
 
 cl::Kernel& ProgramCache::kernel(const std::string& file, const std::string& name,
                                  const Defines& defines) {
-  const std::string key = file + ' ' + name + ' ' + options_of(defines);
+  const std::string key = key_of(file, name, defines);
   auto found = kernels_.find(key);
   if (found == kernels_.end()) {
     try {
