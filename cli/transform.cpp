@@ -44,6 +44,8 @@ void run_transform(const CommandContext& context, const TransformOptions& option
   Device device = Device::open({context.platform, context.device});
   const SavedMachine saved = load_machine(device, options.model);
   if (!options.infer.empty()) return put_matrix(options.output, inferred(device, saved, options));
+  if (!options.modalities.empty())
+    throw ConfigError("--modality: of --infer, which says the modality that is wanted");
   if (options.data.files.empty()) throw ConfigError("data: no files");
   if (options.steps && !options.inverse) throw ConfigError("--steps: of --inverse, or of --infer");
   const Cdbn stack = stack_of(saved, options.model);

@@ -216,6 +216,7 @@ TEST_CASE("fit: an MRBM of three modalities, and one of them inferred from the o
   check_refused(infer + " --infer b", 2, "wants what is given");
   check_refused(infer + " --modality a=" + path("a.npy") + " --infer w", 2, "none of that name");
   check_refused(infer + " --modality a=" + path("a.npy") + " --infer a", 2, "it is given");
+  check_refused(infer + " --modality a=" + path("a.npy"), 2, "--modality: of --infer");
   check_refused(infer + " " + machines.bits(), 3, "an MRBM; its data are said by --modality");
 }
 
