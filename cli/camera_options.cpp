@@ -1,6 +1,10 @@
 #include "camera_options.hpp"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
 #include <utility>
+#include <vector>
 
 #include "mcdbn/formats/camera_file.hpp"
 #include "setting_flags.hpp"
@@ -12,14 +16,58 @@ constexpr const char* kGroup = "Camera";
 }
 
 Camera CameraOptions::camera_for(const Motion& motion) const {
-  return file.empty() ? place_camera(motion, placement) : read_camera(file);
+  return file.empty() ? place_camera(motion, placement)
+                      : in_file_units(read_camera_with_notices(file), motion.skeleton);
+}
+
+Camera read_camera_with_notices(const std::filesystem::path& file) {
+  std::vector<std::string> assumed;
+  Camera camera = read_camera(file, &assumed);
+  if (camera.unit_m)
+    assumed.push_back(fmt::format("{}: its units of {:g} m meet the motion's by a body of 1.7 m",
+                                  file.string(), *camera.unit_m));
+  for (const std::string& line : assumed) spdlog::info(line);
+  return camera;
+}
+
+std::optional<Camera> SeenByOptions::camera() const {
+  if (file.empty()) return std::nullopt;
+  return read_camera_with_notices(file);
+}
+
+void add_seen_by_options(CLI::App& command, SeenByOptions& options) {
+  auto* file = command
+                   .add_option("--camera", options.file,
+                               "Calibration that saw the track, or is to see the motion; one of a "
+                               "file's cameras as FILE:NAME (default: none is known, see the "
+                               "others; --to track: the model's view)")
+                   ->type_name("FILE[:NAME]")
+                   ->group(kGroup);
+  const auto add = [&](const std::string& flag, const Setting& setting,
+                       std::optional<double>& value) {
+    add_setting_flag(command, flag, setting, value)->group(kGroup)->excludes(file);
+  };
+  add("--camera-pitch",
+      {"pitch", AssumedView::kPitch_deg, "degrees",
+       "how far a camera without a file looks down; default: level"},
+      options.view.pitch_deg);
+  add("--camera-roll",
+      {"roll", AssumedView::kRoll_deg, "degrees",
+       "how far it is turned clockwise, seen from behind it; default: not at all"},
+      options.view.roll_deg);
+  add("--camera-fov",
+      {"fov", CameraPlacement::kFieldOfView_deg, "degrees",
+       "its vertical field of view; default: 60 across the image's longer side"},
+      options.view.field_of_view_deg);
 }
 
 void add_camera_options(CLI::App& command, CameraOptions& options) {
   CameraPlacement& placement = options.placement;
-  auto* file = command.add_option("--camera", options.file, "OpenCV YAML or XML camera file")
-                   ->type_name("FILE")
-                   ->group(kGroup);
+  auto* file =
+      command
+          .add_option("--camera", options.file, "Calibration; one of a file's cameras as FILE:NAME")
+          ->type_name("FILE[:NAME]")
+          ->group(kGroup);
   const auto placed = [&](CLI::Option* option) { option->group(kGroup)->excludes(file); };
   visit_group("camera", placement, [&](const Setting& setting, double& value) {
     placed(add_setting_flag(command, flag_of(setting.name), setting, value));

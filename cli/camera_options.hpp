@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "mcdbn/camera/assumed_view.hpp"
 #include "mcdbn/camera/camera.hpp"
 
 namespace mcdbn::cli {
@@ -17,7 +18,22 @@ struct CameraOptions {
   Camera camera_for(const Motion& motion) const;
 };
 
-/// --camera FILE, or --camera-azimuth, --camera-elevation, --camera-distance, --camera-fov,
+/// What a command line says of the camera that saw a track.
+struct SeenByOptions {
+  std::filesystem::path file;  ///< FILE or FILE:NAME
+  AssumedView view;            ///< of a camera without a file
+
+  /// @throws InputError if the file cannot be read
+  std::optional<Camera> camera() const;
+};
+
+/// A camera file's camera; says what was taken for granted of it. @throws InputError
+Camera read_camera_with_notices(const std::filesystem::path& file);
+
+/// --camera FILE[:NAME], or --camera-pitch, --camera-roll, --camera-fov.
+void add_seen_by_options(CLI::App& command, SeenByOptions& options);
+
+/// --camera FILE[:NAME], or --camera-azimuth, --camera-elevation, --camera-distance, --camera-fov,
 /// --image-size.
 void add_camera_options(CLI::App& command, CameraOptions& options);
 

@@ -1,17 +1,18 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "camera_options.hpp"
 #include "clip_options.hpp"
 #include "commands.hpp"
 #include "fit_option.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
-#include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "sample_path.hpp"
@@ -24,8 +25,9 @@ namespace {
 constexpr const char *kToPose = "pose", *kToTrack = "track";
 
 struct RegenerateOptions {
-  std::filesystem::path model, input, output, camera, skeleton;
+  std::filesystem::path model, input, output, skeleton;
   TrackReadOptions track;
+  SeenByOptions seen_by;
   SamplingOptions sampling;
   std::string to = kToPose, fit;
 };
@@ -33,15 +35,33 @@ struct RegenerateOptions {
 /// Options that mean nothing where a track is wanted. @throws ConfigError naming the first
 void check_direction(const RegenerateOptions& options) {
   if (options.to != kToTrack) return;
+  const AssumedView& view = options.seen_by.view;
   for (const auto& [said, flag] : {std::pair{!options.skeleton.empty(), "--skeleton"},
-                                   std::pair{!options.fit.empty(), "--fit"}})
+                                   std::pair{!options.fit.empty(), "--fit"},
+                                   std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
+                                   std::pair{view.roll_deg.has_value(), "--camera-roll"},
+                                   std::pair{view.field_of_view_deg.has_value(), "--camera-fov"}})
     if (said)
       throw ConfigError(fmt::format(
-          "{} is for --to pose: a regenerated track has no skeleton and is not fitted", flag));
+          "{} is for --to pose: a regenerated track has no skeleton and is not fitted, and its "
+          "camera is the model's or a file's",
+          flag));
 }
 
 void report(const std::filesystem::path& path, int frames, double fps) {
   spdlog::info("{}: {} frames at {:.4g} fps", path.string(), frames, fps);
+}
+
+/// What is taken for granted of a camera that nobody calibrated.
+void report_assumed(const Camera& camera, const AssumedView& view) {
+  const double fov_deg = 2 * std::atan(0.5 * camera.height_px / camera.fy_px) * 180 / EIGEN_PI;
+  const double pitch_deg = std::asin(-camera.camera_from_world(2, 1)) * 180 / EIGEN_PI;
+  spdlog::info(
+      "no --camera: taken to look down by {:.4g} degrees, to be turned by {:.4g}, and to see "
+      "{:.4g} "
+      "degrees from the image's top to its bottom; say what is known by --camera-pitch, "
+      "--camera-roll, --camera-fov",
+      std::abs(pitch_deg) < 1e-9 ? 0.0 : pitch_deg, view.roll_deg.value_or(0), fov_deg);
 }
 
 void regenerate_poses(const Model& model, const RegenerateOptions& options,
@@ -49,10 +69,12 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
                       const RegenerationOptions& regeneration) {
   ClipPlacement placement;
   placement.camera = camera;
+  placement.view = options.seen_by.view;
   if (!options.skeleton.empty()) placement.skeleton = read_bvh(options.skeleton).skeleton;
   placement.fit = track_fit(options.fit);
   TrackFeatures::FillCount filled;
   const Track2d track = read_tracks_with_notices(options.input, options.track).people.front();
+  if (!camera) report_assumed(placement.camera_of(track, model.modalities), placement.view);
   const auto motions = regenerate_clip(model, track, placement, regeneration, &filled);
   if (filled.interpolated + filled.missing > 0)
     spdlog::info("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
@@ -80,8 +102,7 @@ void run_regenerate(const CommandContext& context, const RegenerateOptions& opti
   check_direction(options);
   Device device = Device::open({context.platform, context.device});
   const Model model = load_model(device, options.model);
-  std::optional<Camera> camera;
-  if (!options.camera.empty()) camera = read_camera(options.camera);
+  const std::optional<Camera> camera = options.seen_by.camera();
   const RegenerationOptions regeneration =
       options.sampling.regeneration(model.network, context.seed);
   if (options.to == kToTrack)
@@ -113,12 +134,7 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
                    "camera's image")
       ->check(CLI::IsMember({kToPose, kToTrack}))
       ->capture_default_str();
-  command
-      ->add_option(
-          "--camera", options->camera,
-          "OpenCV YAML or XML camera that saw the track, or is to see the motion (default: "
-          "the model's view, clip at the origin)")
-      ->type_name("FILE");
+  add_seen_by_options(*command, options->seen_by);
   command
       ->add_option("--skeleton", options->skeleton,
                    "BVH whose skeleton to use, of the same joint names")

@@ -28,7 +28,8 @@ void run_render(RenderCommandOptions options) {
     clips.push_back({load_clip_with_notices(path, options.preparation), path.filename().string()});
   }
   options.render.placement = options.camera.placement;
-  if (!options.camera.file.empty()) options.render.camera = read_camera(options.camera.file);
+  if (!options.camera.file.empty())
+    options.render.camera = options.camera.camera_for(clips.front().motion);
   render(clips, options.output, options.render);
   spdlog::info("{}: {} {}", options.output.string(), clips.size(),
                clips.size() == 1 ? "clip" : "clips");

@@ -8,8 +8,6 @@
 namespace mcdbn {
 namespace {
 
-constexpr Range kPitch_deg = within(-89, 89), kRoll_deg = within(-180, 180);
-
 /// The camera whose pixels the 2D features are.
 Camera feature_camera(const Modalities& modalities, const Camera& seen_by) {
   return level_camera(seen_by, modalities.camera.field_of_view_deg);
@@ -66,8 +64,8 @@ Camera Modalities::assumed_camera(const AssumedView& view, int width_px, int hei
   placement.field_of_view_deg = view.field_of_view_deg.value_or(
       level_view ? usual_field_of_view_deg(width_px, height_px) : camera.field_of_view_deg);
   const double roll_deg = view.roll_deg.value_or(0);
-  check_range("a camera's pitch in degrees", kPitch_deg, placement.elevation_deg);
-  check_range("a camera's roll in degrees", kRoll_deg, roll_deg);
+  check_range("a camera's pitch in degrees", AssumedView::kPitch_deg, placement.elevation_deg);
+  check_range("a camera's roll in degrees", AssumedView::kRoll_deg, roll_deg);
   Camera assumed = camera_at_origin(placement);
   // A camera that is turned clockwise sees the world turned the other way.
   assumed.camera_from_world =

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "features/clip_modalities.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/synthetic_motion.hpp"
 
@@ -35,4 +36,16 @@ TEST_CASE("pose features: JSON keeps every bit, and damage is noticed") {
   nlohmann::json damaged = json;
   damaged["joints"].push_back(99);
   CHECK_THROWS_AS(pose_features_from(damaged), InputError);
+}
+
+TEST_CASE("modalities: JSON keeps the level view; a model that does not speak of it has none") {
+  const Motion motion = swinging(small_body(), 20);
+  Modalities modalities = modalities_of({motion}, {});
+  for (const bool level : {true, false}) {
+    modalities.level_view = level;
+    nlohmann::json json = modalities_json(modalities);
+    CHECK(modalities_from(json).level_view == level);
+    json.erase("level_view");
+    CHECK_FALSE(modalities_from(json).level_view);
+  }
 }

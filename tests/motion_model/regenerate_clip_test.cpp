@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
 #include <limits>
 
 #include "camera/track_noise.hpp"
@@ -9,6 +10,7 @@
 #include "device/every_device.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/level_view.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "motion/resample.hpp"
 #include "motion_model/clip_scene.hpp"
@@ -179,4 +181,41 @@ TEST_CASE("gaps are filled in three rounds, each from the answer to the round be
   for (const MatrixF& seen : {asked[1], asked[2], filled}) CHECK_FALSE(seen.array().isNaN().any());
   CHECK(asked[1] != asked[2]);
   CHECK(filled != asked[2]);
+}
+
+TEST_CASE("regenerate_clip: a level model answers alike to whatever tilt the camera has") {
+  on_every_device([](Device& device) {
+    Scene scene(30.0);
+    scene.modalities.level_view = true;
+    const Model model = scene.model(device);
+    scene.track = project_motion(scene.clip, scene.camera);
+    scene.track.confidence.col(scene.track.find("LHand")).segment(10, 20).setZero();
+    const auto channels = [&](const Track2d& track, const Camera& camera) {
+      ClipPlacement placement = scene.placement();
+      placement.camera = camera;
+      return regenerate_clip(model, track, placement, {}).at(0).channels;
+    };
+    const MatrixD wanted = channels(scene.track, scene.camera);
+    Camera tilted = scene.camera;
+    const Eigen::Matrix3d tilt =
+        camera_rotation(0, -20) * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ());
+    tilted.camera_from_world = tilt * tilted.camera_from_world;
+    tilted.translation = tilt * tilted.translation;
+    // The same network at the same place sees the same, so it answers the same in the world.
+    const Eigen::Matrix3d heading = level_rotation(tilted.camera_from_world);
+    tilted.camera_from_world = tilted.camera_from_world * heading.transpose() *
+                               level_rotation(scene.camera.camera_from_world);
+    const Eigen::Vector3d place =
+        -scene.camera.camera_from_world.transpose() * scene.camera.translation;
+    tilted.translation = -tilted.camera_from_world * place;
+    const Track2d turned = turn_track(scene.track, scene.camera, tilted);
+    REQUIRE(turned.confidence == scene.track.confidence);
+    CHECK(largest(turned.x_px - scene.track.x_px) > 50);
+    CHECK(largest(channels(turned, tilted) - wanted) < 0.1);
+    Model old = scene.model(device);
+    old.modalities.level_view = false;
+    ClipPlacement placement = scene.placement();
+    placement.camera = tilted;
+    CHECK(largest(regenerate_clip(old, turned, placement, {}).at(0).channels - wanted) > 1);
+  });
 }

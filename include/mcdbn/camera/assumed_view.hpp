@@ -2,12 +2,16 @@
 
 #include <optional>
 
+#include "mcdbn/base/settings.hpp"
+
 namespace mcdbn {
 
 /// What somebody says of a camera that nobody calibrated; what is not said is assumed
 /// (Modalities::assumed_camera).
 struct AssumedView {
-  std::optional<double> pitch_deg;          ///< how far it looks down; at most 89 either way
+  static constexpr Range kPitch_deg = within(-89, 89), kRoll_deg = within(-180, 180);
+
+  std::optional<double> pitch_deg;          ///< how far it looks down
   std::optional<double> roll_deg;           ///< turned clockwise, seen from behind it
   std::optional<double> field_of_view_deg;  ///< vertical
 };

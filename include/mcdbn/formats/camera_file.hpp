@@ -1,15 +1,53 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "mcdbn/camera/camera.hpp"
 
 namespace mcdbn {
 
-/// Reads an OpenCV YAML/XML file: camera_matrix, distortion_coefficients, image_width,
-/// image_height, and the pose as rvec or R (rotation matrix) with tvec.
-/// @throws InputError
-Camera read_camera(const std::filesystem::path& path);
+/// One of the cameras of a file, in a world with +y up.
+struct NamedCamera {
+  std::string name;
+  Camera camera;  ///< its unit_m is set where the format says how long its units are
+};
+
+/// The cameras of a file, and what was taken for granted on reading them: a line each.
+struct CameraRig {
+  std::vector<NamedCamera> cameras;
+  std::vector<std::string> assumed;
+};
+
+/// A whole camera file.
+struct CameraSource {
+  std::filesystem::path path;
+  std::string text;
+};
+
+/// What tools call a calibration.
+struct CameraFormat {
+  std::string_view name;                    ///< "pose2sim"
+  std::string_view about;                   ///< a sentence for help and docs
+  bool (*recognises)(const CameraSource&);  ///< by content
+  CameraRig (*read)(const CameraSource&);   ///< throws InputError
+};
+
+/// All that are read, in the order in which they are tried.
+const std::vector<CameraFormat>& camera_formats();
+
+/// All cameras of a file. @throws InputError with file and line; also where it is larger than 4 MB
+/// or nested deeper than any calibration, which is refused before it is parsed
+CameraRig read_cameras(const std::filesystem::path& path);
+
+/// One camera. @param path FILE, or FILE:NAME for one of the cameras of a file
+/// @param assumed if given, collects what was taken for granted, a line each
+/// @throws InputError likewise; naming the cameras if there are several and none is chosen
+Camera read_camera(const std::filesystem::path& path, std::vector<std::string>* assumed = nullptr);
+
+/// Writes OpenCV's YAML, XML or JSON, by the path's ending. @throws InputError
 void write_camera(const std::filesystem::path& path, const Camera& camera);
 
 }  // namespace mcdbn

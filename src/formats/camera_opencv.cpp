@@ -1,0 +1,92 @@
+// OpenCV's own: camera_matrix, distortion_coefficients, image_width, image_height, and the pose as
+// rvec or R with tvec. Ours says unit_m, too, where the units of tvec are known.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/core/eigen.hpp>
+
+#include "base/text_file.hpp"
+#include "formats/camera_formats.hpp"
+#include "formats/camera_parts.hpp"
+#include "formats/opencv_storage.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+bool recognises(const CameraSource& source) {
+  const auto holds = [&](const char* word) { return source.text.find(word) != std::string::npos; };
+  return holds("camera_matrix") || holds("%YAML") || holds("opencv_storage");
+}
+
+CameraRig read(const CameraSource& source) {
+  const OpencvStorage storage(source);
+  Camera camera;
+  camera.width_px = pixels_of(storage.number("image_width"), storage.where("image_width"));
+  camera.height_px = pixels_of(storage.number("image_height"), storage.where("image_height"));
+  set_intrinsics(camera, storage.square("camera_matrix", "[fx 0 cx; 0 fy cy; 0 0 1]"),
+                 storage.where("camera_matrix"));
+  constexpr const char* kDistortion = "distortion_coefficients";
+  if (storage.has(kDistortion))
+    set_distortion(camera, storage.matrix(kDistortion).values, storage.where(kDistortion));
+  const std::string rotation = storage.has("rvec") ? "rvec" : "R";
+  if (!storage.has(rotation))
+    throw InputError(fmt::format("{}:1: neither rvec nor R is there; add the camera's rotation",
+                                 source.path.string()));
+  const std::vector<double> values = storage.matrix(rotation).values;
+  if (rotation == "rvec" && values.size() != 3)
+    throw InputError(storage.where(rotation) + " has not 3 numbers; give a rotation vector");
+  if (rotation == "R" && values.size() != 9)
+    throw InputError(storage.where(rotation) + " is not 3x3; give a rotation matrix");
+  set_pose(camera, rotation_of(values, storage.where(rotation)), storage.point("tvec"), WorldUp::y);
+  if (storage.has("unit_m")) {
+    camera.unit_m = storage.number("unit_m");
+    if (!(*camera.unit_m > 0))
+      throw InputError(storage.where("unit_m") + " is not above 0; give metres");
+  }
+  return {
+      {{"camera", camera}},
+      {camera.unit_m ? "its world is y-up" : "its world is y-up and in the motion's file units"}};
+}
+
+}  // namespace
+
+CameraFormat opencv_camera_format() {
+  return {"opencv", "OpenCV's FileStorage (YAML, XML, JSON), one camera, world y-up, file units",
+          recognises, read};
+}
+
+void write_camera(const std::filesystem::path& path, const Camera& camera) {
+  const std::string extension = path.extension().string();
+  constexpr std::string_view kFormats[] = {".yml", ".yaml", ".xml", ".json"};
+  if (std::find(std::begin(kFormats), std::end(kFormats), extension) == std::end(kFormats)) {
+    throw InputError(
+        fmt::format("{}: no camera format has the ending '{}'; use .yml, .xml or .json",
+                    path.string(), extension));
+  }
+  std::string text;
+  try {
+    // In memory the name only chooses the format.
+    cv::FileStorage storage("camera" + extension, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    cv::Mat rotation;
+    cv::eigen2cv(camera.camera_from_world, rotation);
+    storage << "image_width" << camera.width_px << "image_height" << camera.height_px;
+    storage << "camera_matrix"
+            << cv::Mat(cv::Matx33d(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0,
+                                   0, 1));
+    if (!camera.distortion.empty()) {
+      storage << "distortion_coefficients" << cv::Mat(camera.distortion);
+    }
+    storage << "R" << rotation << "tvec"
+            << cv::Mat(cv::Vec3d(camera.translation.x(), camera.translation.y(),
+                                 camera.translation.z()));
+    if (camera.unit_m) storage << "unit_m" << *camera.unit_m;
+    text = storage.releaseAndGetString();
+  } catch (const cv::Exception&) {
+    throw InputError(fmt::format("{}: OpenCV cannot write this camera", path.string()));
+  }
+  write_text_file(path, text);
+}
+
+}  // namespace mcdbn

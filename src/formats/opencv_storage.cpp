@@ -1,0 +1,107 @@
+#include "formats/opencv_storage.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+
+OpencvStorage::OpencvStorage(const CameraSource& source) : source_(source) {
+  const auto fail = [&] {
+    throw InputError(
+        fmt::format("{}:1: not an OpenCV YAML, XML or JSON file; write it with cv::FileStorage",
+                    source.path.string()));
+  };
+  try {
+    storage_.open(source.text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+  } catch (const cv::Exception&) {
+    fail();
+  }
+  if (!storage_.isOpened()) fail();
+}
+
+bool OpencvStorage::has(const std::string& name) const {
+  return !storage_[name].empty();
+}
+
+std::string OpencvStorage::where(const std::string& name) const {
+  std::istringstream lines(source_.text);
+  std::string text;
+  int line = 1;
+  for (int number = 1; std::getline(lines, text); ++number) {
+    const auto has = [&](const std::string& mark) { return text.find(mark) != text.npos; };
+    if (!has(name + ":") && !has("<" + name) && !has('"' + name + '"')) continue;
+    line = number;
+    break;
+  }
+  return fmt::format("{}:{}: {}", source_.path.string(), line, name);
+}
+
+cv::FileNode OpencvStorage::node(const std::string& name) const {
+  const cv::FileNode found = storage_[name];
+  if (found.empty())
+    throw InputError(fmt::format("{}:1: {} is missing; add it", source_.path.string(), name));
+  return found;
+}
+
+double OpencvStorage::number(const std::string& name) const {
+  const cv::FileNode found = node(name);
+  if (!found.isInt() && !found.isReal())
+    throw InputError(where(name) + " is not a whole number above 0; give one");
+  return found.real();
+}
+
+OpencvStorage::Values OpencvStorage::matrix(const std::string& name) const {
+  const cv::FileNode found = node(name);
+  cv::Mat values;
+  try {
+    if (found.isSeq()) {
+      std::vector<double> list;
+      found >> list;
+      values = cv::Mat(list, true);
+    } else {
+      found >> values;
+    }
+  } catch (const cv::Exception&) {
+    throw InputError(where(name) + " cannot be read; give an opencv-matrix");
+  }
+  if (values.empty() || values.channels() != 1)
+    throw InputError(where(name) + " is not a matrix of numbers; give an opencv-matrix");
+  cv::Mat doubles;
+  values.convertTo(doubles, CV_64F);
+  if (!cv::checkRange(doubles))
+    throw InputError(where(name) + " holds a number that is not finite; correct it");
+  return {doubles.rows, doubles.cols, {doubles.begin<double>(), doubles.end<double>()}};
+}
+
+Eigen::Matrix3d OpencvStorage::square(const std::string& name, const std::string& what) const {
+  const Values found = matrix(name);
+  if (found.rows != 3 || found.columns != 3)
+    throw InputError(fmt::format("{} is not 3x3; give {}", where(name), what));
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(found.values.data());
+}
+
+Eigen::Vector3d OpencvStorage::point(const std::string& name) const {
+  const Values found = matrix(name);
+  if (found.values.size() != 3)
+    throw InputError(where(name) + " has not 3 numbers; give x y z in file units");
+  return Eigen::Vector3d(found.values.data());
+}
+
+std::vector<std::string> OpencvStorage::strings(const std::string& name) const {
+  std::vector<std::string> result;
+  for (const cv::FileNode& entry : node(name)) {
+    if (!entry.isString() && !entry.isInt())
+      throw InputError(where(name) + " is not a list of names");
+    result.push_back(entry.isString() ? entry.string() : std::to_string(static_cast<int>(entry)));
+  }
+  return result;
+}
+
+std::vector<std::string> OpencvStorage::keys() const {
+  return storage_.root().isMap() ? storage_.root().keys() : std::vector<std::string>{};
+}
+
+}  // namespace mcdbn

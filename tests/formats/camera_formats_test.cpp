@@ -1,0 +1,347 @@
+// Calibrations of other tools, on small files that are written here, and on real ones.
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <opencv2/calib3d.hpp>
+
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "formats/camera_formats.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "shared_data.hpp"
+
+using namespace mcdbn;
+using test::ScratchFolder;
+
+namespace {
+
+double largest(const MatrixD& difference) {
+  return difference.cwiseAbs().maxCoeff();
+}
+
+Eigen::Vector3d centre_m(const Camera& camera) {
+  return -camera.camera_from_world.transpose() * camera.translation * camera.unit_m.value();
+}
+
+/// The world's up in the camera's axes.
+Eigen::Vector3d up_of(const Camera& camera) {
+  return camera.camera_from_world.col(1);
+}
+
+/// One section as Anipose writes it, of a camera that looks along a z-up world's y from 3 m away
+/// and 1.2 m above the floor.
+std::string section(const std::string& name, double unit, const std::string& more,
+                    const std::string& distortions = "0.1, -0.02, 0.003, 0.004") {
+  return fmt::format(
+      "[{0}]\nname = \"{0}\"\nsize = [ 1280.0, 720]\n"
+      "matrix = [ [ 1000.5, 0, 630.25,], [ 0.0, 1001.5, 350.75,],\n  [ 0, 0.0, 1.0,],]\n"
+      "distortions = [ {1},]\nrotation = [ 1.5707963267948966, 0.0, 0,]\n"
+      "translation = [ 0.0, {2}, {3},]\n{4}\n",
+      name, distortions, 1.2 * unit, 3 * unit, more);
+}
+
+void check_as_section(const Camera& camera, double unit_m) {
+  CHECK(camera.width_px == 1280);
+  CHECK(camera.height_px == 720);
+  CHECK(camera.fx_px == 1000.5);
+  CHECK(camera.fy_px == 1001.5);
+  CHECK(camera.cx_px == 630.25);
+  CHECK(camera.cy_px == 350.75);
+  CHECK(camera.unit_m == unit_m);
+  CHECK((up_of(camera) - Eigen::Vector3d(0, -1, 0)).norm() < 1e-9);
+  CHECK((centre_m(camera) - Eigen::Vector3d(0, 1.2, 3)).norm() < 1e-9);
+}
+
+const char* format_of(const std::filesystem::path& path) {
+  static std::string text;
+  const CameraSource source{path, read_text_file(path)};
+  for (const CameraFormat& format : camera_formats())
+    if (format.recognises(source)) return format.name.data();
+  return "none";
+}
+
+}  // namespace
+
+TEST_CASE("camera formats: Pose2Sim's world is z-up and in metres, its sizes are floats") {
+  const ScratchFolder folder;
+  const auto file = folder.write("Calib.toml", section("cam_01", 1, "fisheye = false") +
+                                                   section("cam_02", 1, "fisheye = false") +
+                                                   "[metadata]\nadjusted = false\nerror = 0.0\n");
+  CHECK(std::string(format_of(file)) == "pose2sim");
+  const CameraRig rig = read_cameras(file);
+  REQUIRE(rig.cameras.size() == 2);
+  CHECK(rig.cameras[1].name == "cam_02");
+  check_as_section(rig.cameras[0].camera, 1.0);
+  CHECK(rig.cameras[0].camera.distortion == std::vector<double>{0.1, -0.02, 0.003, 0.004});
+}
+
+TEST_CASE("camera formats: of several cameras one is chosen by name") {
+  const ScratchFolder folder;
+  const auto file =
+      folder.write("Calib.toml", section("cam_01", 1, "fisheye = false") +
+                                     section("cam_02", 1, "fisheye = false", "0.5, 0, 0, 0"));
+  CHECK_THROWS_WITH_AS(read_camera(file), doctest::Contains("(there are: cam_01, cam_02)"),
+                       InputError);
+  std::vector<std::string> assumed;
+  const Camera camera = read_camera(file.string() + ":cam_02", &assumed);
+  CHECK(camera.distortion.front() == 0.5);
+  REQUIRE(assumed.size() == 1);
+  CHECK(assumed[0].ends_with("cam_02: its world is z-up and in metres (pose2sim)"));
+  CHECK_THROWS_WITH_AS(read_camera(file.string() + ":cam_9"),
+                       doctest::Contains("no camera cam_9; there are: cam_01, cam_02"), InputError);
+  // A file whose own name has a colon, and a single camera without a name.
+  const auto odd = folder.write("a:b.toml", section("one", 1, "fisheye = false"));
+  check_as_section(read_camera(odd), 1.0);
+  check_as_section(read_camera(odd.string() + ":one"), 1.0);
+}
+
+TEST_CASE("camera formats: Anipose's units are told by how far the cameras stand") {
+  const ScratchFolder folder;
+  const auto file = folder.write(
+      "calibration.toml", section("cam_0", 1000, "", "0.1,\n 0, 0, 0, 0.2") + "[metadata]\n");
+  CHECK(std::string(format_of(file)) == "anipose");
+  check_as_section(read_camera(file), 0.001);
+  check_as_section(read_camera(folder.write("m.toml", section("cam_0", 1, "", "0, 0, 0, 0, 0"))),
+                   1.0);
+  // FreeMoCap's: the world is the first camera's, y down.
+  std::string text = section("cam_0", 1000, "fisheye = false", "0, 0, 0, 0, 0");
+  text.replace(text.find("1.5707963267948966"), 18, "0");
+  text.replace(text.find("0.0, 1200, 3000"), 15, "0, 0, 0");
+  const auto own = folder.write("own.toml", text + section("cam_1", 1000, "", "0, 0, 0, 0, 0"));
+  const CameraRig rig = read_cameras(own);
+  REQUIRE(rig.cameras.size() == 2);
+  CHECK(largest(rig.cameras[0].camera.camera_from_world.col(1) + Eigen::Vector3d::UnitY()) < 1e-12);
+  REQUIRE(rig.assumed.size() == 2);
+  CHECK(rig.assumed[0].find("image of cam_0") != std::string::npos);
+  CHECK(rig.assumed[1].find("millimetres") != std::string::npos);
+}
+
+TEST_CASE("camera formats: caliscope's rotations are matrices, its cameras lie deeper") {
+  const ScratchFolder folder;
+  std::string text = section("cameras.3", 1, "");
+  const std::string vector = "[ 1.5707963267948966, 0.0, 0,]";
+  text.replace(text.find(vector), vector.size(),
+               "[[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0]]");
+  text.replace(text.find("name = \"cameras.3\""), 18, "cam_id = 3");
+  const auto file = folder.write("camera_array.toml", text);
+  CHECK(std::string(format_of(file)) == "caliscope");
+  check_as_section(read_camera(file.string() + ":3"), 1.0);
+}
+
+TEST_CASE("camera formats: EasyMocap's two files are found from either") {
+  const ScratchFolder folder;
+  const auto matrix = [](const std::string& name, int rows, const std::string& data) {
+    return fmt::format("{}: !!opencv-matrix\n   rows: {}\n   cols: 3\n   dt: d\n   data: [ {} ]\n",
+                       name, rows, data);
+  };
+  const auto intri =
+      folder.write("intri.yml", "%YAML:1.0\n---\nnames:\n   - \"1\"\n   - \"b\"\n" +
+                                    matrix("K_1", 3, "900., 0., 960., 0., 901., 540., 0., 0., 1.") +
+                                    "dist_1: [ 0.1, 0., 0., 0., 0. ]\n" +
+                                    matrix("K_b", 3, "800., 0., 960., 0., 801., 540., 0., 0., 1."));
+  CHECK_THROWS_WITH_AS(read_cameras(intri), doctest::Contains("put extri.yml beside it"),
+                       InputError);
+  const auto extri =
+      folder.write("extri.yml", "%YAML:1.0\n---\nnames:\n   - \"1\"\n" +
+                                    matrix("R_1", 1, "1.5707963267948966, 0., 0.") +
+                                    matrix("Rot_1", 3, "1., 0., 0., 0., 0., -1., 0., 1., 0.") +
+                                    matrix("T_1", 1, "0., 1.2, 3."));
+  for (const auto& file : {intri, extri}) {
+    CHECK(std::string(format_of(file)) == "easymocap");
+    const CameraRig rig = read_cameras(file);
+    REQUIRE(rig.cameras.size() == 1);  // b has no pose
+    const Camera& camera = rig.cameras[0].camera;
+    CHECK(rig.cameras[0].name == "1");
+    CHECK(camera.fy_px == 901);
+    CHECK(camera.width_px == 1920);
+    CHECK(camera.height_px == 1080);
+    CHECK(camera.distortion.size() == 5);
+    CHECK((centre_m(camera) - Eigen::Vector3d(0, 1.2, 3)).norm() < 1e-9);
+    CHECK((up_of(camera) - Eigen::Vector3d(0, -1, 0)).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("camera formats: Qualisys' pixels are 64ths, its camera looks backwards with y up") {
+  const ScratchFolder folder;
+  const std::string text =
+      "<?xml version='1.0'?>\n<calibration>\n <cameras>\n  <camera serial=\"c7\" "
+      "viewrotation=\"90\">\n"
+      "   <fov_video left=\"0\" right=\"1279\" top=\"0\" bottom=\"719\"/>\n"
+      "   <transform r11=\"1\" r12=\"0\" r13=\"0\" r21=\"0\" r22=\"0\" r23=\"1\" r31=\"0\" "
+      "r32=\"-1\" r33=\"0\" x=\"0\" y=\"-3000\" z=\"1200\"/>\n"
+      "   <intrinsic focalLengthU=\"64032\" focalLengthV=\"64096\" centerPointU=\"40336\" "
+      "centerPointV=\"22448\" radialDistortion1=\"6.4\" radialDistortion2=\"-0.64\" "
+      "radialDistortion3=\"0\" tangentalDistortion1=\"0.064\" tangentalDistortion2=\"0.128\"/>\n"
+      "  </camera>\n </cameras>\n</calibration>\n";
+  const auto file = folder.write("a.qca.txt", text);
+  CHECK(std::string(format_of(file)) == "qualisys");
+  const CameraRig rig = read_cameras(file);
+  REQUIRE(rig.cameras.size() == 1);
+  CHECK(rig.cameras[0].name == "c7");
+  CHECK(rig.assumed.size() == 2);
+  check_as_section(rig.cameras[0].camera, 0.001);
+  CHECK(rig.cameras[0].camera.distortion[3] == doctest::Approx(0.002));
+  std::string broken = text;
+  broken.replace(broken.find("r33=\"0\""), 7, "r33=\"1\"");
+  CHECK_THROWS_WITH_AS(read_cameras(folder.write("b.txt", broken)),
+                       doctest::Contains("b.txt:4: c7: transform is not a rotation"), InputError);
+  broken.replace(broken.find("x=\"0\""), 5, "x=\"u\"");
+  CHECK_THROWS_AS(read_cameras(folder.write("b.txt", broken)), InputError);
+  CHECK_THROWS_WITH_AS(read_cameras(folder.write("b.txt", text.substr(0, text.find("</camera>")))),
+                       doctest::Contains("not XML"), InputError);
+}
+
+TEST_CASE("camera formats: VoxelPose's T is where the camera is, in millimetres") {
+  const ScratchFolder folder;
+  const std::string text =
+      R"({"0": {"R": [[1, 0, 0], [0, 0, -1], [0, 1, 0]], "T": [[0], [-3000], [1200]],
+          "fx": 1000.5, "fy": 1001.5, "cx": 640, "cy": 360, "k": [[0.1], [0], [0.3]],
+          "p": [[0], [0.2]]}})";
+  const auto file = folder.write("c.json", text);
+  CHECK(std::string(format_of(file)) == "voxelpose");
+  const Camera camera = read_camera(file);
+  CHECK(camera.width_px == 1280);
+  CHECK(camera.distortion == std::vector<double>{0.1, 0, 0, 0.2, 0.3});
+  CHECK((centre_m(camera) - Eigen::Vector3d(0, 1.2, 3)).norm() < 1e-9);
+  CHECK((up_of(camera) - Eigen::Vector3d(0, -1, 0)).norm() < 1e-9);
+  std::string broken = text;
+  broken.replace(broken.find("1000.5"), 6, "\"far\"");
+  CHECK_THROWS_WITH_AS(read_camera(folder.write("d.json", broken)),
+                       doctest::Contains("d.json: 0.fx:"), InputError);
+}
+
+TEST_CASE("camera formats: MHAD's cameras stand in clusters") {
+  const ScratchFolder folder;
+  const std::string text =
+      R"({"clusters": {"L1": {"R_world_to_cluster": [[1, 0, 0], [0, -1, 0], [0, 0, -1]],
+          "t_mm": [0, 1200, 3000], "cameras": {"C1": {"K": [[500, 0, 320], [0, 501, 240],
+          [0, 0, 1]], "dist_k1k2p1p2": [0.1, 0, 0, 0], "rel_t_mm": [-100, 0, 0],
+          "rel_rotvec_rad": [0, 0, 3.141592653589793]}}}}})";
+  const auto file = folder.write("c.json", text);
+  CHECK(std::string(format_of(file)) == "mhad");
+  const Camera camera = read_camera(file.string() + ":L1.C1");
+  CHECK(camera.width_px == 640);
+  CHECK(camera.fy_px == 501);
+  CHECK((centre_m(camera) - Eigen::Vector3d(-0.1, 1.2, 3)).norm() < 1e-9);
+  CHECK((up_of(camera) - Eigen::Vector3d(0, 1, 0)).norm() < 1e-9);  // it hangs upside down
+  std::string broken = text;
+  broken.replace(broken.find("t_mm\": [0,"), 10, "t_mm\": [");
+  CHECK_THROWS_WITH_AS(read_camera(folder.write("d.json", broken)),
+                       doctest::Contains("d.json: clusters.L1.t_mm: has 2 numbers"), InputError);
+}
+
+TEST_CASE("camera formats: what is wrong with a TOML is named with file, line and camera") {
+  const ScratchFolder folder;
+  const std::string good = section("cam_01", 1, "fisheye = false");
+  struct Case {
+    const char *from, *to, *message;
+  };
+  for (const Case& c :
+       {Case{"size = [ 1280.0, 720]", "size = [ 1280.5, 720]", ":3: cam_01: size is not a whole"},
+        Case{"size = [ 1280.0, 720]", "size = [ 1280 ]", ":3: cam_01: size has 1 numbers"},
+        Case{"1000.5", "-1000.5", ":4: cam_01: matrix has no focal length"},
+        Case{"1000.5", "\"f\"", ":4: cam_01: matrix holds something that is not a number"},
+        Case{"1000.5", "nan", ":4: cam_01: matrix holds a number that is not finite"},
+        Case{"0.1, -0.02, 0.003", "0.1, -0.02, inf", ":6: cam_01: distortions"},
+        Case{"rotation = [ 1.57", "rotation = [ 1, 1.57", ":7: cam_01: rotation is not 3x3"},
+        Case{"rotation", "turn", ":1: cam_01: rotation is missing"},
+        Case{"3,]", "nan,]", ":8: cam_01: translation holds"},
+        Case{"fisheye = false", "fisheye = true", ":9: cam_01: fisheye lenses are not read"},
+        Case{"1280.0, 720]", "1280.0, ", "bad.toml:"}}) {
+    CAPTURE(c.to);
+    std::string text = good;
+    REQUIRE(text.find(c.from) != std::string::npos);
+    text.replace(text.find(c.from), std::string(c.from).size(), c.to);
+    CHECK_THROWS_WITH_AS(read_cameras(folder.write("bad.toml", text)), doctest::Contains(c.message),
+                         InputError);
+  }
+}
+
+TEST_CASE("camera formats: what only nests, or is larger than any calibration, is refused unread") {
+  const ScratchFolder folder;
+  const auto many = [](const std::string& text, int times) {
+    std::string result;
+    for (int i = 0; i < times; ++i) result += text;
+    return result;
+  };
+  for (const std::string& text :
+       {"%YAML:1.0\n---\ncamera_matrix: " + many("[", 100'000),
+        "%YAML:1.0\n---\ncamera_matrix:\n" + many("- ", 100'000),
+        "{\"camera_matrix\": " + many("[", 100'000), "<opencv_storage>" + many("<a>", 100'000),
+        "[cam]\nmatrix = " + many("[", 100'000)}) {
+    CAPTURE(text.substr(0, 40));
+    CHECK_THROWS_WITH_AS(read_cameras(folder.write("deep.yml", text)),
+                         doctest::Contains("nested deeper"), InputError);
+  }
+  CHECK_THROWS_WITH_AS(read_cameras(folder.write("big.yml", many("# 89 123456\n", 400'000))),
+                       doctest::Contains("larger than any"), InputError);
+  CHECK_THROWS_WITH_AS(read_cameras(folder.write("text.yml", "hello\n")),
+                       doctest::Contains("not a camera file of a known format (easymocap, "),
+                       InputError);
+}
+
+TEST_CASE("camera formats: real calibrations") {
+  struct Case {
+    const char *file, *format, *first;
+    int cameras;
+    double farthest_m;
+  };
+  for (const Case& c : {
+           Case{"formats/calibration/pose2sim_toml/Calib_qualisys.toml", "pose2sim", "cam_01", 4,
+                6},
+           Case{"formats/calibration/pose2sim_toml/Pose2Sim_cameras.toml", "pose2sim", "cam_01", 4,
+                6},
+           Case{"formats/calibration/pose2sim_toml/Sports2D_Calib_demo.toml", "pose2sim", "demo", 1,
+                12},
+           Case{"formats/calibration/caliscope_toml/camera_array.toml", "caliscope", "0", 4, 4},
+           Case{"formats/calibration/caliscope_toml/config.toml", "caliscope", "cam_0", 4, 4},
+           Case{"formats/calibration/easymocap_yml/intri.yml", "easymocap", "2", 6, 9},
+           Case{"formats/calibration/easymocap_yml/extri.yml", "easymocap", "2", 6, 9},
+           Case{"formats/calibration/qualisys_qca/Calib.qca.txt", "qualisys", "cam01", 4, 6},
+           Case{"formats/calibration/voxelpose_json/calibration_shelf.json", "voxelpose", "0", 5,
+                9},
+           Case{"formats/calibration/voxelpose_json/calibration_campus.json", "voxelpose", "0", 3,
+                15},
+           Case{"mhad/camera-calibration.json", "mhad", "K1.C1", 14, 6},
+       }) {
+    if (!test::have_shared_data(c.file, "camera formats")) continue;
+    const auto path = test::shared_data() / c.file;
+    CAPTURE(c.file);
+    CHECK(std::string(format_of(path)) == c.format);
+    const CameraRig rig = read_cameras(path);
+    CHECK(rig.cameras.size() == static_cast<std::size_t>(c.cameras));
+    CHECK(rig.cameras.front().name == c.first);
+    for (const NamedCamera& named : rig.cameras) {
+      CAPTURE(named.name);
+      const Eigen::Vector3d centre = centre_m(named.camera), up = up_of(named.camera);
+      CHECK(centre.norm() < c.farthest_m);
+      CHECK(centre.y() > -0.5);
+      // Every one of them stands upright or rolls a little: up in the world is up in the image.
+      CHECK(up.y() < -0.5);
+    }
+  }
+}
+
+TEST_CASE("camera formats: Qualisys' file and Pose2Sim's of one session are the same cameras") {
+  const std::string folder = "formats/calibration/";
+  if (!test::have_shared_data(folder, "camera formats")) return;
+  const CameraRig a = read_cameras(test::shared_data() / folder / "qualisys_qca/Calib.qca.txt"),
+                  b = read_cameras(test::shared_data() / folder /
+                                   "pose2sim_toml/Calib_qualisys.toml");
+  REQUIRE(a.cameras.size() == b.cameras.size());
+  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
+    const Camera &one = a.cameras[i].camera, &other = b.cameras[i].camera;
+    CHECK(largest(one.camera_from_world - other.camera_from_world) < 1e-6);
+    CHECK((centre_m(one) - centre_m(other)).norm() < 1e-5);
+    CHECK(one.fx_px == doctest::Approx(other.fx_px));
+    CHECK(one.cy_px == doctest::Approx(other.cy_px));
+    CHECK(one.width_px == other.width_px);
+    CHECK(one.height_px == other.height_px);
+    for (int k = 0; k < 4; ++k)
+      CHECK(one.distortion[static_cast<std::size_t>(k)] ==
+            doctest::Approx(other.distortion[static_cast<std::size_t>(k)]));
+  }
+}
