@@ -214,6 +214,7 @@ ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
   score.pcc_channel = pearson_per_channel(turned(real.rightCols(joints), axes),
                                           turned(other.rightCols(joints), axes));
   score.error = joint_error(real, other, truth.motion.fps(), 0);
+  score.limbs = limb_error(limb_positions_mm(truth.motion), limb_positions_mm(regenerated));
   const MatrixD path = joint_positions(regenerated).middleCols(3 * root, 3);
   const double mm = 1000.0 / file_units_per_metre(truth.motion.skeleton);
   score.root_mm = mm * (path - truth.root_position).rowwise().norm().mean();

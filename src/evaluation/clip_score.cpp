@@ -34,6 +34,9 @@ ClipScore mean_score(const std::vector<ClipScore>& scores) {
       mean([](const S& s) { return s.error.acceleration_error_mm_s2; });
   result.error.pck_150mm = mean([](const S& s) { return s.error.pck_150mm; });
   result.error.rmse_mm = mean([](const S& s) { return s.error.rmse_mm; });
+  result.limbs.mpjpe_mm = mean([](const S& s) { return s.limbs.mpjpe_mm; });
+  result.limbs.turned_mpjpe_mm = mean([](const S& s) { return s.limbs.turned_mpjpe_mm; });
+  result.limbs.pa_mpjpe_mm = mean([](const S& s) { return s.limbs.pa_mpjpe_mm; });
   result.bone_length_spread_mm = mean([](const S& s) { return s.bone_length_spread_mm; });
   result.foot_slide.truth_mm_s = mean([](const S& s) { return s.foot_slide.truth_mm_s; });
   result.foot_slide.regenerated_mm_s =
@@ -49,6 +52,11 @@ const std::vector<ScoreFigure>& score_figures() {
       {"pcc_channel", "PCC, per channel", [](const S& s) { return s.pcc_channel; }, false},
       {"mpjpe_mm", "MPJPE (mm)", [](const S& s) { return s.error.mpjpe_mm; }, true},
       {"pa_mpjpe_mm", "PA-MPJPE (mm)", [](const S& s) { return s.error.pa_mpjpe_mm; }, true},
+      {"limb_mpjpe_mm", "MPJPE, limbs (mm)", [](const S& s) { return s.limbs.mpjpe_mm; }, true},
+      {"limb_turned_mpjpe_mm", "MPJPE, limbs, one rotation (mm)",
+       [](const S& s) { return s.limbs.turned_mpjpe_mm; }, true},
+      {"limb_pa_mpjpe_mm", "PA-MPJPE, limbs (mm)", [](const S& s) { return s.limbs.pa_mpjpe_mm; },
+       true},
       {"mpjve_mm_s", "MPJVE (mm/s)", [](const S& s) { return s.error.mpjve_mm_s; }, true},
       {"acceleration_error_mm_s2", "Acceleration error (mm/s²)",
        [](const S& s) { return s.error.acceleration_error_mm_s2; }, true},

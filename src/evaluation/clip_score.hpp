@@ -13,6 +13,7 @@ struct ClipScore {
   double pcc_flat = 0;     ///< the paper's figure
   double pcc_channel = 0;  ///< mean over channels: the strict one
   JointError error;
+  LimbError limbs;
   double root_mm = 0;  ///< mean distance of the regenerated root from the true one, in the world
   FootSlide foot_slide;
   double bone_length_spread_mm = 0;

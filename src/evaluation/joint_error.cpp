@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 
+#include "evaluation/procrustes.hpp"
 #include "evaluation/relative_to_root.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -35,24 +35,6 @@ MatrixD rate_of_change(const MatrixD& values, double fps) {
 
 double mean_or_nan(const MatrixD& values) {
   return values.size() ? values.mean() : std::numeric_limits<double>::quiet_NaN();
-}
-
-/// What is left of one frame's difference after the best similarity transform (Umeyama 1991).
-MatrixD procrustes_residual(const Eigen::Ref<const RowVectorD>& truth,
-                            const Eigen::Ref<const RowVectorD>& regenerated) {
-  using Points = Eigen::Map<const Eigen::Matrix3Xd>;
-  const Points target(truth.data(), 3, truth.size() / 3);
-  const Points source(regenerated.data(), 3, regenerated.size() / 3);
-  const Eigen::Vector3d centre = source.rowwise().mean();
-  const bool one_point = (source.colwise() - centre).squaredNorm() == 0;
-  // A body that is a single point has no orientation and no size: only its position can be fitted.
-  const Eigen::Matrix4d fit =
-      one_point ? Eigen::Affine3d(Eigen::Translation3d(target.rowwise().mean() - centre)).matrix()
-                : Eigen::Matrix4d(Eigen::umeyama(source, target, true));
-  const Eigen::Matrix3Xd aligned =
-      (fit.topLeftCorner<3, 3>() * source).colwise() + fit.topRightCorner<3, 1>();
-  const Eigen::Matrix3Xd residual = aligned - target;
-  return Eigen::Map<const RowVectorD>(residual.data(), residual.size());
 }
 
 void check(const MatrixD& truth, const MatrixD& regenerated, int root_joint) {

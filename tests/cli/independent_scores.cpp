@@ -133,6 +133,17 @@ double mean_difference(const Points& a, const Points& b, int order, double fps) 
   return sum / static_cast<double>(change.size());
 }
 
+/// The rotation nearest to `s`, source times target (Horn 1987).
+Eigen::Matrix3d turn_by_horn(const Eigen::Matrix3d& s) {
+  Eigen::Matrix4d n;
+  n << s.trace(), s(1, 2) - s(2, 1), s(2, 0) - s(0, 2), s(0, 1) - s(1, 0),  //
+      s(1, 2) - s(2, 1), s(0, 0) - s(1, 1) - s(2, 2), s(0, 1) + s(1, 0), s(2, 0) + s(0, 2),
+      s(2, 0) - s(0, 2), s(0, 1) + s(1, 0), s(1, 1) - s(0, 0) - s(2, 2), s(1, 2) + s(2, 1),
+      s(0, 1) - s(1, 0), s(2, 0) + s(0, 2), s(1, 2) + s(2, 1), s(2, 2) - s(0, 0) - s(1, 1);
+  const Eigen::Vector4d q = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(n).eigenvectors().col(3);
+  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+}
+
 /// Mean joint distance of a frame after the best similarity (Horn 1987), the root among the points.
 double aligned_distance(const Eigen::Matrix3Xd& truth, const Eigen::Matrix3Xd& other) {
   Eigen::Matrix3Xd target(3, truth.cols() + 1), source(3, truth.cols() + 1);
@@ -143,15 +154,43 @@ double aligned_distance(const Eigen::Matrix3Xd& truth, const Eigen::Matrix3Xd& o
   target.colwise() -= target_centre;
   source.colwise() -= source_centre;
   const Eigen::Matrix3d s = source * target.transpose();
-  Eigen::Matrix4d n;
-  n << s.trace(), s(1, 2) - s(2, 1), s(2, 0) - s(0, 2), s(0, 1) - s(1, 0),  //
-      s(1, 2) - s(2, 1), s(0, 0) - s(1, 1) - s(2, 2), s(0, 1) + s(1, 0), s(2, 0) + s(0, 2),
-      s(2, 0) - s(0, 2), s(0, 1) + s(1, 0), s(1, 1) - s(0, 0) - s(2, 2), s(1, 2) + s(2, 1),
-      s(0, 1) - s(1, 0), s(2, 0) + s(0, 2), s(1, 2) + s(2, 1), s(2, 2) - s(0, 0) - s(1, 1);
-  const Eigen::Vector4d q = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(n).eigenvectors().col(3);
-  const Eigen::Matrix3d turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+  const Eigen::Matrix3d turn = turn_by_horn(s);
   const double scale = (turn * s).trace() / source.squaredNorm();
   return (scale * turn * source - target).rightCols(truth.cols()).colwise().norm().mean();
+}
+
+/// The 12 joints of limbs relative to the middle of the hips, by CMU's names. @return [3 x 12] each
+Points limbs_of(const Points& places, const Skeleton& skeleton, double mm) {
+  Points limbs;
+  for (const Eigen::Matrix3Xd& frame : places) {
+    const auto at = [&](const std::string& name) -> Eigen::Vector3d {
+      return mm * frame.col(skeleton.find(name));
+    };
+    const Eigen::Vector3d hips = (at("LeftUpLeg") + at("RightUpLeg")) / 2;
+    Eigen::Matrix3Xd points(3, 12);
+    Eigen::Index column = 0;
+    for (const char* joint : {"Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot"})
+      for (const char* side : {"Left", "Right"})
+        points.col(column++) = at(std::string(side) + joint) - hips;
+    limbs.push_back(points);
+  }
+  return limbs;
+}
+
+/// Of all frames in a row, the root not moved: Horn's quaternion once more.
+Eigen::Matrix3d best_turn(const Points& targets, const Points& sources) {
+  Eigen::Matrix3d s = Eigen::Matrix3d::Zero();
+  for (std::size_t t = 0; t < targets.size(); ++t) s += sources[t] * targets[t].transpose();
+  return turn_by_horn(s);
+}
+
+/// After the best similarity of each frame.
+double aligned_limbs(const Eigen::Matrix3Xd& truth, const Eigen::Matrix3Xd& other) {
+  Eigen::Matrix3Xd target = truth.colwise() - truth.rowwise().mean(),
+                   source = other.colwise() - other.rowwise().mean();
+  const Eigen::Matrix3d s = source * target.transpose(), turn = turn_by_horn(s);
+  const double scale = (turn * s).trace() / source.squaredNorm();
+  return (scale * turn * source - target).colwise().norm().mean();
 }
 
 bool is_foot(std::string name) {
@@ -232,6 +271,18 @@ std::map<std::string, double> independent_scores(const Motion& truth, const Moti
   scores["rmse_mm"] = std::sqrt(square);
   scores["pck_150mm"] = within;
   scores["root_mm"] = root;
+  const Points limbs = limbs_of(real, truth.skeleton, mm),
+               made = limbs_of(other, regenerated.skeleton, other_mm);
+  const Eigen::Matrix3d turn = best_turn(limbs, made);
+  double limb = 0, turned = 0, limb_aligned = 0;
+  for (std::size_t t = 0; t < limbs.size(); ++t) {
+    limb += (made[t] - limbs[t]).colwise().norm().mean() / frames;
+    turned += (turn * made[t] - limbs[t]).colwise().norm().mean() / frames;
+    limb_aligned += aligned_limbs(limbs[t], made[t]) / frames;
+  }
+  scores["limb_mpjpe_mm"] = limb;
+  scores["limb_turned_mpjpe_mm"] = turned;
+  scores["limb_pa_mpjpe_mm"] = limb_aligned;
   scores["foot_slide_of_truth_mm_s"] = foot_slide(real, real, truth, mm);
   scores["foot_slide_mm_s"] = foot_slide(real, other, truth, mm);
   scores["bone_length_spread_mm"] = bone_spread(other, regenerated.skeleton, other_mm);

@@ -14,6 +14,9 @@ const std::map<std::string, Line>& lines() {
                                                   {"pcc_channel", {0.85, -0.0023}},
                                                   {"mpjpe_mm", {20, 1}},
                                                   {"pa_mpjpe_mm", {11, 0.7}},
+                                                  {"limb_mpjpe_mm", {31, 1.1}},
+                                                  {"limb_turned_mpjpe_mm", {28, 0.9}},
+                                                  {"limb_pa_mpjpe_mm", {19, 0.8}},
                                                   {"mpjve_mm_s", {100, 3}},
                                                   {"acceleration_error_mm_s2", {1000, 5}},
                                                   {"pck_150mm", {0.95, -0.001}},
@@ -70,6 +73,7 @@ ClipScore numbered_score(double number) {
   score.error.acceleration_error_mm_s2 = at("acceleration_error_mm_s2");
   score.error.pck_150mm = at("pck_150mm");
   score.error.rmse_mm = at("rmse_mm");
+  score.limbs = {at("limb_mpjpe_mm"), at("limb_turned_mpjpe_mm"), at("limb_pa_mpjpe_mm")};
   score.root_mm = at("root_mm");
   score.foot_slide = {at("foot_slide_of_truth_mm_s"), at("foot_slide_mm_s"), 4};
   score.bone_length_spread_mm = at("bone_length_spread_mm");
