@@ -1,13 +1,16 @@
 #include "base/npy.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <bit>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -70,16 +73,16 @@ std::vector<std::size_t> shape_of(std::string_view header) {
 }
 
 template <typename Stored>
-float number_at(const char* data, std::size_t index) {
+double number_at(const char* data, std::size_t index) {
   Stored value;
   std::memcpy(&value, data + index * sizeof(Stored), sizeof(Stored));
-  return static_cast<float>(value);
+  return static_cast<double>(value);
 }
 
 struct NumberType {
   std::string_view name;
   std::size_t bytes;
-  float (*read)(const char* data, std::size_t index);
+  double (*read)(const char* data, std::size_t index);
 };
 
 template <typename Stored>
@@ -124,35 +127,35 @@ Parts split(std::string_view bytes) {
   return {bytes.substr(0, length), bytes.substr(length)};
 }
 
-}  // namespace
+struct Stored {
+  const NumberType& type;
+  bool by_columns;
+  std::vector<std::size_t> shape;
+  std::string_view data;
+};
 
-MatrixF npy_matrix(std::string_view bytes) {
+Stored stored_in(std::string_view bytes) {
   const auto [header, data] = split(bytes);
-  const NumberType& type = number_type_of(text_of(header, "descr"));
-  const bool by_columns = truth_of(header, "fortran_order");
-  std::vector<std::size_t> shape = shape_of(header);
-  if (shape.size() == 1) shape.push_back(1);
-  if (shape.size() != 2) fail(fmt::format("{} dimensions; 2 are wanted", shape.size()));
-  const std::size_t rows = shape[0], columns = shape[1], stored = data.size() / type.bytes;
-  const bool fits =
-      rows == 0 || columns == 0
-          ? data.empty()
-          : data.size() % type.bytes == 0 && stored % columns == 0 && stored / columns == rows;
-  if (!fits)
-    fail(fmt::format("{} bytes of numbers, not {} x {} of type '{}'", data.size(), rows, columns,
-                     type.name));
-  MatrixF values(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
-  for (std::size_t r = 0; r < rows; ++r)
-    for (std::size_t c = 0; c < columns; ++c)
-      values(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) =
-          type.read(data.data(), by_columns ? c * rows + r : r * columns + c);
-  return values;
+  Stored stored{number_type_of(text_of(header, "descr")), truth_of(header, "fortran_order"),
+                shape_of(header), data};
+  // Divided, not multiplied: the product of a wrong shape may be any number.
+  std::size_t left = data.size() / stored.type.bytes;
+  bool fits = data.size() % stored.type.bytes == 0, none = false;
+  for (const std::size_t extent : stored.shape) {
+    none = none || extent == 0;
+    fits = fits && (none || left % extent == 0);
+    if (fits && !none) left /= extent;
+  }
+  if (none ? !data.empty() : !fits || left != 1)
+    fail(fmt::format("{} bytes of numbers, not {} of type '{}'", data.size(),
+                     fmt::join(stored.shape, " x "), stored.type.name));
+  return stored;
 }
 
-std::string npy_bytes(const MatrixF& values) {
-  std::string header =
-      fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", values.rows(),
-                  values.cols());
+std::string bytes_of(std::string_view type, const std::vector<std::size_t>& shape,
+                     std::string_view data) {
+  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}{}), }}",
+                                   type, fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
   const std::size_t before = kMagic.size() + 4;  // version and length
   const std::size_t unpadded = before + header.size() + 1;
   header.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ');
@@ -162,9 +165,54 @@ std::string npy_bytes(const MatrixF& values) {
   bytes += std::string_view("\x01\x00", 2);
   bytes.append(reinterpret_cast<const char*>(&length), sizeof(length));
   bytes += header;
-  bytes.append(reinterpret_cast<const char*>(values.data()),
-               static_cast<std::size_t>(values.size()) * sizeof(float));
-  return bytes;
+  return bytes.append(data);
+}
+
+}  // namespace
+
+NpyArray npy_array(std::string_view bytes) {
+  const Stored stored = stored_in(bytes);
+  NpyArray array{stored.shape, {}};
+  std::vector<std::size_t> at(array.shape.size());
+  const std::size_t count =
+      std::accumulate(array.shape.begin(), array.shape.end(), std::size_t{1}, std::multiplies<>());
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t index = i;
+    if (stored.by_columns) {
+      index = 0;
+      for (std::size_t d = at.size(); d-- > 0;) index = index * array.shape[d] + at[d];
+    }
+    array.values.push_back(stored.type.read(stored.data.data(), index));
+    for (std::size_t d = at.size(); d-- > 0 && ++at[d] == array.shape[d];) at[d] = 0;
+  }
+  return array;
+}
+
+std::string npy_bytes(const NpyArray& array) {
+  return bytes_of(
+      "<f8", array.shape,
+      {reinterpret_cast<const char*>(array.values.data()), array.values.size() * sizeof(double)});
+}
+
+MatrixF npy_matrix(std::string_view bytes) {
+  const Stored stored = stored_in(bytes);
+  const std::vector<std::size_t>& shape = stored.shape;
+  if (shape.empty() || shape.size() > 2)
+    fail(fmt::format("{} dimensions; 2 are wanted", shape.size()));
+  const std::size_t rows = shape[0], columns = shape.size() == 1 ? 1 : shape[1];
+  MatrixF values(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t c = 0; c < columns; ++c)
+      values(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = static_cast<float>(
+          stored.type.read(stored.data.data(), stored.by_columns ? c * rows + r : r * columns + c));
+  return values;
+}
+
+std::string npy_bytes(const MatrixF& values) {
+  return bytes_of(
+      "<f4", {static_cast<std::size_t>(values.rows()), static_cast<std::size_t>(values.cols())},
+      {reinterpret_cast<const char*>(values.data()),
+       static_cast<std::size_t>(values.size()) * sizeof(float)});
 }
 
 }  // namespace mcdbn

@@ -1,7 +1,11 @@
 #include "formats/csv_text.hpp"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
+
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 
@@ -28,6 +32,12 @@ std::optional<double> number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || std::isinf(value)) return {};
   return value;
+}
+
+void require_csv_name(const std::string& name) {
+  if (name.find_first_of(",;\t\n\r#\"") == std::string::npos && trimmed(name) == name) return;
+  throw InputError(
+      fmt::format("joint name '{}' cannot stand in a CSV header; rename the joint", name));
 }
 
 }  // namespace mcdbn

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,5 +14,8 @@ std::vector<std::string_view> split(std::string_view text, char separator);
 
 /// The number that the whole of `text` is, if it is one; `nan` is one, infinity is not.
 std::optional<double> number(std::string_view text);
+
+/// @throws InputError if a joint of that name cannot stand in a CSV header
+void require_csv_name(const std::string& name);
 
 }  // namespace mcdbn

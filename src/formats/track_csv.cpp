@@ -239,8 +239,7 @@ SeenPeople read(const TrackSource& source) {
     const auto row_of = [&](const MatrixD& values) {
       return std::vector<double>(values.row(frame).begin(), values.row(frame).end());
     };
-    people.frames[frame] = {
-        {row_of(track.x_px), row_of(track.y_px), row_of(track.confidence), 1}};
+    people.frames[frame] = {{row_of(track.x_px), row_of(track.y_px), row_of(track.confidence), 1}};
   }
   if (reader.says_fps()) people.fps = track.fps;
   people.image_size = ImageSize{track.width_px, track.height_px};
@@ -263,10 +262,7 @@ void write_track_csv(const std::filesystem::path& path, const Track2d& track) {
                                  track.height_px);
   for (int joint = 0; joint < track.joint_count(); ++joint) {
     const std::string& name = track.joint_names[joint];
-    if (name.find_first_of(",\n\r#") != std::string::npos || trimmed(name) != name) {
-      throw InputError(
-          fmt::format("joint name '{}' cannot stand in a CSV header; rename the joint", name));
-    }
+    require_csv_name(name);
     text += fmt::format("{1}{0}_x_px,{0}_y_px,{0}_confidence", name, joint == 0 ? "" : ",");
   }
   text += '\n';

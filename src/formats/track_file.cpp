@@ -39,8 +39,12 @@ const TrackFormat& format_to_read(const TrackSource& source, const std::string& 
 }  // namespace
 
 const std::vector<TrackFormat>& track_formats() {
-  static const std::vector<TrackFormat> formats{track_csv_format(), track_openpose_format(),
-                                                track_coco_format()};
+  static const std::vector<TrackFormat> formats{
+      track_csv_format(),       track_openpose_format(), track_alphapose_format(),
+      track_coco_format(),      track_mmpose_format(),   track_deeplabcut_format(),
+      track_sleap_format(),     track_npy_format(),
+      track_mediapipe_format(),  // it knows the most layouts: last
+  };
   return formats;
 }
 

@@ -10,5 +10,11 @@ namespace mcdbn {
 TrackFormat track_csv_format();
 TrackFormat track_openpose_format();
 TrackFormat track_coco_format();
+TrackFormat track_alphapose_format();
+TrackFormat track_mmpose_format();
+TrackFormat track_mediapipe_format();
+TrackFormat track_deeplabcut_format();
+TrackFormat track_sleap_format();
+TrackFormat track_npy_format();
 
 }  // namespace mcdbn

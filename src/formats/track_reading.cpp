@@ -95,9 +95,19 @@ ImageSize guessed_image(const Extent& extent) {
   return {std::max(whole(extent.most_x), 1), std::max(whole(extent.most_y), 1)};
 }
 
+/// Whether a fifth of the coordinates are below 0, as no picture shows a body.
+bool is_about_zero(Frames& frames) {
+  int below = 0, all = 0;
+  for_each_joint(frames, [&](double x, double y, double) {
+    below += (x < 0 ? 1 : 0) + (y < 0 ? 1 : 0);
+    all += 2;
+  });
+  return 5 * below > all;
+}
+
 /// Coordinates that are shares of the image become pixels. @return the image's size
 ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadOptions& options,
-                        std::vector<std::string>& notices) {
+                        const std::string& file, std::vector<std::string>& notices) {
   const Extent extent = extent_of(frames);
   const std::optional<ImageSize> known = options.image_size ? options.image_size : seen.image_size;
   if (extent.most_x < extent.least_x) return known.value_or(kUsualImage);  // nothing was seen
@@ -112,6 +122,11 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
         guess.width_px, guess.height_px, extent.most_x, extent.most_y));
     return guess;
   }
+  if (is_about_zero(frames))
+    throw InputError(
+        fmt::format("{}: its coordinates lie about 0: a body in space (world landmarks, "
+                    "metres), not places in an image",
+                    file));
   const ImageSize size = known.value_or(kUsualImage);
   notices.push_back(fmt::format(
       "coordinates are shares of the image, taken as {} x {} px{}", size.width_px, size.height_px,
@@ -221,7 +236,7 @@ TrackReading tracks_of(SeenPeople seen, const TrackReadOptions& options, const s
     std::erase_if(people, [](const SeenPerson& person) {
       return std::ranges::none_of(person.confidence, [](double c) { return c > 0; });
     });
-  const ImageSize size = put_in_pixels(frames, seen, options, reading.notices);
+  const ImageSize size = put_in_pixels(frames, seen, options, file, reading.notices);
   limit_confidences(frames, reading.notices);
   if (!options.fps && !seen.fps)
     reading.notices.push_back(

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mcdbn/base/errors.hpp"
 #include "shared_data.hpp"
 
 using namespace mcdbn;
@@ -38,7 +39,21 @@ const std::vector<RealTrack>& real_tracks() {
        "BODY_25B", 25, 12, 1},
       {"formats/coco17_annotation/test_coco.json", "coco", "COCO_17", 17, 4, 6},
       {"formats/coco17_results/person_keypoints_val2014_fakekeypoints100_results.json", "coco",
-       "COCO_17", 17, 47, 10},
+       "COCO_17", 17, 47, 11},
+      {"formats/alphapose_halpe26/alphapose-results_first60.json", "alphapose", "HALPE_26", 26, 60,
+       1},
+      {"formats/alphapose_halpe26/alphapose-results_multi_60frames.json", "alphapose", "HALPE_26",
+       26, 60, 3},
+      {"formats/blazepose_json/pose_squats.full.json", "mediapipe", "MEDIAPIPE_33", 33, 65, 1},
+      {"formats/movenet_json/pose_1.json", "mediapipe", "", 17, 120, 1},
+      {"formats/deeplabcut/mouse_single.csv", "deeplabcut", "", 8, 11, 1},
+      {"formats/deeplabcut/wasp_single.csv", "deeplabcut", "", 2, 11, 1},
+      {"formats/deeplabcut/mouse_multi.csv", "deeplabcut", "", 12, 27, 2},
+      {"formats/deeplabcut/maudlc_labels_testdata.csv", "deeplabcut", "", 5, 4, 3},
+      {"formats/lightningpose/mouse_single.csv", "deeplabcut", "", 12, 11, 1},
+      {"formats/sleap_csv/SLEAP_two-flies_sleap-io.analysis_rows.csv", "sleap", "", 13, 2, 2},
+      {"pose2d/sports2d-demo/mediapipe_pose_full.csv", "csv", "MEDIAPIPE_33", 33, 230, 1},
+      {"pose2d/sports2d-demo/mediapipe_walker.csv", "csv", "MEDIAPIPE_33", 33, 230, 1},
   };
   return tracks;
 }
@@ -62,5 +77,15 @@ TEST_CASE("real tracks: every file is recognised and read as what it is") {
     CHECK((track.confidence.array() >= 0).all());
     CHECK((track.confidence.array() <= 1).all());
     CHECK((track.x_px.array().isNaN() == (track.confidence.array() == 0)).all());
+  }
+}
+
+TEST_CASE("real tracks: points in space are refused") {
+  for (const auto& [path, message] :
+       {std::pair{"formats/blazepose_json/pose_squats_3d.full.json", "a body in space"},
+        std::pair{"formats/freemocap_csv/freemocap_test_data_by_frame.csv", "points in space"}}) {
+    CAPTURE(path);
+    if (!have_shared_data(path, "real tracks")) continue;
+    CHECK_THROWS_WITH_AS(read_track(shared_data() / path), doctest::Contains(message), InputError);
   }
 }

@@ -1,0 +1,71 @@
+#include "formats/csv_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+
+#include "formats/csv_text.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// The separator that a header has most of.
+char separator_of(std::string_view line) {
+  char best = ',';
+  for (const char separator : {';', '\t'})
+    if (std::ranges::count(line, separator) > std::ranges::count(line, best)) best = separator;
+  return best;
+}
+
+std::string_view without_quotes(std::string_view cell) {
+  if (cell.size() < 2 || cell.front() != cell.back()) return cell;
+  return cell.front() == '"' || cell.front() == '\'' ? trimmed(cell.substr(1, cell.size() - 2))
+                                                     : cell;
+}
+
+}  // namespace
+
+CsvTable::CsvTable(std::string_view text, std::string file, std::size_t most)
+    : file_(std::move(file)) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  char separator = '\0';
+  for (int number = 1; !text.empty() && lines_.size() < most; ++number) {
+    const auto end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (trimmed(line).empty() || trimmed(line).front() == '#') continue;
+    if (separator == '\0') separator = separator_of(line);
+    lines_.push_back({number, split(line, separator)});
+    for (std::string_view& cell : lines_.back().cells) cell = without_quotes(cell);
+  }
+}
+
+double CsvTable::number_in(const Line& line, std::size_t column) const {
+  const std::string_view cell = column < line.cells.size() ? line.cells[column] : "";
+  if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const std::optional<double> value = number(cell);
+  if (!value) fail(line, fmt::format("'{}' in column {} is not a number", cell, column + 1));
+  return *value;
+}
+
+void CsvTable::require_cells(const Line& line, std::size_t cells) const {
+  if (line.cells.size() != cells)
+    fail(line, fmt::format("{} cells where the header has {} columns", line.cells.size(), cells));
+}
+
+void CsvTable::fail(const Line& line, const std::string& what) const {
+  throw InputError(fmt::format("{}:{}: {}", file_, line.number, what));
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(),
+                         [](unsigned char letter) { return std::tolower(letter); });
+  return result;
+}
+
+}  // namespace mcdbn

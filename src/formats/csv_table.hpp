@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mcdbn {
+
+/// The lines of a CSV that are neither empty nor comments (#), between commas, semicolons or tabs,
+/// as the first line has them; quotes around cells are taken off.
+class CsvTable {
+ public:
+  struct Line {
+    int number;  ///< in the file, from 1 on
+    std::vector<std::string_view> cells;
+  };
+
+  /// @param text is looked at as long as the table lives  @param most lines to read
+  CsvTable(std::string_view text, std::string file, std::size_t most = ~std::size_t{0});
+
+  const std::vector<Line>& lines() const { return lines_; }
+
+  /// The number in a cell; NaN where it is empty, or the line ends before it. @throws InputError
+  /// `file:line: what`
+  double number_in(const Line& line, std::size_t column) const;
+  /// @throws InputError if the line has another number of cells
+  void require_cells(const Line& line, std::size_t cells) const;
+  [[noreturn]] void fail(const Line& line, const std::string& what) const;
+
+ private:
+  std::string file_;
+  std::vector<Line> lines_;
+};
+
+/// In lower case.
+std::string lower(std::string_view text);
+
+}  // namespace mcdbn

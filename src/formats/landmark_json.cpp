@@ -1,0 +1,185 @@
+// JSON of landmarks: of each frame a list of {x, y, z, visibility} or of [x, y, z]; an object that
+// holds such a list; an object of named landmarks; a list of such bodies. So MediaPipe's and
+// TensorFlow.js' results are saved.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "formats/frame_numbers.hpp"
+#include "formats/joint_naming.hpp"
+#include "formats/landmarks.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr std::array kBodyKeys{"landmarks", "pose_landmarks", "poseLandmarks", "landmark",
+                               "keypoints", "joints",         "pose",          "poses",
+                               "bodies",    "people",         "detections"};
+constexpr std::array kFrameKeys{"frame", "frame_id", "frame_idx", "frame_number", "frameNumber"};
+constexpr std::array kConfidenceKeys{"visibility", "score", "confidence", "presence", "v"};
+
+/// The value of the first of these keys that an object has.
+template <typename Keys>
+std::optional<JsonPlace> any_of_keys(const JsonPlace& place, const Keys& keys) {
+  for (const char* key : keys)
+    if (place.has(key)) return place[key];
+  return {};
+}
+
+bool is_landmark(const JsonPlace& place) {
+  if (place.is_object()) return (place.has("x") && place.has("y")) || place.has("position");
+  if (!place.is_list() || place.size() < 2 || place.size() > 5) return false;
+  return std::ranges::all_of(
+      place.value(), [](const auto& value) { return value.is_number() || value.is_null(); });
+}
+
+/// A list of landmarks, or an object of nothing else.
+bool is_body(const JsonPlace& place) {
+  if (place.size() < 5) return false;
+  if (place.is_list()) return is_landmark(place.at(0));
+  return place.is_object() && std::ranges::all_of(place.keys(), [&](const std::string& key) {
+           return is_landmark(place[key]);
+         });
+}
+
+class LandmarkReader {
+ public:
+  explicit LandmarkReader(const std::string& file) : file_(file) {}
+
+  SeenPeople read(const JsonPlace& content) {
+    if (content.is_object() && content.has("fps")) people_.fps = content["fps"].number();
+    if (people_.fps && !(*people_.fps > 0)) content["fps"].fail("a rate is above 0");
+    add_all(content);
+    judge_third_numbers();
+    for (auto& [number, frame] : people_.frames)
+      for (SeenPerson& person : frame) mark_missing(person);
+    if (!names_.empty() && are_only_numbered(names_)) names_.clear();
+    name_joints_by_count(people_, file_, names_);
+    return std::move(people_);
+  }
+
+ private:
+  void add_all(const JsonPlace& content) {
+    if (content.is_object() && content.has("frames")) return add_all(content["frames"]);
+    if (is_body(content)) return add_frame(content, 0);
+    if (content.is_list()) {
+      long long next = 0;
+      for (const JsonPlace& frame : content.list()) {
+        const auto said = any_of_keys(frame, kFrameKeys);
+        const long long number = said && said->value().is_number() ? said->whole_number() : next;
+        add_frame(frame, number);
+        next = number + 1;
+      }
+      return;
+    }
+    if (any_of_keys(content, kBodyKeys)) return add_frame(content, 0);
+    for (const std::string& key : content.keys())  // by the numbers of frames
+      if (const auto number = frame_numbers({key}).front()) add_frame(content[key], *number);
+  }
+
+  void add_frame(const JsonPlace& frame, long long number) {
+    if (!people_.frames.try_emplace(number).second)
+      frame.fail(fmt::format("a second frame {}", number));
+    add_bodies(frame, people_.frames[number]);
+  }
+
+  /// A body, or a list of them, or an object around either. Nothing: nobody was found.
+  void add_bodies(const JsonPlace& place, std::vector<SeenPerson>& people) {
+    if (place.value().is_null() || place.size() == 0) return;
+    if (is_body(place)) {
+      people.push_back(person_of_body(place));
+    } else if (place.is_list()) {
+      for (const JsonPlace& body : place.list()) add_bodies(body, people);
+    } else if (place.is_object()) {
+      if (const auto inside = any_of_keys(place, kBodyKeys)) add_bodies(*inside, people);
+    } else {
+      place.fail("neither landmarks nor a list of them");
+    }
+  }
+
+  SeenPerson person_of_body(const JsonPlace& body) {
+    SeenPerson person;
+    std::vector<std::string> names;
+    if (body.is_list())
+      for (const JsonPlace& landmark : body.list()) add_landmark(landmark, person, names);
+    else
+      for (const std::string& key : body.keys()) {
+        add_landmark(body[key], person, names);
+        names.push_back(key);
+      }
+    if (names.size() == person.x_px.size()) {
+      if (names_.empty()) names_ = names;
+      if (names != names_) body.fail("other landmarks than in the bodies before it");
+    }
+    return person;
+  }
+
+  void add_landmark(const JsonPlace& place, SeenPerson& person, std::vector<std::string>& names) {
+    if (place.is_list()) {
+      const std::vector<double> numbers = place.numbers();
+      if (numbers.size() < 2) place.fail("x and y are needed");
+      person.x_px.push_back(numbers[0]);
+      person.y_px.push_back(numbers[1]);
+      person.confidence.push_back(numbers.size() > 3 ? numbers[3] : 1.0);
+      thirds_.push_back(numbers.size() == 3 ? numbers[2] : -1);
+      return;
+    }
+    const JsonPlace at = place.has("position") ? place["position"] : place;
+    person.x_px.push_back(at["x"].number());
+    person.y_px.push_back(at["y"].number());
+    const auto confidence = any_of_keys(place, kConfidenceKeys);
+    person.confidence.push_back(confidence ? confidence->number() : 1.0);
+    thirds_.push_back(-1);
+    for (const char* key : {"name", "part"})
+      if (place.has(key)) {
+        names.push_back(place[key].text());
+        break;
+      }
+  }
+
+  /// Of [x, y, number] the number is a confidence if it is never below 0 in the file, else a depth.
+  void judge_third_numbers() {
+    if (std::ranges::any_of(thirds_, [](double third) { return !(third >= 0); })) return;
+    auto third = thirds_.begin();
+    for (auto& [number, frame] : people_.frames)
+      for (SeenPerson& person : frame)
+        for (double& confidence : person.confidence) confidence = *third++;
+  }
+
+  std::string file_;
+  std::vector<std::string> names_;
+  std::vector<double> thirds_;  ///< in the order in which landmarks were read
+  SeenPeople people_;
+};
+
+/// Whether a body lies in the first places inside.
+bool holds_body(const JsonPlace& place, int depth = 0) {
+  if (is_body(place)) return true;
+  if (depth > 4 || place.size() == 0) return false;
+  if (place.is_list()) {
+    // The first frames may be of nobody.
+    for (std::size_t i = 0; i < std::min<std::size_t>(place.size(), 1000); ++i)
+      if (holds_body(place.at(i), depth + 1)) return true;
+    return false;
+  }
+  if (!place.is_object()) return false;
+  if (place.has("frames")) return holds_body(place["frames"], depth + 1);
+  if (const auto inside = any_of_keys(place, kBodyKeys)) return holds_body(*inside, depth + 1);
+  return depth == 0 && std::ranges::any_of(place.keys(), [&](const std::string& key) {
+           return frame_numbers({key}).front() && holds_body(place[key], depth + 1);
+         });
+}
+
+}  // namespace
+
+bool are_landmarks(const JsonPlace& content) {
+  return holds_body(content);
+}
+
+SeenPeople read_landmarks(const JsonPlace& content, const std::string& file) {
+  return LandmarkReader(file).read(content);
+}
+
+}  // namespace mcdbn

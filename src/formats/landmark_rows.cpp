@@ -1,0 +1,159 @@
+// CSV with a row for each landmark of each frame: Frame, LandmarkID, X, Y. Rows of frames in which
+// nobody was found are missing.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "formats/csv_table.hpp"
+#include "formats/csv_text.hpp"
+#include "formats/joint_naming.hpp"
+#include "formats/landmarks.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+struct Header {
+  std::optional<std::size_t> frame, landmark, x, y, z, confidence, person, model;
+};
+
+/// In lower case without separators.
+std::string plain(std::string_view name) {
+  std::string result = lower(name);
+  std::erase_if(result, [](char c) { return c == '_' || c == ' ' || c == '-' || c == '.'; });
+  return result;
+}
+
+Header header_of(const CsvTable::Line& line) {
+  Header header;
+  for (std::size_t k = 0; k < line.cells.size(); ++k) {
+    const std::string name = plain(line.cells[k]);
+    const auto is = [&](std::initializer_list<const char*> names) {
+      return std::ranges::any_of(names, [&](const char* known) { return name == known; });
+    };
+    const auto take = [&](std::optional<std::size_t>& place) {
+      if (!place) place = k;
+    };
+    if (is({"frame", "frameidx", "frameid", "framenumber", "frameno", "frameindex"}))
+      take(header.frame);
+    if (is({"landmarkid", "landmark", "landmarkidx", "landmarkindex", "landmarkname", "keypoint",
+            "keypointid", "keypointname", "joint", "jointid", "jointname", "bodypart", "name"}))
+      take(header.landmark);
+    if (is({"x", "xpx"})) take(header.x);
+    if (is({"y", "ypx"})) take(header.y);
+    if (is({"z"})) take(header.z);
+    if (is({"visibility", "confidence", "score", "likelihood", "presence"}))
+      take(header.confidence);
+    if (is({"person", "personid", "poseid", "trackid", "track", "id"})) take(header.person);
+    if (is({"model"})) take(header.model);
+  }
+  return header;
+}
+
+class RowsReader {
+ public:
+  RowsReader(std::string_view text, const std::string& file) : table_(text, file), file_(file) {
+    if (table_.lines().empty()) throw InputError(fmt::format("{}: empty", file));
+    header_ = header_of(table_.lines().front());
+    if (!header_.frame || !header_.landmark || !header_.x || !header_.y)
+      table_.fail(table_.lines().front(), "columns frame, landmark, x and y are needed");
+    if (header_.model && header_.z)
+      table_.fail(table_.lines().front(),
+                  "points in space (FreeMoCap), not a 2D track; give the track of one camera");
+  }
+
+  SeenPeople read() {
+    for (std::size_t i = 1; i < table_.lines().size(); ++i) find_name(table_.lines()[i]);
+    sort_numbers();
+    for (std::size_t i = 1; i < table_.lines().size(); ++i) read_row(table_.lines()[i]);
+    SeenPeople people;
+    for (auto& [frame, bodies] : frames_) {
+      auto& list = people.frames[frame];
+      for (auto& [person, body] : bodies) {
+        mark_missing(body);
+        if (header_.person) body.id = person;
+        list.push_back(std::move(body));
+      }
+    }
+    name_joints_by_count(people, file_, numbered_ ? std::vector<std::string>{} : names_);
+    return people;
+  }
+
+ private:
+  void find_name(const CsvTable::Line& line) {
+    table_.require_cells(line, table_.lines().front().cells.size());
+    if (const auto name = line.cells[*header_.landmark];
+        columns_.emplace(name, names_.size()).second)
+      names_.emplace_back(name);
+  }
+
+  /// Landmarks that are numbers stand in the order of these, the first one being 0 or 1; those that
+  /// were never seen keep their column.
+  void sort_numbers() {
+    std::vector<double> numbers;
+    for (const std::string& name : names_) {
+      const auto value = number(name);
+      if (!value || *value != std::floor(*value) || *value < 0 || *value > 1000) return;
+      numbers.push_back(*value);
+    }
+    if (numbers.empty()) return;
+    numbered_ = true;
+    // 33 landmarks from 1 to 33, not from 0 to 32.
+    const bool from_one =
+        std::ranges::find(numbers, 0) == numbers.end() && *std::ranges::max_element(numbers) == 33;
+    for (std::size_t i = 0; i < names_.size(); ++i)
+      columns_[names_[i]] = static_cast<std::size_t>(numbers[i]) - (from_one ? 1 : 0);
+    joints_ = static_cast<std::size_t>(*std::ranges::max_element(numbers)) + (from_one ? 0 : 1);
+  }
+
+  long long whole(const CsvTable::Line& line, std::size_t column) const {
+    const double value = table_.number_in(line, column);
+    if (!(std::abs(value) < 1e15) || value != std::floor(value))
+      table_.fail(line, fmt::format("'{}' is no whole number", line.cells[column]));
+    return static_cast<long long>(value);
+  }
+
+  void read_row(const CsvTable::Line& line) {
+    const long long person = header_.person ? whole(line, *header_.person) : 0;
+    SeenPerson& body = frames_[whole(line, *header_.frame)][person];
+    const std::size_t joints = numbered_ ? joints_ : names_.size();
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    if (body.x_px.empty()) {
+      body.x_px.assign(joints, kNan);
+      body.y_px.assign(joints, kNan);
+      body.confidence.assign(joints, 0);
+    }
+    const std::size_t joint = columns_.at(std::string(line.cells[*header_.landmark]));
+    body.x_px[joint] = table_.number_in(line, *header_.x);
+    body.y_px[joint] = table_.number_in(line, *header_.y);
+    body.confidence[joint] = header_.confidence ? table_.number_in(line, *header_.confidence) : 1.0;
+  }
+
+  CsvTable table_;
+  std::string file_;
+  Header header_;
+  bool numbered_ = false;
+  std::size_t joints_ = 0;
+  std::vector<std::string> names_;
+  std::map<std::string, std::size_t> columns_;
+  std::map<long long, std::map<long long, SeenPerson>> frames_;
+};
+
+}  // namespace
+
+bool are_landmark_rows(std::string_view text) {
+  const CsvTable table(text, {}, 1);
+  if (table.lines().empty()) return false;
+  const Header header = header_of(table.lines().front());
+  return header.frame && header.landmark && header.x && header.y;
+}
+
+SeenPeople read_landmark_rows(std::string_view text, const std::string& file) {
+  return RowsReader(text, file).read();
+}
+
+}  // namespace mcdbn

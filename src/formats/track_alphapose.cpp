@@ -1,0 +1,103 @@
+// AlphaPose: one list with an entry for each person of each image; `--format cmu` and `open` make
+// an object with an entry for each image. Facts: AlphaPose's docs/output.md and
+// alphapose/utils/pPose_nms.py.
+#include <fmt/format.h>
+
+#include "base/text_file.hpp"
+#include "formats/frame_numbers.hpp"
+#include "formats/joint_naming.hpp"
+#include "formats/track_formats.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+using nlohmann::json;
+
+const char* const kName = "alphapose";
+const std::vector<std::string> kSets{"HALPE_26", "COCO_17", "COCO_18", "COCO_23"};
+
+bool is_entry(const JsonPlace& entry) {
+  return entry.has("image_id") && entry.has("keypoints") &&
+         (entry["image_id"].value().is_string() || entry.has("box") || entry.has("idx"));
+}
+
+bool is_image(const JsonPlace& image) {
+  return image.has("bodies") || image.has("people");
+}
+
+bool recognises(const TrackSource& source) {
+  const auto content = source.json_if_any();
+  if (!content || content->size() == 0) return false;
+  if (content->is_list()) return is_entry(content->at(0));
+  return content->is_object() && is_image((*content)[content->keys().front()]);
+}
+
+/// A number, [number] or [[number], …]: the first one.
+std::optional<long long> track_number(JsonPlace idx) {
+  for (int depth = 0; depth < 3 && idx.is_list() && idx.size() > 0; ++depth) idx = idx.at(0);
+  if (!idx.value().is_number()) return {};
+  return idx.whole_number();
+}
+
+long long image_number(const JsonPlace& id, const std::string& name) {
+  const auto number = frame_numbers({name.substr(0, name.rfind('.'))}).front();
+  if (!number) id.fail(fmt::format("no number of a frame in '{}'", name));
+  return *number;
+}
+
+SeenPeople read_list(const JsonPlace& content) {
+  SeenPeople people;
+  for (const JsonPlace& entry : content.list()) {
+    const JsonPlace id = entry["image_id"];
+    SeenPerson person = person_in_json(entry["keypoints"]);
+    if (entry.has("idx")) person.id = track_number(entry["idx"]);
+    const long long number =
+        id.value().is_string() ? image_number(id, id.text()) : id.whole_number();
+    people.frames[number].push_back(std::move(person));
+  }
+  return people;
+}
+
+SeenPeople read_images(const JsonPlace& content) {
+  SeenPeople people;
+  for (const std::string& name : content.keys()) {
+    const JsonPlace image = content[name];
+    auto& frame = people.frames[image_number(image, name)];
+    const bool bodies = image.has("bodies");
+    for (const JsonPlace& body : image[bodies ? "bodies" : "people"].list())
+      frame.push_back(person_in_json(body[bodies ? "joints" : "pose_keypoints_2d"]));
+  }
+  return people;
+}
+
+SeenPeople read(const TrackSource& source) {
+  const JsonPlace content = source.json();
+  SeenPeople people = content.is_list() ? read_list(content) : read_images(content);
+  name_joints_by_count(people, source.name());
+  return people;
+}
+
+/// A frame in which nobody was seen has no entry, but the first and the last one.
+void write(const std::filesystem::path& path, const Track2d& track) {
+  set_to_write(track, kSets, kName);
+  json entries = json::array();
+  for (int frame = 0; frame < track.frames(); ++frame) {
+    const bool seen = (track.confidence.row(frame).array() > 0).any();
+    if (!seen && frame != 0 && frame + 1 != track.frames()) continue;
+    entries.push_back({{"image_id", fmt::format("{}.jpg", frame)},
+                       {"category_id", 1},
+                       {"keypoints", numbers_of(track, frame)},
+                       {"score", track.confidence.row(frame).sum()},
+                       {"idx", {0.0}}});
+  }
+  write_text_file(path, entries.dump());
+}
+
+}  // namespace
+
+TrackFormat track_alphapose_format() {
+  return {kName, "AlphaPose's results, one list", kSets, recognises, read, write};
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,171 @@
+// MMPose and RTMPose: predictions of its demos (`instance_info`), of MMPoseInferencer (a list of
+// frames with instances; of an image a list of instances; a folder of those), and lists of
+// keypoints with scores.
+// Facts: MMPose's demo/topdown_demo_with_mmdet.py and mmpose/structures/utils.py.
+#include <fmt/format.h>
+
+#include "base/text_file.hpp"
+#include "formats/frame_numbers.hpp"
+#include "formats/joint_naming.hpp"
+#include "formats/track_formats.hpp"
+
+namespace mcdbn {
+namespace {
+
+using nlohmann::json;
+
+const char* const kName = "mmpose";
+const std::vector<std::string> kSets{"COCO_17", "COCO_23",      "HALPE_26", "BODY_25",
+                                     "H36M_17", "MEDIAPIPE_33", "COCO_18"};
+
+const char* scores_key(const JsonPlace& instance) {
+  for (const char* key : {"keypoint_scores", "scores"})
+    if (instance.has(key)) return key;
+  return nullptr;
+}
+
+bool is_instance(const JsonPlace& place) {
+  return place.has("keypoints") && scores_key(place) != nullptr;
+}
+
+bool is_frame(const JsonPlace& place) {
+  return place.has("instances") && place["instances"].is_list();
+}
+
+bool recognises(const TrackSource& source) {
+  const auto content = source.first_json_if_any();
+  if (!content) return false;
+  if (content->has("instance_info") || content->has("predictions")) return true;
+  if (is_frame(*content) || is_instance(*content)) return true;
+  if (!content->is_list() || content->size() == 0) return false;
+  const JsonPlace first = content->at(0);
+  return is_instance(first) || is_frame(first) ||
+         (first.is_list() && first.size() > 0 && is_instance(first.at(0)));
+}
+
+SeenPerson person_of_instance(const JsonPlace& instance) {
+  const char* scores = scores_key(instance);
+  SeenPerson person = scores == nullptr ? person_in_json(instance["keypoints"])
+                                        : person_in_json(instance["keypoints"], instance[scores]);
+  for (const char* key : {"track_id", "instance_id"})
+    if (instance.has(key) && instance[key].value().is_number())
+      person.id = instance[key].whole_number();
+  return person;
+}
+
+std::vector<SeenPerson> people_of(const JsonPlace& instances) {
+  std::vector<SeenPerson> people;
+  for (const JsonPlace& instance : instances.list())
+    if (instance["keypoints"].size() > 0) people.push_back(person_of_instance(instance));
+  return people;
+}
+
+/// Frames with instances, lists of instances, or the instances of one image.
+void add_list(SeenPeople& people, const JsonPlace& list) {
+  bool one_image = list.size() > 0;
+  for (const JsonPlace& entry : list.list())
+    one_image = one_image && is_instance(entry) && !entry.has("frame_id");
+  if (one_image) {
+    people.frames.emplace(0, people_of(list));
+    return;
+  }
+  long long next = 0;
+  for (const JsonPlace& frame : list.list()) {
+    const long long number = frame.has("frame_id") ? frame["frame_id"].whole_number() : next;
+    next = number + 1;
+    if (is_instance(frame)) {
+      people.frames[number].push_back(person_of_instance(frame));
+      continue;
+    }
+    if (!people.frames.emplace(number, people_of(frame.is_list() ? frame : frame["instances"]))
+             .second)
+      frame.fail(fmt::format("a second frame {}", number));
+  }
+}
+
+/// What the dataset calls its joints; none: the file does not say.
+std::vector<std::string> names_in(const JsonPlace& content) {
+  std::vector<std::string> names;
+  if (!content.has("meta_info") || !content["meta_info"].has("keypoint_id2name")) return names;
+  const JsonPlace by_number = content["meta_info"]["keypoint_id2name"];
+  for (std::size_t i = 0; by_number.is_object() && by_number.has(std::to_string(i).c_str()); ++i)
+    names.push_back(by_number[std::to_string(i)].text());
+  return names;
+}
+
+void add_content(SeenPeople& people, const JsonPlace& content) {
+  if (content.has("instance_info"))
+    add_list(people, content["instance_info"]);
+  else if (content.has("predictions"))
+    add_list(people, content["predictions"]);
+  else if (is_frame(content))
+    people.frames.emplace(0, people_of(content["instances"]));
+  else if (content.is_object())
+    people.frames.emplace(0, std::vector{person_of_instance(content)});
+  else
+    add_list(people, content);
+}
+
+SeenPeople read_folder(const TrackSource& source) {
+  std::vector<std::string> file_names;
+  for (const auto& file : source.json_files()) file_names.push_back(file.stem().string());
+  const auto numbers = frame_numbers(file_names);
+  SeenPeople people;
+  for (std::size_t i = 0; i < file_names.size(); ++i) {
+    const auto& file = source.json_files()[i];
+    const json content = source.json_of(file);
+    const JsonPlace place(content, file.string());
+    SeenPeople image;
+    add_content(image, place);
+    if (image.frames.size() != 1) place.fail("not of one image, as the files of a folder are");
+    const long long number = numbers[i].value_or(static_cast<long long>(i));
+    if (!people.frames.emplace(number, std::move(image.frames.begin()->second)).second)
+      place.fail(fmt::format("a second file of frame {}; give a folder of one camera", number));
+  }
+  return people;
+}
+
+SeenPeople read(const TrackSource& source) {
+  if (source.is_folder()) {
+    SeenPeople people = read_folder(source);
+    name_joints_by_count(people, source.name());
+    return people;
+  }
+  SeenPeople people;
+  const JsonPlace content = source.json();
+  add_content(people, content);
+  name_joints_by_count(people, source.name(), names_in(content));
+  return people;
+}
+
+void write(const std::filesystem::path& path, const Track2d& track) {
+  const std::string& set = set_to_write(track, kSets, kName);
+  json names = json::object();
+  for (int joint = 0; joint < track.joint_count(); ++joint)
+    names[std::to_string(joint)] = track.joint_names[joint];
+  json frames = json::array();
+  for (int frame = 0; frame < track.frames(); ++frame) {
+    json keypoints = json::array(), scores = json::array(), instances = json::array();
+    const std::vector<double> numbers = numbers_of(track, frame);
+    for (std::size_t i = 0; i < numbers.size(); i += 3) {
+      keypoints.push_back({numbers[i], numbers[i + 1]});
+      scores.push_back(numbers[i + 2]);
+    }
+    if ((track.confidence.row(frame).array() > 0).any())
+      instances.push_back({{"keypoints", keypoints}, {"keypoint_scores", scores}});
+    frames.push_back({{"frame_id", frame + 1}, {"instances", instances}});
+  }
+  const json content{{"meta_info", {{"dataset_name", set}, {"keypoint_id2name", names}}},
+                     {"instance_info", frames}};
+  write_text_file(path, content.dump());
+}
+
+}  // namespace
+
+TrackFormat track_mmpose_format() {
+  return {kName, "MMPose's and RTMPose's JSON, a file of frames or a folder of images",
+          kSets, recognises,
+          read,  write};
+}
+
+}  // namespace mcdbn

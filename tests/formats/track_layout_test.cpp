@@ -1,0 +1,107 @@
+// The layouts of tools, and what is wrong with files that are nearly of one.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "base/scratch_folder.hpp"
+#include "formats/layout_samples.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/track_file.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+TEST_CASE("layouts: each is recognised, and is the figure that was written") {
+  const ScratchFolder folder;
+  for (const LayoutSample& sample : layout_samples()) {
+    CAPTURE(sample.name);
+    const auto path = folder.write(sample.name, sample.text);
+    const TrackReading reading =
+        read_tracks(path, {.person = "all", .fps = 25, .image_size = ImageSize{1920, 1080}});
+    CHECK(reading.format == sample.format);
+    CHECK(reading.joint_set == sample.joint_set);
+    CHECK(reading.people_seen == sample.people);
+    REQUIRE(reading.people.size() == static_cast<std::size_t>(sample.people));
+    const Track2d& track = reading.people.front();
+    CHECK(track.frames() == sample.frames);
+    CHECK(track.fps == 25);
+    CHECK(track.width_px == 1920);
+    CHECK(track.confidence.maxCoeff() <= 1);
+    const int nose = std::max(track.find("nose"), track.find("Nose"));
+    if (nose < 0) continue;
+    // A head above the middle, that walks 3 px a frame.
+    for (int frame = 0; frame < track.frames(); ++frame) {
+      if (std::isnan(track.x_px(frame, nose))) continue;
+      CHECK(track.x_px(frame, nose) == doctest::Approx(track.x_px(0, nose) + 3 * frame));
+      CHECK(track.y_px(frame, nose) == doctest::Approx(450 - 400 * 0.908));
+    }
+  }
+}
+
+TEST_CASE("layouts: frames in which nobody was found are frames of missing joints") {
+  const ScratchFolder folder;
+  for (const LayoutSample& sample : layout_samples()) {
+    if (sample.name != "rows.csv" && sample.name != "mediapipe.json") continue;
+    CAPTURE(sample.name);
+    const Track2d track = read_track(folder.write(sample.name, sample.text));
+    int empty = 0;
+    for (int frame = 0; frame < track.frames(); ++frame)
+      empty += (track.confidence.row(frame).array() == 0).all() ? 1 : 0;
+    CHECK(empty == 1);
+  }
+}
+
+TEST_CASE("layouts: confidences of other scales end at 1") {
+  const ScratchFolder folder;
+  for (const LayoutSample& sample : layout_samples()) {
+    if (sample.name != "confident.json") continue;
+    std::vector<std::string> notices;
+    const Track2d track = read_track(folder.write(sample.name, sample.text), {}, &notices);
+    CHECK(track.confidence.maxCoeff() == 1);
+    CHECK(notices.front().find("image's size") != std::string::npos);
+    CHECK(notices.at(1).find("4.5") != std::string::npos);
+  }
+}
+
+TEST_CASE("layouts: what is wrong is told by its place") {
+  const ScratchFolder folder;
+  struct Case {
+    std::string name, text, message;
+  };
+  for (const Case& wrong : {
+           Case{"a.json", R"({"people": [{"pose_keypoints_2d": [1, 2]}]})",
+                "a.json: people[0].pose_keypoints_2d: 2 numbers"},
+           Case{"a.json", R"({"people": [{"pose_keypoints_2d": [1, 2, "x"]}]})",
+                "a.json: people[0].pose_keypoints_2d[2]: a text where a number"},
+           Case{"a.json", R"({"people": [{"pose": []}]})",
+                "a.json: people[0]: no key 'pose_keypoints_2d'"},
+           Case{"a.json", R"({"people": []})", "a.json: nobody in any frame"},
+           Case{"a.json", "{\"people\": [\n{]}", "a.json:2: no readable JSON"},
+           Case{"a.json", R"({"people": 1e999})", "a.json: "},
+           Case{"a.json", R"([{"image_id": 1, "keypoints": [1, 2, 1]}, {"image_id": 2}])",
+                "a.json: [1]: no key 'keypoints'"},
+           Case{"a.json", R"([{"image_id": "x.jpg", "keypoints": [1, 2, 1]}])",
+                "a.json: [0].image_id: no number of a frame"},
+           Case{"a.json", R"({"instance_info": [{"frame_id": 1, "instances": [{}]}]})",
+                "a.json: instance_info[0].instances[0]: no key 'keypoints'"},
+           Case{"a.csv", "bodyparts,a,a\ncoords,x,q\n0,1,2\n", "a.csv:2: coords 'q'"},
+           Case{"a.csv", "bodyparts,a,a\ncoords,x,y\n0,1,two\n", "a.csv:3: 'two' in column 3"},
+           Case{"a.csv", "frame_idx,a.x\n0,1\n", "a.csv:1: node a has no columns"},
+           Case{"a.csv", "frame,landmark,x,y\n0,nose,1\n", "a.csv:2: 3 cells"},
+           Case{"a.csv", "frame,model,keypoint,x,y,z\n0,b,nose,1,2,3\n", "points in space"},
+       }) {
+    CAPTURE(wrong.text);
+    CHECK_THROWS_WITH_AS(read_track(folder.write(wrong.name, wrong.text)),
+                         doctest::Contains(wrong.message.c_str()), InputError);
+  }
+}
+
+TEST_CASE("layouts: a body in space is no track") {
+  const ScratchFolder folder;
+  std::string text = "[[";
+  for (int joint = 0; joint < 33; ++joint)
+    text += (joint == 0 ? "[" : ",[") + std::to_string(0.03 * joint - 0.5) + ",-0.25,0.1]";
+  CHECK_THROWS_WITH_AS(read_track(folder.write("world.json", text + "]]")),
+                       doctest::Contains("a body in space"), InputError);
+}
