@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -10,10 +11,12 @@
 #include "clip_options.hpp"
 #include "commands.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/camera/track.hpp"
+#include "mcdbn/camera/track_summary.hpp"
 #include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/machines/machine_file.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
+#include "setting_flags.hpp"
+#include "track_options.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -34,19 +37,58 @@ json describe_clip(const fs::path& path) {
           {"height_units", motion.skeleton.rest_height()}};
 }
 
-json describe_track(const fs::path& path) {
-  const Track2d track = read_track(path);
+/// NaN, which JSON has not, as null.
+json finite(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+
+json describe_person(const Track2d& track, long long first_frame) {
+  const TrackSummary summary = summarize(track);
+  json unseen = json::array();
+  for (int joint = 0; joint < track.joint_count(); ++joint)
+    if (summary.joint_seen_share[joint] == 0) unseen.push_back(track.joint_names[joint]);
+  json person{{"seen_frames", summary.seen_frames},
+              {"longest_gap_frames", summary.longest_gap_frames},
+              {"missing_joint_frames", summary.missing_joints},
+              {"joints_never_seen", unseen},
+              {"height_px", summary.height_px},
+              {"jitter_px", finite(summary.jitter_px)}};
+  if (summary.seen_frames > 0) {
+    person["first_frame"] = first_frame + summary.first_frame;
+    person["last_frame"] = first_frame + summary.last_frame;
+  }
+  return person;
+}
+
+json describe_track(const fs::path& path, TrackReadOptions options) {
+  if (options.person == TrackReadOptions{}.person) options.person = "all";
+  const TrackReading reading = read_tracks(path, options);
+  const Track2d& track = reading.people.front();
+  json joints = json::array(), roles = json::object(), people = json::array();
+  for (const std::string& name : track.joint_names) joints.push_back(name);
+  for (const Keypoint& keypoint : track.keypoints)
+    roles[keypoint.name] = keypoint.role ? json(name_of(*keypoint.role)) : json();
+  for (const Track2d& person : reading.people)
+    people.push_back(describe_person(person, reading.first_frame));
+  json notices = json::array();
+  for (const std::string& notice : reading.notices) notices.push_back(with_flags(notice));
   return {{"kind", "2D track"},
-          {"joints", track.joint_names},
+          {"format", reading.format},
+          {"joint_set", reading.joint_set.empty() ? json() : json(reading.joint_set)},
+          {"joints", joints},
+          {"roles", roles},
           {"frames", track.frames()},
           {"fps", track.fps},
           {"duration_s", track.frames() / track.fps},
           {"width_px", track.width_px},
           {"height_px", track.height_px},
-          {"missing_joint_frames", (track.x_px.array() != track.x_px.array()).count()}};
+          {"missing_joint_frames", (track.x_px.array() != track.x_px.array()).count()},
+          {"people_seen", reading.people_seen},
+          {"people", people},
+          {"notices", notices}};
 }
 
-json describe(const fs::path& path) {
+json describe(const fs::path& path, const TrackReadOptions& options) {
   if (!fs::exists(path)) throw InputError(fmt::format("{}: no such file", path.string()));
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(),
@@ -58,21 +100,36 @@ json describe(const fs::path& path) {
     description["kind"] = "trained model";
     return description;
   }
-  if (fs::is_regular_file(path) && track_format_of(path) != nullptr) return describe_track(path);
-  throw InputError(fmt::format("{}: unknown kind of file; give a .bvh, a .csv or a .safetensors",
-                               path.string()));
+  return describe_track(path, options);
 }
 
+void print_value(const std::string& key, const json& value, const std::string& indent) {
+  const std::string text = value.is_number_float() ? fmt::format("{:.6g}", value.get<double>())
+                           : value.is_string()     ? value.get<std::string>()
+                                                   : value.dump();
+  std::cout << fmt::format("{}{:<21} {}\n", indent, key, text);
+}
+
+/// Names line by line, people with what is said of each.
 void print_for_people(const json& description) {
+  const json roles = description.value("roles", json::object());
   for (const auto& [key, value] : description.items()) {
-    if (key == "joints" || key == "training_clips") {
-      std::cout << fmt::format("{:<22}{}\n", key, value.size());
-      for (const auto& name : value) std::cout << "  " << name.get<std::string>() << '\n';
-    } else if (value.is_number_float()) {
-      std::cout << fmt::format("{:<22}{:.6g}\n", key, value.get<double>());
-    } else {
-      std::cout << fmt::format("{:<22}{}\n", key,
-                               value.is_string() ? value.get<std::string>() : value.dump());
+    if (key == "roles") continue;
+    if (!value.is_array()) {
+      print_value(key, value, "");
+      continue;
+    }
+    std::cout << fmt::format("{:<22}{}\n", key, value.size());
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      if (!value[i].is_object()) {
+        const auto name = value[i].get<std::string>();
+        const json role = roles.value(name, json());
+        std::cout << (role.is_null() ? fmt::format("  {}\n", name)
+                                     : fmt::format("  {:<20}{}\n", name, role.get<std::string>()));
+        continue;
+      }
+      std::cout << fmt::format("  {}\n", i + 1);
+      for (const auto& [what, said] : value[i].items()) print_value(what, said, "    ");
     }
   }
 }
@@ -81,16 +138,18 @@ void print_for_people(const json& description) {
 
 void add_info_command(CLI::App& app, CommandContext& context) {
   auto path = std::make_shared<fs::path>();
+  auto options = std::make_shared<TrackReadOptions>();
   CLI::App* command =
       app.add_subcommand("info", "Describes a BVH clip, a 2D track, a trained model or a machine");
-  command->add_option("file", *path, "BVH, track CSV, model or machine")
+  command->add_option("file", *path, "BVH, track (a file or a folder), model or machine")
       ->required()
       ->type_name("FILE");
+  add_track_options(*command, *options);
   add_json_option(*command, context);
-  command->footer("Example:\n  mcdbn-cl info walk.bvh");
-  command->callback([&context, path] {
-    context.run = [&context, path] {
-      const json description = describe(*path);
+  command->footer("Example:\n  mcdbn-cl info walk.bvh\n  mcdbn-cl info openpose_json/");
+  command->callback([&context, path, options] {
+    context.run = [&context, path, options] {
+      const json description = describe(*path, *options);
       if (context.json) {
         print_json(description);
       } else {

@@ -14,6 +14,7 @@
 #include "mcdbn/camera/level_view.hpp"
 #include "mcdbn/camera/side_swaps.hpp"
 #include "mcdbn/camera/track.hpp"
+#include "mcdbn/camera/track_summary.hpp"
 #include "mcdbn/corpus/augmentation.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/corpus/training_set.hpp"

@@ -128,21 +128,81 @@ std::string bench_of_first_epoch() {
 
 }  // namespace
 
+/// COCO results of two people over 40 frames, the second one smaller.
+static std::string two_people() {
+  json entries = json::array();
+  for (int frame = 0; frame < 40; ++frame)
+    for (const double size : {300.0, 100.0}) {
+      json numbers = json::array();
+      for (int joint = 0; joint < 17; ++joint) {
+        const double right = joint % 2 == 0 ? -0.1 : 0.1;
+        numbers.insert(numbers.end(), {700 - size + size * right, 400 + size * joint / 17, 0.9});
+      }
+      entries.push_back({{"image_id", frame}, {"category_id", 1}, {"keypoints", numbers}});
+    }
+  return entries.dump();
+}
+
 TEST_CASE("info: every option changes what its help says") {
   const ScratchFolder folder;
   const fs::path clip = folder.write("clip.bvh", small_bvh(6));
-  check_options("info", {{"file",
-                          [&] {
-                            const CliResult result = run_cli("info " + clip.string());
-                            CHECK(result.exit_code == 0);
-                            CHECK(result.standard_output.find("\nframes                6\n") !=
-                                  std::string::npos);
-                            CHECK(run_cli("info absent.bvh").exit_code == 3);
-                          }},
-                         {"--json", [&] {
-                            const CliResult result = run_cli("info --json " + clip.string());
-                            CHECK(json::parse(result.standard_output).at("frames") == 6);
-                          }}});
+  const fs::path track = folder.write("track.json", two_people());
+  const auto told = [&](const std::string& options) {
+    const CliResult result = run_cli("info --json " + track.string() + options);
+    CAPTURE(result.standard_error);
+    REQUIRE(result.exit_code == 0);
+    return json::parse(result.standard_output);
+  };
+  const json plain = told("");
+  CHECK(plain.at("format") == "coco");
+  CHECK(plain.at("joint_set") == "COCO_17");
+  CHECK(plain.at("roles").at("left_knee") == "left_knee");
+  CHECK(plain.at("fps") == 30);
+  CHECK(plain.at("people_seen") == 2);
+  REQUIRE(plain.at("people").size() == 2);
+  CHECK(plain.at("people")[0].at("height_px").get<double>() > 200);
+  CHECK(plain.at("people")[0].at("seen_frames") == 40);
+  CHECK(plain.at("people")[0].at("jitter_px") == 0);
+  CHECK(plain.at("notices").size() == 2);
+  check_options(
+      "info",
+      {{"file",
+        [&] {
+          const CliResult result = run_cli("info " + clip.string());
+          CHECK(result.exit_code == 0);
+          CHECK(result.standard_output.find("\nframes                6\n") != std::string::npos);
+          CHECK(run_cli("info absent.bvh").exit_code == 3);
+        }},
+       {"--format",
+        [&] {
+          CHECK(told(" --format coco") == plain);
+          const CliResult other = run_cli("info --format sleap " + track.string());
+          CHECK(other.exit_code == 3);
+          CHECK(other.standard_error.find("no column frame_idx") != std::string::npos);
+        }},
+       {"--person",
+        [&] {
+          const json second = told(" --person 2").at("people");
+          CHECK(second == json::array({plain.at("people")[1]}));
+          CHECK(told(" --person all") == plain);
+          CHECK(run_cli("info --person 3 " + track.string()).exit_code == 3);
+          CHECK(run_cli("info --person tall " + track.string()).exit_code == 2);
+        }},
+       {"--fps",
+        [&] {
+          CHECK(told(" --fps 50").at("fps") == 50);
+          CHECK(told(" --fps 50").at("duration_s") == 0.8);
+        }},
+       {"--image-size",
+        [&] {
+          const json said = told(" --image-size 1000 800");
+          CHECK(said.at("width_px") == 1000);
+          CHECK(said.at("height_px") == 800);
+        }},
+       {"--json", [&] {
+          const CliResult result = run_cli("info --json " + clip.string());
+          CHECK(json::parse(result.standard_output).at("frames") == 6);
+        }}});
 }
 
 TEST_CASE("info says of a model what it was trained with") {
