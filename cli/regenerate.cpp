@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <cmath>
@@ -13,6 +14,7 @@
 #include "fit_option.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/joint_map.hpp"
 #include "mcdbn/formats/track_csv.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "sample_path.hpp"
@@ -25,7 +27,7 @@ namespace {
 constexpr const char *kToPose = "pose", *kToTrack = "track";
 
 struct RegenerateOptions {
-  std::filesystem::path model, input, output, skeleton;
+  std::filesystem::path model, input, output, skeleton, joint_map;
   TrackReadOptions track;
   SeenByOptions seen_by;
   SamplingOptions sampling;
@@ -37,6 +39,7 @@ void check_direction(const RegenerateOptions& options) {
   if (options.to != kToTrack) return;
   const AssumedView& view = options.seen_by.view;
   for (const auto& [said, flag] : {std::pair{!options.skeleton.empty(), "--skeleton"},
+                                   std::pair{!options.joint_map.empty(), "--joint-map"},
                                    std::pair{!options.fit.empty(), "--fit"},
                                    std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
                                    std::pair{view.roll_deg.has_value(), "--camera-roll"},
@@ -64,6 +67,31 @@ void report_assumed(const Camera& camera, const AssumedView& view) {
       std::abs(pitch_deg) < 1e-9 ? 0.0 : pitch_deg, view.roll_deg.value_or(0), fov_deg);
 }
 
+/// What was missing in the track and what was wrong with it.
+void report(const std::filesystem::path& path, const TrackFindings& findings) {
+  const TrackFeatures::FillCount& filled = findings.filled;
+  if (!findings.swaps.empty())
+    spdlog::info("{}: {}; put right", path.string(), described(findings.swaps));
+  if (!filled.unseen.empty())
+    spdlog::info("{}: {} are in no column: inferred", path.string(),
+                 fmt::join(filled.unseen, ", "));
+  if (filled.interpolated + filled.missing > 0)
+    spdlog::info("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
+                 path.string(), filled.interpolated, filled.missing);
+}
+
+/// regenerate_clip; what is wrong with the track is said with its file.
+std::vector<Motion> regenerate_named(const std::filesystem::path& input, const Model& model,
+                                     const Track2d& track, const ClipPlacement& placement,
+                                     const RegenerationOptions& regeneration,
+                                     TrackFindings& findings) {
+  try {
+    return regenerate_clip(model, track, placement, regeneration, &findings);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", input.string(), error.what()));
+  }
+}
+
 void regenerate_poses(const Model& model, const RegenerateOptions& options,
                       const std::optional<Camera>& camera,
                       const RegenerationOptions& regeneration) {
@@ -72,13 +100,13 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
   placement.view = options.seen_by.view;
   if (!options.skeleton.empty()) placement.skeleton = read_bvh(options.skeleton).skeleton;
   placement.fit = track_fit(options.fit);
-  TrackFeatures::FillCount filled;
+  if (!options.joint_map.empty()) placement.joint_map = read_joint_map(options.joint_map);
   const Track2d track = read_tracks_with_notices(options.input, options.track).people.front();
   if (!camera) report_assumed(placement.camera_of(track, model.modalities), placement.view);
-  const auto motions = regenerate_clip(model, track, placement, regeneration, &filled);
-  if (filled.interpolated + filled.missing > 0)
-    spdlog::info("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
-                 options.input.string(), filled.interpolated, filled.missing);
+  TrackFindings findings;
+  const auto motions =
+      regenerate_named(options.input, model, track, placement, regeneration, findings);
+  report(options.input, findings);
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const auto path = sample_path(options.output, i, motions.size());
     write_bvh(path, motions[i]);
@@ -138,6 +166,12 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
   command
       ->add_option("--skeleton", options->skeleton,
                    "BVH whose skeleton to use, of the same joint names")
+      ->type_name("FILE");
+  command
+      ->add_option("--joint-map", options->joint_map,
+                   "TOML with lines such as left_hip = \"LeftUpLeg\": which joint of the skeleton "
+                   "plays which role, where its names and shape do not tell; for tracks of "
+                   "detectors")
       ->type_name("FILE");
   add_track_options(*command, options->track);
   add_sampling_options(*command, options->sampling,

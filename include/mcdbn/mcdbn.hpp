@@ -64,6 +64,7 @@
 #include "mcdbn/motion_model/clip_generation.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
+#include "mcdbn/motion_model/seen_clip.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "mcdbn/motion_model/training_config.hpp"
 #include "mcdbn/motion_model/training_run.hpp"

@@ -131,14 +131,16 @@ class ClipFit {
     return result;
   }
 
+  /// The camera moves along, so that it sees the same.
   void put_at_origin() {
-    const double x = root_(0, 0), z = root_(0, 2), height = root_.col(1).mean();
     const double wanted = file_units_per_metre(skeleton_) *
                           modalities_.pose_features.root_features(features_).col(0).mean();
-    root_.col(0).array() -= x;
-    root_.col(1).array() += wanted - height;
-    root_.col(2).array() -= z;
+    const Eigen::RowVector3d shift(-root_(0, 0), wanted - root_.col(1).mean(), -root_(0, 2));
+    root_.rowwise() += shift;
+    camera_.translation -= camera_.camera_from_world * shift.transpose();
   }
+
+  const Camera& camera() const { return camera_; }
 
  private:
   Motion decoded(const MatrixD& root) const {
@@ -191,6 +193,7 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
   result.shown = clip.shown(track);
   if (!known.camera) clip.put_at_origin();
   result.motion = clip.motion();
+  result.camera = clip.camera();
   return result;
 }
 

@@ -3,16 +3,11 @@
 #include <algorithm>
 
 #include "camera/track_resample.hpp"
-#include "fitting/track_smoothing.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/resample.hpp"
 
 namespace mcdbn {
 namespace {
-
-/// More rounds change next to nothing: with an arm hidden for a second held-out walkers are off by
-/// 8.9, 7.8, 7.6 and 7.5 mm after 0, 1, 2 and 4, all in sight by 6.5.
-constexpr int kGapRounds = 3;
 
 Motion with_frames(Motion motion, Eigen::Index frames) {
   const Eigen::Index have = motion.channels.rows();
@@ -25,39 +20,25 @@ Motion with_frames(Motion motion, Eigen::Index frames) {
 
 }  // namespace
 
-MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const Track2d& track,
-                  const ClipPlacement& placement,
-                  const std::function<MatrixF(const MatrixF&)>& answer) {
-  if (!features.array().isNaN().any()) return features;
-  const Camera camera = placement.camera_of(track, modalities);
-  MatrixF filled = features;
-  for (int round = 0; round < kGapRounds; ++round) {
-    const Track2d shown =
-        fit_to_track(PosePrior::around(answer(filled)), modalities, track, placement, placement.fit)
-            .shown;
-    filled = features.array().isNaN().select(modalities.encode_track(shown, camera), features);
-  }
-  return filled;
-}
-
 std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
                                     const ClipPlacement& placement,
-                                    const RegenerationOptions& options,
-                                    TrackFeatures::FillCount* filled) {
+                                    const RegenerationOptions& options, TrackFindings* findings) {
   const Modalities& modalities = model.modalities;
-  const Track2d at_rate = resample_track(track, modalities.fps);
-  const MatrixF features = fill_gaps(
-      modalities,
-      modalities.encode_track(smooth_track(at_rate), placement.camera_of(track, modalities),
-                              filled),
-      at_rate, placement, [&](const MatrixF& seen) { return single_answer(model.network, seen); });
-  const auto poses = regenerate(model.network, {features}, options);
+  Track2d sides = track;
+  std::vector<SideSwap> swaps;
+  if (!joined_by_name(track, modalities.track_features)) {
+    swaps = find_side_swaps(track);
+    exchange_sides(sides, swaps);
+  }
+  SeenClip seen = see_clip(modalities, resample_track(sides, modalities.fps), placement,
+                           [&](const MatrixF& some) { return single_answer(model.network, some); });
   std::vector<Motion> motions;
-  for (const MatrixF& pose : poses) {
+  for (const MatrixF& pose : regenerate(model.network, {seen.features}, options)) {
     const FittedClip clip =
-        fit_to_track(PosePrior::around(pose), modalities, at_rate, placement, placement.fit);
+        fit_to_track(PosePrior::around(pose), modalities, seen.joints, placement, placement.fit);
     motions.push_back(with_frames(resample(clip.motion, track.fps), track.frames()));
   }
+  if (findings) *findings = {std::move(seen.filled), std::move(swaps)};
   return motions;
 }
 

@@ -151,10 +151,10 @@ TEST_CASE(
     // At most 0.2 s are interpolated: six frames; what is longer is missing.
     scene.track.confidence.col(hand).segment(10, 6).setZero();
     scene.track.x_px.col(foot).segment(20, 7).setConstant(std::numeric_limits<double>::quiet_NaN());
-    TrackFeatures::FillCount filled;
-    const auto got = regenerate_clip(model, scene.track, scene.placement(), {}, &filled);
-    CHECK(filled.interpolated == 6);
-    CHECK(filled.missing == 7);
+    TrackFindings found;
+    const auto got = regenerate_clip(model, scene.track, scene.placement(), {}, &found);
+    CHECK(found.filled.interpolated == 6);
+    CHECK(found.filled.missing == 7);
     const auto want = step_by_step(model, scene.track, scene.placement(), {});
     CHECK(largest(got[0].channels - want[0].channels) < 1e-9);
     Track2d lost = scene.track;

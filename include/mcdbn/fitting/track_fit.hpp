@@ -97,6 +97,7 @@ struct TrackFitSettings {
 struct FittedClip {
   Motion motion;  ///< at the model's rate
   Track2d shown;  ///< all its joints as the camera sees them; image size as the track's
+  Camera camera;  ///< that sees `motion` so, in the skeleton's file units
 };
 
 /// The likeliest motion given a prior and the 2D track. The root goes where the track shows it;

@@ -1,40 +1,29 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <vector>
 
 #include "mcdbn/camera/track.hpp"
-#include "mcdbn/fitting/track_fit.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
+#include "mcdbn/motion_model/seen_clip.hpp"
 
 namespace mcdbn {
 
-/// What is known of a regenerated clip, and how near it is to come to its track.
-struct ClipPlacement : KnownOfClip {
-  std::optional<TrackFitSettings> fit =
-      TrackFitSettings{};  ///< unset: the network's answer as it is
+/// What was found out about a track on the way.
+struct TrackFindings {
+  TrackFeatures::FillCount filled;
+  std::vector<SideSwap> swaps;  ///< that were put right
 };
 
-/// The features of a track of which parts are out of sight for long, with what an answer to the
-/// rest shows there in place of NaN; the answer to that fills them anew, in rounds.
-/// @param features standardized 2D of `track` [frames x dimension], NaN where joints are missing
-/// @param answer standardized 3D [frames x dimension] to such features, its own guess for NaN
-/// @return the same where nothing is missing
-/// @throws InputError if next to nothing of the person is seen, as fit_to_track does
-MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const Track2d& track,
-                  const ClipPlacement& placement,
-                  const std::function<MatrixF(const MatrixF&)>& answer);
-
 /// 3D motion from a 2D track, `samples` times. The track is brought to the model's rate and the
-/// motion back to the track's: as many frames as the track has.
-/// @param filled if given, how many joints were missing
-/// @throws InputError if the track lacks a joint of the model
+/// motion back to the track's: as many frames as the track has. A detector's keypoints are put
+/// right (find_side_swaps) and mapped to the model's joints (see_clip).
+/// @throws InputError if the track shows too little of the model's joints
 std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
                                     const ClipPlacement& placement,
                                     const RegenerationOptions& options,
-                                    TrackFeatures::FillCount* filled = nullptr);
+                                    TrackFindings* findings = nullptr);
 
 /// The other direction: a 2D track from 3D motion, `samples` times, one frame for each of the clip
 /// at the model's rate. Everything in it is the network's answer, the root's place in the image and

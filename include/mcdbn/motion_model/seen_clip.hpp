@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "mcdbn/camera/side_swaps.hpp"
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/fitting/track_fit.hpp"
+#include "mcdbn/motion/skeleton_roles.hpp"
+
+namespace mcdbn {
+
+/// What is known of a regenerated clip, and how near it is to come to its track.
+struct ClipPlacement : KnownOfClip {
+  std::optional<TrackFitSettings> fit =
+      TrackFitSettings{};   ///< unset: the network's answer as it is
+  JointMap joint_map = {};  ///< roles of the skeleton's joints, said by hand
+};
+
+/// The features of a track of which parts are out of sight for long, with what an answer to the
+/// rest shows there in place of NaN; the answer to that fills them anew, in rounds.
+/// @param features standardized 2D of `track` [frames x dimension], NaN where joints are missing
+/// @param answer standardized 3D [frames x dimension] to such features, its own guess for NaN
+/// @return the same where nothing is missing
+/// @throws InputError if next to nothing of the person is seen, as fit_to_track does
+MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const Track2d& track,
+                  const ClipPlacement& placement,
+                  const std::function<MatrixF(const MatrixF&)>& answer);
+
+/// A track as a model sees it.
+struct SeenClip {
+  MatrixF features;  ///< standardized 2D, nothing missing
+  Track2d joints;    ///< the model's joints by name, for fit_to_track
+  TrackFeatures::FillCount filled;
+};
+
+/// What a model sees of a track. Where the columns are the model's joints by name, that is the
+/// track, its gaps filled (fill_gaps). Where they are a detector's, or another skeleton's, the
+/// joints are told from them by their roles, and what lies between a place and its joint is taken
+/// off as the answer has it, in the rounds that fill the gaps.
+/// @param track at the model's rate  @param answer as of fill_gaps
+/// @throws InputError if the track shows too little of the model's joints; as fill_gaps
+SeenClip see_clip(const Modalities& modalities, const Track2d& track,
+                  const ClipPlacement& placement,
+                  const std::function<MatrixF(const MatrixF&)>& answer);
+
+/// Whether a track's columns are joined with the model's joints by name: the root and two others at
+/// least are there.
+bool joined_by_name(const Track2d& track, const TrackFeatures& features);
+
+}  // namespace mcdbn

@@ -1,0 +1,92 @@
+#include "mcdbn/motion_model/seen_clip.hpp"
+
+#include <algorithm>
+
+#include "camera/keypoint_map.hpp"
+#include "fitting/track_smoothing.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// More rounds change next to nothing: with an arm hidden for a second held-out walkers are off by
+/// 8.9, 7.8, 7.6 and 7.5 mm after 0, 1, 2 and 4, all in sight by 6.5.
+constexpr int kRounds = 3;
+
+/// What the columns show: what their file says, else what their names tell of joints.
+std::vector<Keypoint> keypoints_of_columns(const Track2d& track) {
+  if (!track.keypoints.empty()) return track.keypoints;
+  Skeleton named;
+  for (const std::string& name : track.joint_names) {
+    named.joints.emplace_back();
+    named.joints.back().name = name;
+    named.joints.back().parent = named.joint_count() > 1 ? 0 : -1;
+  }
+  const SkeletonRoles roles = skeleton_roles(named);
+  std::vector<Keypoint> keypoints;
+  for (int column = 0; column < track.joint_count(); ++column) {
+    keypoints.emplace_back();
+    keypoints.back().name = track.joint_names[static_cast<std::size_t>(column)];
+    keypoints.back().role = roles.role_of(column);
+  }
+  return keypoints;
+}
+
+MatrixF where_known(const MatrixF& features, const MatrixF& otherwise) {
+  return features.array().isNaN().select(otherwise, features);
+}
+
+}  // namespace
+
+MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const Track2d& track,
+                  const ClipPlacement& placement,
+                  const std::function<MatrixF(const MatrixF&)>& answer) {
+  if (!features.array().isNaN().any()) return features;
+  const Camera camera = placement.camera_of(track, modalities);
+  MatrixF filled = features;
+  for (int round = 0; round < kRounds; ++round) {
+    const Track2d shown =
+        fit_to_track(PosePrior::around(answer(filled)), modalities, track, placement, placement.fit)
+            .shown;
+    filled = where_known(features, modalities.encode_track(shown, camera));
+  }
+  return filled;
+}
+
+bool joined_by_name(const Track2d& track, const TrackFeatures& features) {
+  const auto found = std::ranges::count_if(
+      features.joint_names(), [&](const std::string& name) { return track.find(name) >= 0; });
+  return track.find(features.root_name()) >= 0 &&
+         found >= std::min<std::ptrdiff_t>(2, std::ssize(features.joint_names()));
+}
+
+SeenClip see_clip(const Modalities& modalities, const Track2d& track,
+                  const ClipPlacement& placement,
+                  const std::function<MatrixF(const MatrixF&)>& answer) {
+  const Camera camera = placement.camera_of(track, modalities);
+  SeenClip seen;
+  const auto look = [&](const Track2d& joints) {
+    seen.joints = joints;
+    seen.features = modalities.encode_track(smooth_track(joints), camera, &seen.filled);
+  };
+  if (joined_by_name(track, modalities.track_features)) {
+    look(track);
+    seen.features = fill_gaps(modalities, seen.features, track, placement, answer);
+    return seen;
+  }
+  const Skeleton& skeleton =
+      placement.skeleton ? *placement.skeleton : modalities.pose_features.skeleton();
+  const KeypointMap map(keypoints_of_columns(track), skeleton,
+                        skeleton_roles(skeleton, placement.joint_map));
+  look(map.joints_of(track));
+  MatrixF filled = seen.features;
+  for (int round = 0; round < kRounds; ++round) {
+    const FittedClip clip = fit_to_track(PosePrior::around(answer(filled)), modalities, seen.joints,
+                                         placement, placement.fit);
+    look(map.joints_of(track, clip.motion, clip.camera));
+    filled = where_known(seen.features, modalities.encode_track(clip.shown, camera));
+  }
+  seen.features = filled;
+  return seen;
+}
+
+}  // namespace mcdbn
