@@ -6,8 +6,8 @@
 
 #include "base/random_sequence.hpp"
 #include "camera/track_noise.hpp"
-#include "motion/body_size.hpp"
 #include "motion/mirror.hpp"
+#include "motion/other_body.hpp"
 #include "motion/resample.hpp"
 
 namespace mcdbn {
@@ -21,25 +21,6 @@ double uniform(const RandomKey& key, Draw draw, std::uint32_t column = 0) {
 }
 double within(const RandomKey& key, Draw draw, std::uint32_t column, double most) {
   return most * (2.0 * uniform(key, draw, column) - 1.0);
-}
-
-/// Bones longer or shorter, alike on both sides where the skeleton has sides. Longer legs stand
-/// higher and take longer steps.
-void change_bones(Motion& motion, double deviation, const RandomKey& key) {
-  Skeleton& skeleton = motion.skeleton;
-  const double size = body_height(skeleton);
-  const std::vector<int> opposite = opposite_joints(skeleton);
-  for (int j = 0; j < skeleton.joint_count(); ++j) {
-    const int pair = opposite.empty() ? j : std::min(j, opposite[j]);
-    skeleton.joints[j].offset *=
-        std::exp(deviation * random_normal(key, kBones, static_cast<std::uint32_t>(pair)));
-  }
-  const int root = moving_root({&motion});
-  const Joint& joint = skeleton.joints[root];
-  for (std::size_t k = 0; k < joint.channels.size(); ++k)
-    if (!is_rotation(joint.channels[k]))
-      motion.channels.col(skeleton.first_channel(root) + static_cast<int>(k)) *=
-          body_height(skeleton) / size;
 }
 
 /// Every joint below the root that turns at all is turned by a fixed small rotation of its own.
@@ -87,7 +68,11 @@ AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacemen
   view.motion = other_timing(raw, fps, settings.speed, key);
   if (settings.mirror && uniform(key, kMirror) < 0.5)
     if (auto other = mirrored(view.motion)) view.motion = std::move(*other);
-  if (settings.bone > 0) change_bones(view.motion, settings.bone, key);
+  if (settings.bone > 0)
+    scale_bones(view.motion, [&](int joint) {
+      return std::exp(settings.bone *
+                      random_normal(key, kBones, static_cast<std::uint32_t>(joint)));
+    });
   if (settings.turn_deg > 0) change_carriage(view.motion, settings.turn_deg, key);
   CameraPlacement moved = placement;
   moved.azimuth_deg += within(key, kCamera, 0, settings.azimuth_deg);
