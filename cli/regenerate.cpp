@@ -92,25 +92,43 @@ std::vector<Motion> regenerate_named(const std::filesystem::path& input, const M
   }
 }
 
-void regenerate_poses(const Model& model, const RegenerateOptions& options,
-                      const std::optional<Camera>& camera,
-                      const RegenerationOptions& regeneration) {
+/// Where a person's motion goes: out_person1.bvh … if there are several.
+std::filesystem::path person_path(const std::filesystem::path& output, std::size_t person,
+                                  std::size_t people) {
+  if (people == 1) return output;
+  std::filesystem::path path = output;
+  return path.replace_filename(fmt::format("{}_person{}{}", output.stem().string(), person + 1,
+                                           output.extension().string()));
+}
+
+ClipPlacement placement_of(const RegenerateOptions& options, const std::optional<Camera>& camera) {
   ClipPlacement placement;
   placement.camera = camera;
   placement.view = options.seen_by.view;
   if (!options.skeleton.empty()) placement.skeleton = read_bvh(options.skeleton).skeleton;
   placement.fit = track_fit(options.fit);
   if (!options.joint_map.empty()) placement.joint_map = read_joint_map(options.joint_map);
-  const Track2d track = read_tracks_with_notices(options.input, options.track).people.front();
-  if (!camera) report_assumed(placement.camera_of(track, model.modalities), placement.view);
-  TrackFindings findings;
-  const auto motions =
-      regenerate_named(options.input, model, track, placement, regeneration, findings);
-  report(options.input, findings);
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    const auto path = sample_path(options.output, i, motions.size());
-    write_bvh(path, motions[i]);
-    report(path, motions[i].frames(), motions[i].fps());
+  return placement;
+}
+
+void regenerate_poses(const Model& model, const RegenerateOptions& options,
+                      const std::optional<Camera>& camera,
+                      const RegenerationOptions& regeneration) {
+  const ClipPlacement placement = placement_of(options, camera);
+  const std::vector<Track2d> people = read_tracks_with_notices(options.input, options.track).people;
+  if (!camera)
+    report_assumed(placement.camera_of(people.front(), model.modalities), placement.view);
+  for (std::size_t person = 0; person < people.size(); ++person) {
+    TrackFindings findings;
+    const auto motions =
+        regenerate_named(options.input, model, people[person], placement, regeneration, findings);
+    report(options.input, findings);
+    const auto output = person_path(options.output, person, people.size());
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      const auto path = sample_path(output, i, motions.size());
+      write_bvh(path, motions[i]);
+      report(path, motions[i].frames(), motions[i].fps());
+    }
   }
 }
 
