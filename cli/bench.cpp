@@ -4,20 +4,26 @@
 #include <algorithm>
 #include <iostream>
 
+#include "base/text_file.hpp"
 #include "commands.hpp"
+#include "device/launch_trace.hpp"
 #include "device/median_time.hpp"
 #include "device/peak.hpp"
 #include "device/tuner.hpp"
 #include "learning/bench_steps.hpp"
 #include "mcdbn/learning/settings.hpp"
+#include "roofline.hpp"
 
 namespace mcdbn::cli {
 namespace {
 
-constexpr double kLongest_s = 600;  // of a measurement: no machine is steady for longer
+constexpr std::size_t kTimedRuns = 15;  // whose launches are timed: the median counts
+constexpr double kLongest_s = 600;      // of a measurement: no machine is steady for longer
 
 struct BenchOptions {
   bool tune = false;
+  bool roofline = false;
+  std::filesystem::path trace;
   std::vector<std::string> layers;
   double seconds = 1.0;
 };
@@ -94,6 +100,7 @@ void run_bench(const CommandContext& context, const BenchOptions& options) {
   if (!context.json)
     std::cout << fmt::format("{}, {} compute units: {:.1f} GFLOP/s with fma alone\n",
                              device.info().name, device.info().compute_units, peak_gflops);
+  LaunchTrace trace;
   for (const BenchStepMaker& make : wanted_steps(options.layers)) {
     const BenchStep step = make(device);
     const auto& wanted = options.layers;
@@ -102,7 +109,14 @@ void run_bench(const CommandContext& context, const BenchOptions& options) {
       continue;
     results.push_back(measure(device, step, options.seconds, peak_gflops));
     if (!context.json) print_line(step, results.back());
+    if (!options.roofline && options.trace.empty()) continue;
+    const StepTimes times = time_kernels(device, step.run, step.kernels, kTimedRuns);
+    trace.add(described(step.what), times.last_times);
+    if (!options.roofline) continue;
+    results.back()["roofline"] = roofline(device, times, peak_gflops);
+    if (!context.json) print_roofline(results.back()["roofline"]);
   }
+  if (!options.trace.empty()) write_text_file(options.trace, trace.json().dump() + '\n');
   if (context.json) {
     const nlohmann::ordered_json report = {{"device", device.info().name},
                                            {"driver", device.info().driver_version},
@@ -132,6 +146,12 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
       ->type_name("LAYER");
   command->add_flag("--tune", options->tune,
                     "First find what suits the device best and keep it in the user's cache folder");
+  command->add_flag("--roofline", options->roofline,
+                    "Also each kernel's arithmetic and bytes against what the device can do");
+  command
+      ->add_option("--trace", options->trace,
+                   "Writes one run's launches of each step, for chrome://tracing or Perfetto")
+      ->type_name("FILE.json");
   command->add_option("--seconds", options->seconds, "Time for each measurement")
       ->check(CLI::Range(0.0, kLongest_s))
       ->capture_default_str();

@@ -142,6 +142,40 @@ Device::Device(const DeviceInfo& info)
 Device::Device(Device&&) noexcept = default;
 Device::~Device() = default;
 
+void Device::keep_launch_times(bool keep) {
+  finish();
+  try {
+    queue_ = cl::CommandQueue(context_, device_,
+                              keep ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0});
+  } catch (const cl::Error& error) {
+    throw DeviceError(
+        fmt::format("{} keeps no times: {} returned {}", info_.name, error.what(), error.err()));
+  }
+  keeps_launch_times_ = keep;
+}
+
+void Device::keep_launch(const cl::Kernel& kernel, const cl::Event& event) {
+  kept_launches_.emplace_back(kernel, event);
+}
+
+std::vector<LaunchTime> Device::take_launch_times() {
+  finish();
+  std::vector<LaunchTime> times;
+  times.reserve(kept_launches_.size());
+  try {
+    for (const auto& [kernel, event] : kept_launches_)
+      times.push_back({trimmed(kernel.getInfo<CL_KERNEL_FUNCTION_NAME>()),
+                       event.getProfilingInfo<CL_PROFILING_COMMAND_QUEUED>(),
+                       event.getProfilingInfo<CL_PROFILING_COMMAND_START>(),
+                       event.getProfilingInfo<CL_PROFILING_COMMAND_END>()});
+  } catch (const cl::Error& error) {
+    throw DeviceError(
+        fmt::format("times of {}: {} returned {}", info_.name, error.what(), error.err()));
+  }
+  kept_launches_.clear();
+  return times;
+}
+
 void Device::finish() {
   try {
     queue_.finish();

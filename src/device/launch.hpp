@@ -30,8 +30,11 @@ void launch(Device& device, cl::Kernel& kernel, const LaunchSize& size,
     auto group = size.local;
     if (group[0] == 0 && !device.info().is_gpu) group = local_size_for(size.global);
     const cl::NDRange local = group[0] == 0 ? cl::NullRange : cl::NDRange(group[0], group[1]);
+    cl::Event event;
     device.queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-                                        cl::NDRange(size.global[0], size.global[1]), local);
+                                        cl::NDRange(size.global[0], size.global[1]), local, nullptr,
+                                        device.keeps_launch_times() ? &event : nullptr);
+    if (device.keeps_launch_times()) device.keep_launch(kernel, event);
     device.count_launch();
   } catch (const cl::Error& error) {
     throw DeviceError("kernel " + kernel.getInfo<CL_KERNEL_FUNCTION_NAME>() + " on " +

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "device/gemm.hpp"
+#include "learning/bench_work.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/joint_likelihood.hpp"
 #include "learning/minibatch.hpp"
@@ -64,10 +65,7 @@ BenchStep crbm_step(Device& device, const CrbmShape& shape, std::size_t batch,
   state->rule.gibbs_steps = gibbs_steps;
   state->rule.W = state->rule.B = {1e-3F, 0.9F, 2e-4F};
   state->rule.A = {1e-5F, 0.9F, 2e-4F};
-  const auto v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
-  const auto order = static_cast<double>(shape.order), k = static_cast<double>(gibbs_steps);
-  // Dynamic biases and their gradients; up, k times down and up, two products for W's gradient.
-  const double multiply_adds = 2.0 * order * v * (v + h) + (1.0 + 2.0 * k + 2.0) * v * h;
+  const auto work = contrastive_divergence_work(shape, batch, gibbs_steps);
   return {
       {{"layer", prefix + (shape.kind == VisibleKind::gaussian ? "gaussian_crbm" : "binary_crbm")},
        {"visible", shape.visible},
@@ -75,12 +73,13 @@ BenchStep crbm_step(Device& device, const CrbmShape& shape, std::size_t batch,
        {"hidden", shape.hidden},
        {"batch", batch},
        {"k", gibbs_steps}},
-      2.0 * multiply_adds * static_cast<double>(batch),
+      flops_of(work),
       [state, batch] {
         ++state->key.step;
         state->cd.step(Rows::indexed(state->frames, state->index, 0, batch), state->rule,
                        state->key, state->losses);
-      }};
+      },
+      work};
 }
 
 /// A whole epoch as `train` runs it, over `frames` windows: shuffle, upload the order, all
@@ -163,21 +162,18 @@ BenchStep mrbm_step(Device& device, std::size_t modalities, std::size_t visible,
   };
   const auto state =
       std::make_shared<State>(device, modalities, visible, hidden, batch, mean_field_steps);
-  // A direction: the present modalities' drive and its gradient; T downs, T − 1 ups (the first
-  // starts from zeros), their back-propagation and their gradients.
-  const auto n = static_cast<double>(modalities), steps = static_cast<double>(mean_field_steps);
-  const double products = n * (6.0 * steps - 3.0 + 2.0 * (n - 1.0));
-  const double multiply_adds = products * static_cast<double>(visible * hidden);
+  const auto work = multi_prediction_work(modalities, visible, hidden, batch, mean_field_steps);
   return {{{"layer", "mrbm"},
            {"modalities", modalities},
            {"visible", modalities * visible},
            {"hidden", hidden},
            {"batch", batch},
            {"steps", mean_field_steps}},
-          2.0 * multiply_adds * static_cast<double>(batch),
+          flops_of(work),
           [state, batch] {
             state->multi_prediction.step(state->rows(batch), UpdateRule::adam(), state->losses);
-          }};
+          },
+          work};
 }
 
 /// Contrastive divergence over both modalities at once.
@@ -194,19 +190,18 @@ BenchStep joint_likelihood_step(Device& device, std::size_t visible, std::size_t
           losses(device, 2, batch) {}
   };
   const auto state = std::make_shared<State>(device, visible, hidden, batch, gibbs_steps);
-  // Up; k times down and up; two products for every W's gradient.
-  const auto k = static_cast<double>(gibbs_steps);
-  const double multiply_adds = (1.0 + 2.0 * k + 2.0) * static_cast<double>(2 * visible * hidden);
+  const auto work = joint_likelihood_work(2, visible, hidden, batch, gibbs_steps);
   return {{{"layer", "joint_likelihood"},
            {"visible", 2 * visible},
            {"hidden", hidden},
            {"batch", batch},
            {"k", gibbs_steps}},
-          2.0 * multiply_adds * static_cast<double>(batch),
+          flops_of(work),
           [state, batch] {
             ++state->step.random.step;
             state->rule.learn(state->rows(batch), state->step, state->losses);
-          }};
+          },
+          work};
 }
 
 /// Inference of one modality from the other, mean field or sampled.

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "device/kernel_rates.hpp"
 #include "mcdbn/device/device.hpp"
 
 namespace mcdbn {
@@ -13,6 +14,7 @@ struct BenchStep {
   nlohmann::ordered_json what;  ///< layer, sizes, batch and so on
   double flops = 0;             ///< useful arithmetic of one run, 2 a multiply-add; 0: not counted
   std::function<void()> run;
+  std::vector<KernelWork> kernels = {};  ///< as far as they are counted one by one
 };
 
 /// Makes a step when its turn comes.

@@ -278,6 +278,47 @@ TEST_CASE("bench: every option changes what its help says") {
          CHECK(run_cli("bench --only other").exit_code == 2);
        }},
       {"--seconds", [] { CHECK(run_cli("bench --seconds -1").exit_code == 2); }},
+      {"--roofline",
+       [] {
+         const json report =
+             json::parse(run_cli("bench --json --roofline --seconds 0 --only joint_likelihood")
+                             .standard_output);
+         for (const json& step : report.at("steps")) {
+           CAPTURE(step.dump());
+           double flops = 0, us = step.at("roofline").at("between_launches_us");
+           for (const json& kernel : step.at("roofline").at("kernels")) {
+             us += kernel.at("us").get<double>();
+             if (!kernel.contains("bytes")) continue;
+             flops += kernel.at("flops").get<double>();
+             CHECK(kernel.at("flops_per_byte") ==
+                   doctest::Approx(kernel["flops"].get<double>() / kernel["bytes"].get<double>()));
+             CHECK(kernel.at("gflops") == doctest::Approx(kernel["flops"].get<double>() /
+                                                          kernel["us"].get<double>() * 1e-3));
+           }
+           CHECK(us > 0);
+           CHECK(flops == doctest::Approx(step.at("gflops").get<double>() *
+                                          step.at("median_us").get<double>() * 1e3));
+         }
+         const std::string text =
+             run_cli("bench --roofline --seconds 0 --only joint_likelihood").standard_output;
+         CHECK(text.find("\n  joint_chain  ") != std::string::npos);
+         CHECK(text.find("\n  between launches  ") != std::string::npos);
+       }},
+      {"--trace",
+       [] {
+         const ScratchFolder folder;
+         const fs::path file = folder / "trace.json";
+         run_cli(
+             fmt::format("bench --trace '{}' --seconds 0 --only joint_likelihood", file.string()));
+         const json events = json::parse(mcdbn::read_text_file(file)).at("traceEvents");
+         const auto count = [&](const std::string& name) {
+           return std::count_if(events.begin(), events.end(),
+                                [&](const json& event) { return event.at("name") == name; });
+         };
+         CHECK(count("thread_name") == 2);  // both sizes of mini-batch
+         CHECK(count("joint_chain") == 2);
+         CHECK(count("joint_likelihood_update") == 2);
+       }},
       // Not run: it takes minutes.
       {"--tune", [] {}}};
   const std::string call = "bench --only mrbm_chain --seconds 0 --json";

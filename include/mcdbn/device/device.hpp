@@ -39,6 +39,12 @@ struct DeviceSelection {
   static DeviceSelection from_environment();
 };
 
+/// When a kernel ran, in nanoseconds of the device's own clock.
+struct LaunchTime {
+  std::string kernel;
+  std::uint64_t queued_ns = 0, started_ns = 0, ended_ns = 0;
+};
+
 class ProgramCache;
 
 /// An open device with one in-order queue and the programs built for it.
@@ -65,6 +71,15 @@ class Device {
   std::uint64_t launch_count() const { return launch_count_; }
   void count_launch() { ++launch_count_; }
 
+  /// Whether from here on the time of every kernel launch is kept, which costs a little of it.
+  /// @throws DeviceError
+  void keep_launch_times(bool keep);
+  /// Whether launches have to be kept by keep_launch.
+  bool keeps_launch_times() const { return keeps_launch_times_; }
+  void keep_launch(const cl::Kernel& kernel, const cl::Event& event);
+  /// Those of the launches since the last call, in order; waits for the queue. @throws DeviceError
+  std::vector<LaunchTime> take_launch_times();
+
  private:
   DeviceInfo info_;
   Tuning tuning_;
@@ -73,6 +88,8 @@ class Device {
   cl::CommandQueue queue_;
   std::unique_ptr<ProgramCache> programs_;
   std::uint64_t launch_count_ = 0;
+  bool keeps_launch_times_ = false;
+  std::vector<std::pair<cl::Kernel, cl::Event>> kept_launches_;
 };
 
 }  // namespace mcdbn

@@ -1,0 +1,102 @@
+#include "device/kernel_rates.hpp"
+
+#include <doctest/doctest.h>
+
+#include "device/every_device.hpp"
+#include "device/gemm.hpp"
+#include "device/launch_trace.hpp"
+#include "device/peak.hpp"
+#include "device/pointwise.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+/// Two products of a side of `size`, and a sum between them.
+struct Step {
+  Matrix a, b, c, row;
+  Step(Device& device, std::size_t size)
+      : a(device, size, size), b(device, size, size), c(device, size, size), row(device, 1, size) {}
+  void run() {
+    gemm(a, b, c);
+    column_sum(c, 1.0F, 0.0F, row);
+    gemm(a, b, c);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("kernel rates: a step's launches by kernel, in order, with the work that was counted") {
+  on_every_device([](Device& device) {
+    Step step(device, 64);
+    const std::vector<KernelWork> work = {{"gemm", 7.0, 11.0}};
+    const StepTimes times = time_kernels(
+        device, [&] { step.run(); }, work, 3);
+    REQUIRE(times.kernels.size() == 2);
+    CHECK(times.kernels[0].work.kernel == "gemm");
+    CHECK(times.kernels[0].work.flops == 7.0);
+    CHECK(times.kernels[0].work.bytes == 11.0);
+    CHECK(times.kernels[0].launches == 2);
+    CHECK(times.kernels[0].seconds > 0);
+    CHECK(times.kernels[1].work.flops == 0);
+    CHECK(times.kernels[1].launches == 1);
+    CHECK(times.between_s >= 0);
+    REQUIRE(times.last_times.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      CHECK(times.last_times[i].queued_ns <= times.last_times[i].started_ns);
+      CHECK(times.last_times[i].started_ns <= times.last_times[i].ended_ns);
+      if (i > 0) CHECK(times.last_times[i - 1].ended_ns <= times.last_times[i].started_ns);
+    }
+    CHECK_FALSE(device.keeps_launch_times());
+    step.run();
+    CHECK(device.take_launch_times().empty());
+  });
+}
+
+TEST_CASE("kernel rates: a product of eight times the work takes more time") {
+  on_every_device([](Device& device) {
+    const auto seconds = [&](std::size_t size) {
+      Step step(device, size);
+      step.run();
+      const StepTimes times = time_kernels(
+          device, [&] { step.run(); }, {}, 9);
+      return times.kernels[0].seconds;
+    };
+    CHECK(seconds(512) > 3 * seconds(128));
+  });
+}
+
+TEST_CASE("launch trace: one row a step, one event a launch, in microseconds") {
+  LaunchTrace trace;
+  trace.add("first", {{"up", 1000, 3000, 5000}, {"down", 2000, 6000, 10000}});
+  trace.add("second", {{"up", 50000, 52000, 53000}});
+  const auto& events = trace.json().at("traceEvents");
+  REQUIRE(events.size() == 5);
+  CHECK(events[0].at("args").at("name") == "first");
+  CHECK(events[1].at("name") == "up");
+  CHECK(events[1].at("ts") == 0.0);
+  CHECK(events[1].at("dur") == 2.0);
+  CHECK(events[1].at("args").at("waited_us") == 2.0);
+  CHECK(events[2].at("ts") == 3.0);
+  CHECK(events[2].at("dur") == 4.0);
+  CHECK(events[2].at("tid") == events[0].at("tid"));
+  CHECK(events[3].at("args").at("name") == "second");
+  CHECK(events[4].at("ts") == 0.0);
+  CHECK(events[4].at("tid") != events[2].at("tid"));
+}
+
+TEST_CASE("peak: no product is far above it, however busy the machine is") {
+  on_every_device([](Device& device) {
+    const double gflops = measure_peak_gflops(device);
+    CHECK(gflops > 0);
+    CHECK(measure_read_gbytes_per_s(device, 1 << 20) > 0);
+    CHECK(measure_read_gbytes_per_s(device, 1) > 0);  // less than one step of the loop
+    constexpr std::size_t kSize = 512;
+    Step step(device, kSize);
+    step.run();
+    const StepTimes times = time_kernels(
+        device, [&] { step.run(); }, {}, 9);
+    CHECK(2 * 2e-9 * kSize * kSize * kSize / times.kernels[0].seconds < 4 * gflops);
+  });
+}
