@@ -115,7 +115,9 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
                       const std::optional<Camera>& camera,
                       const RegenerationOptions& regeneration) {
   const ClipPlacement placement = placement_of(options, camera);
-  const std::vector<Track2d> people = read_tracks_with_notices(options.input, options.track).people;
+  TrackReadOptions reading = options.track;
+  if (camera && !reading.image_size) reading.image_size = {camera->width_px, camera->height_px};
+  const std::vector<Track2d> people = read_tracks_with_notices(options.input, reading).people;
   if (!camera)
     report_assumed(placement.camera_of(people.front(), model.modalities), placement.view);
   for (std::size_t person = 0; person < people.size(); ++person) {
