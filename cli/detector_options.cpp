@@ -20,9 +20,10 @@ std::string detector_names() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-DetectorLike detector_like(const std::string& said) {
+DetectorViews detector_like(const std::string& said) {
   const auto named = std::ranges::find(detectors(), said, &Detector::name);
-  if (named != detectors().end()) return {joint_set(named->joint_set).keypoints, named->noise};
+  if (named != detectors().end())
+    return {joint_set(named->joint_set).keypoints, named->noise, {}, {}};
   if (!std::filesystem::exists(said))
     throw InputError(
         fmt::format("{}: neither a detector ({}) nor a track file", said, detector_names()));
@@ -33,7 +34,7 @@ DetectorLike detector_like(const std::string& said) {
         "{}: shows no person's hip, knee and ankle as a detector names them; its noise cannot be "
         "measured",
         said));
-  return {track.keypoints, measured_noise(track, height_px)};
+  return {track.keypoints, measured_noise(track, height_px), {}, {}};
 }
 
 void add_detector_camera_flags(CLI::App& command, DetectorCameras& cameras) {

@@ -8,6 +8,7 @@
 #include "camera_options.hpp"
 #include "commands.hpp"
 #include "comparison/training_views.hpp"
+#include "detector_options.hpp"
 #include "evaluation/report_page.hpp"
 #include "fit_option.hpp"
 #include "interrupt.hpp"
@@ -20,12 +21,17 @@ namespace mcdbn::cli {
 namespace {
 
 constexpr std::size_t kPaperSamples = 10;  // regenerations of each clip, section V
+constexpr const char *kExact = "exact", *kDetector = "detector";
 constexpr double kTestShare = 0.9;  // of the time, about; the rest goes to the distributions' fits
 
 struct EvaluateOptions {
   std::filesystem::path model, report;
   std::vector<std::filesystem::path> test;
   std::string protocol = "subject", actions, fit;
+  std::string tracks = kExact, like = "openpose";
+  DetectorCameras cameras;
+  OtherBody people;
+  bool camera_unknown = false;
   TestRunOptions run;
   SamplingOptions sampling;
   std::optional<double> azimuth_deg, elevation_deg;
@@ -42,6 +48,26 @@ void apply_protocol(EvaluateOptions& options) {
   options.run.fit = track_fit(options.fit);
 }
 
+/// The tracks that every method is to see.
+void choose_tracks(EvaluateOptions& options) {
+  if (options.tracks == kDetector) {
+    options.run.detector = detector_like(options.like);
+    options.run.detector->cameras = options.cameras;
+    options.run.detector->body = options.people;
+  }
+  options.run.camera_known = !options.camera_unknown;
+}
+
+/// What compares with other programs and with detectors' joints.
+void print_limbs(const EvaluationReport& report) {
+  fmt::print("\n{:<22}{:>10}{:>14}{:>8}   limbs, mm\n", "", "MPJPE", "one rotation", "PA");
+  for (const MethodReport& method : overall_methods(report)) {
+    const LimbError& limbs = method.mean.limbs;
+    fmt::print("{:<22}{:>10.1f}{:>14.1f}{:>8.1f}\n", method.name, limbs.mpjpe_mm,
+               limbs.turned_mpjpe_mm, limbs.pa_mpjpe_mm);
+  }
+}
+
 void print_table(const EvaluationReport& report) {
   int frames = 0;
   for (const ReportClip& clip : report.clips) frames += clip.frames();
@@ -51,6 +77,7 @@ void print_table(const EvaluationReport& report) {
     fmt::print("{:<22}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n", method.name,
                method.mean.pcc_flat, method.mean.pcc_channel, method.mean.error.mpjpe_mm,
                method.mean.error.pa_mpjpe_mm, method.mean.root_mm);
+  if (report.tracks != kExact) print_limbs(report);
   const TrackError track = overall_track_error(report);
   fmt::print(
       "\n2D from 3D: joints {:.1f} px off, relative to the root (the mean track {:.1f} px)\n\n",
@@ -65,6 +92,7 @@ void print_table(const EvaluationReport& report) {
 
 void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   apply_protocol(options);
+  choose_tracks(options);
   Device device = Device::open({context.platform, context.device});
   const Model model = load_model(device, options.model);
   const InterruptGuard interrupt;
@@ -93,6 +121,8 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   report.model = options.model.filename().string();
   report.protocol = options.protocol;
   report.fit = options.fit;
+  report.tracks = options.tracks == kDetector ? options.like : options.tracks;
+  report.camera_known = options.run.camera_known;
   report.damage = options.run.damage;
   if (!options.report.empty()) {
     write_report(options.report, report);
@@ -147,6 +177,33 @@ void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
   add_view_flags(command, options.azimuth_deg, options.elevation_deg);
 }
 
+void add_track_options(CLI::App& command, EvaluateOptions& options) {
+  constexpr const char* kGroup = "2D tracks";
+  command
+      .add_option(
+          "--tracks", options.tracks,
+          "exact: the clips' own joints through the model's view; detector: what a detector "
+          "would see of somebody else who does the same, through cameras drawn around")
+      ->check(CLI::IsMember({kExact, kDetector}))
+      ->capture_default_str()
+      ->group(kGroup);
+  command
+      .add_option("--like", options.like,
+                  "With --tracks detector: which (" + detector_names() +
+                      "), or a track file that one wrote")
+      ->capture_default_str()
+      ->type_name("NAME|FILE")
+      ->group(kGroup);
+  command
+      .add_flag("--camera-unknown", options.camera_unknown,
+                "Nobody is told where the camera stands and what its lens is")
+      ->group(kGroup);
+  visit_group("person", options.people, [&](const Setting& setting, double& value) {
+    add_setting_flag(command, flag_of(setting.name), setting, value)->group(kGroup);
+  });
+  add_detector_camera_flags(command, options.cameras);
+}
+
 /// What trackers do to a track, done to the test clips' before any method sees them.
 void add_damage_options(CLI::App& command, TrackDamage& damage) {
   visit_group("track", damage, [&](const Setting& setting, double& value) {
@@ -163,6 +220,7 @@ void add_evaluate_command(CLI::App& app, CommandContext& context) {
       "evaluate", "Scores a model and its baselines on clips that it was not trained on");
   add_test_options(*command, *options);
   add_regeneration_options(*command, *options);
+  add_track_options(*command, *options);
   add_damage_options(*command, options->run.damage);
   add_json_option(*command, context);
   add_seed_option(*command, context);
@@ -171,7 +229,8 @@ void add_evaluate_command(CLI::App& app, CommandContext& context) {
   command->footer(
       "Example:\n  mcdbn-cl evaluate --model run/model.safetensors --test held_out/ --report "
       "report\n"
-      "  mcdbn-cl evaluate --model run/model.safetensors --test held_out/ --json");
+      "  mcdbn-cl evaluate --model run/model.safetensors --test held_out/ --json\n"
+      "  mcdbn-cl evaluate --model run/model.safetensors --test held_out/ --tracks detector");
   command->callback([&context, options] {
     context.run = [&context, options] { run_evaluate(context, *options); };
   });

@@ -30,7 +30,7 @@ struct ProjectOptions {
 Track2d seen_track(const Motion& motion, const Camera& camera, const std::string& like,
                    std::uint64_t seed) {
   if (like.empty()) return project_motion(motion, camera);
-  const DetectorLike detector = detector_like(like);
+  const DetectorViews detector = detector_like(like);
   return detector_track(motion, skeleton_roles(motion.skeleton), detector.keypoints, camera,
                         detector.noise, seed);
 }

@@ -7,12 +7,13 @@
 #include "corpus/people.hpp"
 #include "evaluation/bone_length.hpp"
 #include "evaluation/foot_slide.hpp"
-#include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/side_swaps.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/body_size.hpp"
 #include "motion/foot_joints.hpp"
+#include "motion/turned_motion.hpp"
 
 namespace mcdbn {
 namespace {
@@ -73,11 +74,17 @@ std::vector<EncodedClip> encode_training_clips(const Model& model, const TestRun
   return clips;
 }
 
-/// From here on the clip's track is what a tracker would have made of it.
-void look_through_damage(EncodedClip& clip, const Model& model, const TrackDamage& damage,
-                         std::uint64_t seed) {
-  damage_track(clip.track, clip.motion.skeleton, damage, seed);
-  clip.track_features = model.modalities.encode_track(smooth_track(clip.track), clip.camera);
+/// A test clip as everyone sees it.
+EncodedClip test_clip(const std::filesystem::path& file, const Model& model,
+                      const TestRunOptions& options, std::uint64_t seed) {
+  EncodedClip clip = encode_clip(file, model.modalities, options.camera, options.keep_first_frame);
+  if (options.detector) {
+    AugmentedView view = detector_view(clip.motion, *options.detector, seed);
+    exchange_sides(view.track, find_side_swaps(view.track));
+    clip = encoded_view(file, model.modalities, std::move(view));
+  }
+  damage_track(clip.track, clip.motion.skeleton, options.damage, seed);
+  return clip;
 }
 
 /// Reading is the first tenth of a run, regenerating up to seven tenths, then baselines.
@@ -97,22 +104,32 @@ class Progress {
 };
 
 ClipPlacement placement_of(const EncodedClip& truth, const TestRunOptions& options) {
-  return {{truth.camera, truth.motion.skeleton}, options.fit};
+  ClipPlacement placement;
+  if (options.camera_known) placement.camera = truth.camera;
+  if (!options.detector) placement.skeleton = truth.motion.skeleton;
+  placement.fit = options.fit;
+  return placement;
 }
 
 /// What a method sees of the clip; what it does not it is left to fill in itself.
-MatrixF seen_features(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
-                      const std::function<MatrixF(const MatrixF&)>& answer) {
-  return fill_gaps(model.modalities, truth.track_features, truth.track,
-                   placement_of(truth, options), answer);
+SeenClip seen_by(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
+                 const std::function<MatrixF(const MatrixF&)>& answer) {
+  return see_clip(model.modalities, truth.track, placement_of(truth, options), answer);
 }
 
 Regeneration answer(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
-                    const MatrixF& pose) {
+                    const Track2d& joints, const MatrixF& pose) {
+  const ClipPlacement placement = placement_of(truth, options);
   Regeneration result;
-  result.motion = fit_to_track(PosePrior::around(pose), model.modalities, truth.track,
-                               placement_of(truth, options), options.fit)
-                      .motion;
+  result.motion =
+      fit_to_track(PosePrior::around(pose), model.modalities, joints, placement, options.fit)
+          .motion;
+  // Who does not know the camera answers in another's axes: what it saw is the same.
+  if (!placement.camera)
+    result.motion =
+        turned_motion(std::move(result.motion),
+                      truth.camera.camera_from_world.transpose() *
+                          placement.camera_of(truth.track, model.modalities).camera_from_world);
   result.score = score_clip(truth, result.motion, model.modalities.root_name());
   return result;
 }
@@ -129,24 +146,27 @@ void regenerate_clips(const Model& model, const TestRunOptions& options, const P
     const std::size_t last = std::min(results.size(), first + at_once);
     std::vector<MatrixF> tracks;
     for (std::size_t i = first; i < last; ++i) {
-      tracks.push_back(seen_features(model, options, results[i].truth, [&](const MatrixF& track) {
+      SeenClip seen = seen_by(model, options, results[i].truth, [&](const MatrixF& track) {
         return single_answer(model.network, track);
-      }));
+      });
+      tracks.push_back(std::move(seen.features));
+      results[i].seen = std::move(seen.joints);
     }
     RegenerationOptions regeneration = options.regeneration;
     regeneration.seed += first;  // other random numbers for other clips
     const auto poses = regenerate(model.network, tracks, regeneration);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       ClipResult& result = results[first + i / samples];
-      result.samples.push_back(answer(model, options, result.truth, poses[i]));
+      result.samples.push_back(answer(model, options, result.truth, result.seen, poses[i]));
     }
     if (regeneration.temperature <= 0) continue;
     regeneration.temperature = 0;
     regeneration.samples = 1;
     const auto single = regenerate(model.network, tracks, regeneration);
-    for (std::size_t i = 0; i < single.size(); ++i)
-      results[first + i].others[kMeanField] =
-          answer(model, options, results[first + i].truth, single[i]);
+    for (std::size_t i = 0; i < single.size(); ++i) {
+      ClipResult& result = results[first + i];
+      result.others[kMeanField] = answer(model, options, result.truth, result.seen, single[i]);
+    }
   }
 }
 
@@ -191,8 +211,9 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
       baseline->fit(tracks, poses);
     for (ClipResult& result : results) {
       const auto predict = [&](const MatrixF& track) { return baseline->predict(track); };
-      result.others[name] = answer(model, options, result.truth,
-                                   predict(seen_features(model, options, result.truth, predict)));
+      const SeenClip seen = seen_by(model, options, result.truth, predict);
+      result.others[name] =
+          answer(model, options, result.truth, seen.joints, predict(seen.features));
     }
   }
 }
@@ -239,9 +260,7 @@ std::vector<ClipResult> run_test(const Model& model,
                       "`include-training`",
                       file.string()));
     ClipResult result;
-    result.truth = encode_clip(file, model.modalities, options.camera, options.keep_first_frame);
-    look_through_damage(result.truth, model, options.damage,
-                        options.regeneration.seed + results.size());
+    result.truth = test_clip(file, model, options, options.regeneration.seed + results.size());
     result.trained_on = trained_on;
     result.known_person = known_person(model, file);
     results.push_back(std::move(result));

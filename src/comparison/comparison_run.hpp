@@ -12,6 +12,7 @@
 
 #include "camera/track_noise.hpp"
 #include "comparison/baseline.hpp"
+#include "corpus/detector_view.hpp"
 #include "corpus/encoded_clip.hpp"
 #include "evaluation/clip_score.hpp"
 #include "evaluation/report_clip.hpp"
@@ -21,8 +22,8 @@
 
 namespace mcdbn {
 
-/// What a test run is made of, and what it costs to know the answer's skeleton and camera: both are
-/// the test clip's; its motion is not shown to anyone.
+/// What a test run is made of. Every method is given the test clip's own skeleton and camera,
+/// unless a detector saw it; its motion is not shown to anyone.
 struct TestRunOptions {
   CameraPlacement camera;
   RegenerationOptions regeneration;
@@ -33,6 +34,10 @@ struct TestRunOptions {
   std::optional<TrackFitSettings> fit =
       TrackFitSettings{};  ///< of every method's answer; unset: none
   TrackDamage damage;      ///< done to the test clips' tracks before anyone sees them
+  /// What a detector would see of the test clips in place of exact projections through `camera`.
+  /// Nobody is told the body then, nor, unless `camera_known`, the camera.
+  std::optional<DetectorViews> detector;
+  bool camera_known = true;
   bool keep_first_frame = false;
   bool include_training = false;  ///< else a clip that was trained on is refused
   std::vector<std::string> baselines = usual_baselines();  ///< as baselines_of says; may be none
@@ -49,6 +54,7 @@ struct Regeneration {
 
 struct ClipResult {
   EncodedClip truth;
+  Track2d seen;  ///< the model's joints as its track shows them
   bool trained_on = false;
   std::string known_person;  ///< as person_of says, if a training clip shows the same one
   std::vector<Regeneration> samples;

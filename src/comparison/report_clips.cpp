@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "comparison/comparison_run.hpp"
@@ -77,10 +78,13 @@ class Figure {
   std::vector<int> parents_;
 };
 
+/// NaN where the track does not show the joint.
 MatrixD track_px(const Track2d& track, const std::vector<std::string>& names) {
-  MatrixD pixels(track.frames(), 2 * static_cast<Eigen::Index>(names.size()));
+  MatrixD pixels =
+      MatrixD::Constant(track.frames(), 2 * static_cast<Eigen::Index>(names.size()), NAN);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const int joint = track.find(names[i]);
+    if (joint < 0) continue;
     pixels.col(2 * static_cast<Eigen::Index>(i)) = track.x_px.col(joint);
     pixels.col(2 * static_cast<Eigen::Index>(i) + 1) = track.y_px.col(joint);
   }
@@ -124,7 +128,7 @@ std::vector<ReportClip> report_clips(const Model& model, const std::vector<ClipR
     clip.parents = figure.parents();
     clip.joints = figure.joint_count();
     clip.truth_mm = figure.points_mm(result.truth.motion);
-    clip.track_px = track_px(result.truth.track, names);
+    clip.track_px = track_px(result.seen, names);
     clip.width_px = result.truth.track.width_px;
     clip.height_px = result.truth.track.height_px;
     for (const Regeneration& sample : result.samples)

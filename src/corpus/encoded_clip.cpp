@@ -1,6 +1,15 @@
 #include "corpus/encoded_clip.hpp"
 
+#include <utility>
+
 namespace mcdbn {
+namespace {
+
+MatrixD root_path(const Motion& motion, const Modalities& modalities) {
+  return joint_positions(motion).middleCols(3 * motion.skeleton.find(modalities.root_name()), 3);
+}
+
+}  // namespace
 
 EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& modalities,
                         const CameraPlacement& placement, bool keep_first_frame,
@@ -13,8 +22,19 @@ EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& mod
   clip.track = project_motion(clip.motion, clip.camera);
   clip.track_features = modalities.encode_track(clip.track, clip.camera);
   clip.pose_features = modalities.encode_pose(clip.motion, clip.camera.camera_from_world);
-  const int root = clip.motion.skeleton.find(modalities.root_name());
-  clip.root_position = joint_positions(clip.motion).middleCols(3 * root, 3);
+  clip.root_position = root_path(clip.motion, modalities);
+  return clip;
+}
+
+EncodedClip encoded_view(const std::filesystem::path& file, const Modalities& modalities,
+                         AugmentedView view) {
+  EncodedClip clip;
+  clip.file = file;
+  clip.motion = std::move(view.motion);
+  clip.camera = std::move(view.camera);
+  clip.track = std::move(view.track);
+  clip.pose_features = modalities.encode_pose(clip.motion, clip.camera.camera_from_world);
+  clip.root_position = root_path(clip.motion, modalities);
   return clip;
 }
 

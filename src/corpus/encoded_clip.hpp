@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mcdbn/corpus/augmentation.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/features/modalities.hpp"
 
@@ -23,5 +24,10 @@ struct EncodedClip {
 EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& modalities,
                         const CameraPlacement& placement, bool keep_first_frame = false,
                         std::vector<std::string>* notices = nullptr);
+
+/// What another camera saw of other motion, made from that file. The features are those of the pose
+/// alone: whether a network sees the track as it is hangs on its columns.
+EncodedClip encoded_view(const std::filesystem::path& file, const Modalities& modalities,
+                         AugmentedView view);
 
 }  // namespace mcdbn

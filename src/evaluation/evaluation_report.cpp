@@ -148,6 +148,8 @@ ordered_json summary_json(const EvaluationReport& report) {
   json["protocol"] = report.protocol;
   json["temperature"] = report.temperature;
   json["fit"] = report.fit;
+  json["tracks"] = report.tracks;
+  json["camera_known"] = report.camera_known;
   json["track_damage"] = {{"noise_px", report.damage.noise_px},
                           {"missing_share", report.damage.missing_share},
                           {"hidden_s", report.damage.hidden_s}};

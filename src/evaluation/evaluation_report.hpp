@@ -24,8 +24,10 @@ struct EvaluationReport {
   std::string model;     ///< file name
   std::string protocol;  ///< subject, paper
   double temperature = 0;
-  std::string fit = "none";  ///< track: every method's answer was fitted to the 2D track
-  TrackDamage damage;        ///< done to the tracks before any method saw them
+  std::string fit = "none";      ///< track: every method's answer was fitted to the 2D track
+  std::string tracks = "exact";  ///< or the detector that they are like
+  bool camera_known = true;      ///< to the methods
+  TrackDamage damage;            ///< done to the tracks before any method saw them
   std::vector<ReportClip> clips;
   std::vector<ActionReport> actions;  ///< analyse_actions of the clips
 };

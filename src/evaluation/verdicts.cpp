@@ -169,6 +169,13 @@ void add_known_people(std::vector<Verdict>& list, const EvaluationReport& report
 
 /// What was done to the tracks and to the answers, for all methods alike.
 void add_treatment(std::vector<Verdict>& list, const EvaluationReport& report) {
+  if (report.tracks != "exact")
+    list.push_back(
+        {Kind::note, fmt::format("The 2D tracks are as a detector's ({}), of other people than the "
+                                 "clips' and through cameras drawn around them; every method saw "
+                                 "the same, {}.",
+                                 report.tracks,
+                                 report.camera_known ? "and knew the camera" : "no camera known")});
   std::vector<std::string> damage;
   if (report.damage.noise_px > 0)
     damage.push_back(fmt::format("{:g} px of noise", report.damage.noise_px));

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "mcdbn/base/settings.hpp"
 #include "mcdbn/motion/skeleton.hpp"
 
 namespace mcdbn {
@@ -12,10 +13,19 @@ namespace mcdbn {
 /// @param factor of the bone that ends at this joint; of a pair only the first is asked
 void scale_bones(Motion& motion, const std::function<double(int joint)>& factor);
 
-/// How much people differ from the one who was captured: relative deviations.
+/// How much people differ from the one who was captured.
 struct OtherBody {
-  double height = 0.05;       ///< of all bones together
-  double proportions = 0.05;  ///< of each bone
+  double height = 0.05;
+  double proportions = 0.05;
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"height", at_least(0), "", "relative deviation of a person's height"},
+          self.height);
+    visit(Setting{"proportions", at_least(0), "",
+                  "relative deviation of each bone's length, both sides alike"},
+          self.proportions);
+  }
 };
 
 /// The same motion by somebody else. The same seed makes the same person.
