@@ -11,14 +11,15 @@
 #include "detector_options.hpp"
 #include "mcdbn/camera/track.hpp"
 #include "mcdbn/formats/camera_file.hpp"
-#include "mcdbn/formats/track_csv.hpp"
 #include "setting_flags.hpp"
+#include "track_options.hpp"
 
 namespace mcdbn::cli {
 namespace {
 
 struct ProjectOptions {
   std::filesystem::path clip, output, camera_output;
+  std::string format = "csv";
   CameraOptions camera;
   ClipOptions preparation;
   std::string like;
@@ -41,7 +42,7 @@ void run_project(const CommandContext& context, const ProjectOptions& options) {
                                               : options.camera.camera_for(motion);
   Track2d track = seen_track(motion, camera, options.like, context.seed);
   add_pixel_noise(track, options.noise_px, context.seed);
-  write_track_csv(options.output, track);
+  track_format(options.format).write(options.output, track);
   if (!options.camera_output.empty()) write_camera(options.camera_output, camera);
   spdlog::info("{}: {} frames of {} joints at {:.4g} fps", options.output.string(), track.frames(),
                track.joint_count(), track.fps);
@@ -54,9 +55,13 @@ void add_project_command(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("project", "Projects a BVH clip through a camera to a 2D joint track");
   command->add_option("clip", options->clip, "BVH file")->required()->type_name("FILE");
-  command->add_option("-o,--output", options->output, "Track to write, CSV")
+  command->add_option("-o,--output", options->output, "Track to write, a file or a folder")
       ->required()
       ->type_name("FILE");
+  add_format_option(*command, options->format,
+                    "Of the track that is written; those of detectors have room for a detector's "
+                    "joints (--like) alone")
+      ->capture_default_str();
   command
       ->add_option("--write-camera", options->camera_output,
                    "Also write the camera that was used, as OpenCV YAML")

@@ -1,9 +1,11 @@
 #include "track_options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <utility>
+#include <vector>
 
 #include "setting_flags.hpp"
 
@@ -13,18 +15,17 @@ namespace {
 constexpr const char* kGroup = "Track";
 }
 
-std::string track_format_names() {
-  std::string names;
-  for (const TrackFormat& format : track_formats())
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", format.name);
-  return names;
+CLI::Option* add_format_option(CLI::App& command, std::string& format, const std::string& help) {
+  std::vector<std::string> names;
+  for (const TrackFormat& known : track_formats()) names.push_back(known.name);
+  return command
+      .add_option("--format", format, fmt::format("{}: {}", help, fmt::join(names, ", ")))
+      ->check(CLI::IsMember(names).description(""))
+      ->type_name("NAME");
 }
 
 void add_track_options(CLI::App& command, TrackReadOptions& options) {
-  command
-      .add_option("--format", options.format,
-                  fmt::format("Of the track: {} (default: by its content)", track_format_names()))
-      ->type_name("NAME")
+  add_format_option(command, options.format, "Of the track (default: by its content)")
       ->group(kGroup);
   command
       .add_option("--person", options.person,

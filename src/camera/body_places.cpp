@@ -176,8 +176,8 @@ std::string place_name_of(std::string_view spelling) {
     if (said && side != Side::middle) return {};
     if (said)
       side = *said;
-    else
-      rest += word;
+    else if (word != "pose" && word != "landmark" && word != "keypoint" && word != "joint")
+      rest += word;  // PoseLandmark.NOSE is a nose
   }
   const Place* place = place_of_word(rest);
   // Run together: "lshoulder", "leftshoulder".

@@ -17,6 +17,7 @@ namespace {
 constexpr std::array kBodyKeys{"landmarks", "pose_landmarks", "poseLandmarks", "landmark",
                                "keypoints", "joints",         "pose",          "poses",
                                "bodies",    "people",         "detections"};
+constexpr int kDepth = 6;  // lists in lists down to a body
 constexpr std::array kFrameKeys{"frame", "frame_id", "frame_idx", "frame_number", "frameNumber"};
 constexpr std::array kConfidenceKeys{"visibility", "score", "confidence", "presence", "v"};
 
@@ -49,8 +50,7 @@ class LandmarkReader {
   explicit LandmarkReader(const std::string& file) : file_(file) {}
 
   SeenPeople read(const JsonPlace& content) {
-    if (content.is_object() && content.has("fps")) people_.fps = content["fps"].number();
-    if (people_.fps && !(*people_.fps > 0)) content["fps"].fail("a rate is above 0");
+    read_film(content);
     add_all(content);
     judge_third_numbers();
     for (auto& [number, frame] : people_.frames)
@@ -61,8 +61,27 @@ class LandmarkReader {
   }
 
  private:
+  /// What an object says beside its frames.
+  void read_film(const JsonPlace& content) {
+    const auto above_zero = [&](const auto& keys) -> std::optional<double> {
+      const auto said = any_of_keys(content, keys);
+      if (!said || !said->value().is_number()) return {};
+      if (!(said->number() > 0 && said->number() < 1e6)) said->fail("no usable number above 0");
+      return said->number();
+    };
+    people_.fps = above_zero(std::array{"fps", "frame_rate", "frameRate"});
+    const auto width = above_zero(std::array{"width", "image_width", "imageWidth"});
+    const auto height = above_zero(std::array{"height", "image_height", "imageHeight"});
+    if (width && height && *width >= 1 && *height >= 1)
+      people_.image_size = ImageSize{static_cast<int>(*width), static_cast<int>(*height)};
+  }
+
   void add_all(const JsonPlace& content) {
-    if (content.is_object() && content.has("frames")) return add_all(content["frames"]);
+    if (content.is_object() && content.has("frames")) return add_list_or_keys(content["frames"]);
+    add_list_or_keys(content);
+  }
+
+  void add_list_or_keys(const JsonPlace& content) {
     if (is_body(content)) return add_frame(content, 0);
     if (content.is_list()) {
       long long next = 0;
@@ -86,14 +105,15 @@ class LandmarkReader {
   }
 
   /// A body, or a list of them, or an object around either. Nothing: nobody was found.
-  void add_bodies(const JsonPlace& place, std::vector<SeenPerson>& people) {
+  void add_bodies(const JsonPlace& place, std::vector<SeenPerson>& people, int depth = 0) {
+    if (depth > kDepth) place.fail("no landmarks down to here");
     if (place.value().is_null() || place.size() == 0) return;
     if (is_body(place)) {
       people.push_back(person_of_body(place));
     } else if (place.is_list()) {
-      for (const JsonPlace& body : place.list()) add_bodies(body, people);
+      for (const JsonPlace& body : place.list()) add_bodies(body, people, depth + 1);
     } else if (place.is_object()) {
-      if (const auto inside = any_of_keys(place, kBodyKeys)) add_bodies(*inside, people);
+      if (const auto inside = any_of_keys(place, kBodyKeys)) add_bodies(*inside, people, depth + 1);
     } else {
       place.fail("neither landmarks nor a list of them");
     }
@@ -157,7 +177,7 @@ class LandmarkReader {
 /// Whether a body lies in the first places inside.
 bool holds_body(const JsonPlace& place, int depth = 0) {
   if (is_body(place)) return true;
-  if (depth > 4 || place.size() == 0) return false;
+  if (depth > kDepth || place.size() == 0) return false;
   if (place.is_list()) {
     // The first frames may be of nobody.
     for (std::size_t i = 0; i < std::min<std::size_t>(place.size(), 1000); ++i)

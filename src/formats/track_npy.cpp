@@ -1,5 +1,6 @@
 // NumPy arrays: [frames x joints x 2 to 4], [people x frames x joints x 2 to 4] as MMAction2 keeps
-// them, or flat [frames x joints·2 or 3]; the joints by their count.
+// them, the same with the frames first, or flat [frames x joints·2 or 3]; the joints by their
+// count.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -72,9 +73,12 @@ SeenPeople read(const TrackSource& source) {
   if (numbers > 2 && confidence == 0)
     people.notices.emplace_back(
         "the numbers behind x and y are not all positive: depths, left out");
+  // More frames than people.
+  const bool frames_first = shape[0] > shape[1];
   auto value = array.values.begin();
-  for (std::size_t person = 0; person < shape[0]; ++person)
-    for (std::size_t frame = 0; frame < shape[1]; ++frame) {
+  for (std::size_t outer = 0; outer < shape[0]; ++outer)
+    for (std::size_t inner = 0; inner < shape[1]; ++inner) {
+      const std::size_t frame = frames_first ? outer : inner, person = frames_first ? inner : outer;
       SeenPerson seen;
       for (std::size_t joint = 0; joint < joints;
            ++joint, value += static_cast<std::ptrdiff_t>(numbers)) {

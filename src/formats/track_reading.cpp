@@ -22,6 +22,7 @@ constexpr double kUsualFps = 30.0;
 constexpr ImageSize kUsualImage{1920, 1080};
 /// Coordinates up to here are shares of the image: no body in pixels is that small.
 constexpr double kLargestShare = 3.0;
+constexpr double kFarthest_px = 1e6;
 constexpr double kPatience_s = 1.5;
 /// Frames by number may be so many times those that are there; beyond, the numbers are no time.
 constexpr long long kSparse = 10, kFewFrames = 100;
@@ -111,8 +112,11 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
   const Extent extent = extent_of(frames);
   const std::optional<ImageSize> known = options.image_size ? options.image_size : seen.image_size;
   if (extent.most_x < extent.least_x) return known.value_or(kUsualImage);  // nothing was seen
-  const bool shares = !seen.in_pixels && std::max({-extent.least_x, -extent.least_y, extent.most_x,
-                                                   extent.most_y}) <= kLargestShare;
+  const double farthest =
+      std::max({-extent.least_x, -extent.least_y, extent.most_x, extent.most_y});
+  if (farthest > kFarthest_px)
+    throw InputError(fmt::format("{}: a coordinate of {:.3g}, which is no pixel", file, farthest));
+  const bool shares = !seen.in_pixels && farthest <= kLargestShare;
   if (!shares) {
     if (known) return *known;
     const ImageSize guess = guessed_image(extent);

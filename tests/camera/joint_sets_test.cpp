@@ -66,8 +66,9 @@ TEST_CASE("joint sets: the orders of the detectors' documents") {
 }
 
 TEST_CASE("keypoints: names in the usual spellings") {
-  for (const char* name : {"LShoulder", "left_shoulder", "shoulder_left", "Left Shoulder",
-                           "shoulder.L", "lshoulder", "LEFT_SHOULDER", "leftShoulder"}) {
+  for (const char* name :
+       {"LShoulder", "left_shoulder", "shoulder_left", "Left Shoulder", "shoulder.L", "lshoulder",
+        "LEFT_SHOULDER", "leftShoulder", "PoseLandmark.LEFT_SHOULDER"}) {
     CAPTURE(name);
     CHECK(keypoint_of(name).role == JointRole::left_shoulder);
     CHECK(keypoint_of(name).name == name);

@@ -213,6 +213,15 @@ TEST_CASE("project: every option changes what its help says") {
            }),
        {"clip", [] { CHECK(run_cli("project absent.bvh -o t.csv").exit_code == 3); }},
        {"--output", [&] { CHECK(!projected("").empty()); }},
+       {"--format",
+        [&] {
+          CHECK(projected("--format csv") == plain);
+          CHECK(projected("--format sleap").starts_with("track,frame_idx,instance.score,Hips."));
+          const std::string call =
+              fmt::format("project '{}' -o '{}' --format ", clip.string(), output.string());
+          CHECK(run_cli(call + "openpose").exit_code == 3);  // no room for these joints
+          CHECK(run_cli(call + "none").exit_code == 2);
+        }},
        {"--write-camera",
         [&] {
           const fs::path written = folder / "written.yaml";

@@ -89,6 +89,7 @@ TEST_CASE("layouts: what is wrong is told by its place") {
            Case{"a.csv", "bodyparts,a,a\ncoords,x,y\n0,1,two\n", "a.csv:3: 'two' in column 3"},
            Case{"a.csv", "frame_idx,a.x\n0,1\n", "a.csv:1: node a has no columns"},
            Case{"a.csv", "frame,landmark,x,y\n0,nose,1\n", "a.csv:2: 3 cells"},
+           Case{"a.csv", "frame_idx,a.x,a.y\n0,1e300,2\n", "a.csv: a coordinate of 1e+300"},
            Case{"a.csv", "frame,model,keypoint,x,y,z\n0,b,nose,1,2,3\n", "points in space"},
        }) {
     CAPTURE(wrong.text);
@@ -104,4 +105,33 @@ TEST_CASE("layouts: a body in space is no track") {
     text += (joint == 0 ? "[" : ",[") + std::to_string(0.03 * joint - 0.5) + ",-0.25,0.1]";
   CHECK_THROWS_WITH_AS(read_track(folder.write("world.json", text + "]]")),
                        doctest::Contains("a body in space"), InputError);
+}
+
+TEST_CASE("layouts: a film's rate and size beside its frames, and columns by MediaPipe's names") {
+  const ScratchFolder folder;
+  for (const LayoutSample& sample : layout_samples()) {
+    if (sample.name != "mediapipe.json") continue;
+    const Track2d track = read_track(folder.write(
+        "film.json", R"({"fps": 25, "width": 640, "height": 480, "frames": )" + sample.text + "}"));
+    CHECK(track.fps == 25);
+    CHECK(track.width_px == 640);
+    CHECK(track.x_px(0, 0) == doctest::Approx((300 + 1.0 / 3) * 640 / 1920));
+  }
+  const TrackReading named = read_tracks(
+      folder.write("named.csv",
+                   "frame,PoseLandmark.LEFT_HIP_x,PoseLandmark.LEFT_HIP_y,RIGHT_HIP_x,RIGHT_HIP_y,"
+                   "LEFT_KNEE_x,LEFT_KNEE_y,RIGHT_KNEE_x,RIGHT_KNEE_y,NOSE_x,NOSE_y\n"
+                   "0,310,200,290,200,310,300,290,300,300,50\n"));
+  CHECK(named.format == "mediapipe");
+  CHECK(named.people.front().keypoints[0].role == JointRole::left_hip);
+  CHECK(named.people.front().keypoints[4].role == JointRole::head);
+}
+
+TEST_CASE("layouts: lists in lists without end are refused") {
+  const ScratchFolder folder;
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  for (const TrackFormat& format : track_formats())
+    CHECK_THROWS_AS(read_track(folder.write("deep.json", deep), {.format = format.name}),
+                    InputError);
+  CHECK_THROWS_AS(read_track(folder.write("deep.json", deep)), InputError);
 }
