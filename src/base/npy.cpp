@@ -127,16 +127,16 @@ Parts split(std::string_view bytes) {
   return {bytes.substr(0, length), bytes.substr(length)};
 }
 
-struct Stored {
+struct StoredArray {
   const NumberType& type;
   bool by_columns;
   std::vector<std::size_t> shape;
   std::string_view data;
 };
 
-Stored stored_in(std::string_view bytes) {
+StoredArray stored_in(std::string_view bytes) {
   const auto [header, data] = split(bytes);
-  Stored stored{number_type_of(text_of(header, "descr")), truth_of(header, "fortran_order"),
+  StoredArray stored{number_type_of(text_of(header, "descr")), truth_of(header, "fortran_order"),
                 shape_of(header), data};
   // Divided, not multiplied: the product of a wrong shape may be any number.
   std::size_t left = data.size() / stored.type.bytes;
@@ -171,7 +171,7 @@ std::string bytes_of(std::string_view type, const std::vector<std::size_t>& shap
 }  // namespace
 
 NpyArray npy_array(std::string_view bytes) {
-  const Stored stored = stored_in(bytes);
+  const StoredArray stored = stored_in(bytes);
   NpyArray array{stored.shape, {}};
   std::vector<std::size_t> at(array.shape.size());
   const std::size_t count =
@@ -195,7 +195,7 @@ std::string npy_bytes(const NpyArray& array) {
 }
 
 MatrixF npy_matrix(std::string_view bytes) {
-  const Stored stored = stored_in(bytes);
+  const StoredArray stored = stored_in(bytes);
   const std::vector<std::size_t>& shape = stored.shape;
   if (shape.empty() || shape.size() > 2)
     fail(fmt::format("{} dimensions; 2 are wanted", shape.size()));
