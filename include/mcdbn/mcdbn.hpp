@@ -35,6 +35,7 @@
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/joint_map.hpp"
+#include "mcdbn/formats/motion_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
 #include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/learning/epoch_report.hpp"

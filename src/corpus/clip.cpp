@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
 
 #include "base/text_file.hpp"
 #include "base/user_cache.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/motion_file.hpp"
 #include "motion/resample.hpp"
 
 namespace fs = std::filesystem;
@@ -21,21 +20,14 @@ namespace {
 /// Files print their frame time rounded; rates closer than this are the same one.
 constexpr double kSameRate_hz = 0.01;
 
-bool is_bvh(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char letter) { return std::tolower(letter); });
-  return extension == ".bvh";
-}
-
 std::vector<fs::path> clips_below(const fs::path& folder) {
   std::vector<fs::path> clips;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file() && is_bvh(entry.path())) clips.push_back(entry.path());
+    if (entry.is_regular_file() && is_motion_file(entry.path())) clips.push_back(entry.path());
   }
   if (clips.empty()) {
-    throw InputError(
-        fmt::format("{}: no .bvh file in this folder; name one that holds some", folder.string()));
+    throw InputError(fmt::format(
+        "{}: no .bvh or .amc file in this folder; name one that holds some", folder.string()));
   }
   std::ranges::sort(clips);
   return clips;
@@ -70,7 +62,7 @@ Motion load_clip(const fs::path& path, const ClipOptions& options,
   if (!std::isfinite(options.fps) || options.fps < 0) {
     throw ConfigError(fmt::format("fps is {}; give a rate, or 0 for the file's own", options.fps));
   }
-  return prepared(read_bvh(path, notices), path, options, notices);
+  return prepared(read_motion(path, notices), path, options, notices);
 }
 
 std::vector<LoadedClip> load_clips(const std::vector<fs::path>& files, bool keep_first_frame,
@@ -79,7 +71,7 @@ std::vector<LoadedClip> load_clips(const std::vector<fs::path>& files, bool keep
   for (const fs::path& file : files) {
     const std::string text = read_text_file(file);
     clips.push_back({identified(file, text),
-                     prepared(parse_bvh(text, file.string(), notices), file,
+                     prepared(parse_motion(text, file, notices), file,
                               {.fps = 0, .keep_first_frame = keep_first_frame}, notices)});
   }
   return clips;
@@ -101,7 +93,7 @@ std::vector<fs::path> find_clips(const std::vector<fs::path>& paths) {
       add(path);
     }
   }
-  if (clips.empty()) throw InputError("no motion given; name BVH files or folders of them");
+  if (clips.empty()) throw InputError("no motion given; name BVH or AMC files or folders of them");
   return clips;
 }
 

@@ -8,21 +8,23 @@
 
 namespace mcdbn {
 
-/// How a BVH file becomes a clip that a model can use; training, evaluation and `project` share it.
+/// How a file of motion becomes a clip that a model can use; training, evaluation and `project`
+/// share it.
 struct ClipOptions {
   double fps = 30.0;              ///< resample to this rate; 0 keeps the file's own
   bool keep_first_frame = false;  ///< keep a leading calibration pose
 };
 
-/// Reads a BVH file, drops a leading calibration pose and resamples.
+/// Reads a BVH or AMC file (read_motion), drops a leading calibration pose and resamples.
 /// @param notices if given, collects a line for each thing that was odd or was changed
 /// @throws InputError if the file is bad or has no frame left, ConfigError if fps is not a rate
 Motion load_clip(const std::filesystem::path& path, const ClipOptions& options = {},
                  std::vector<std::string>* notices = nullptr);
 
-/// The BVH files that a command line means: files as they are, folders searched recursively for
-/// *.bvh (any case), sorted by path within each folder; a file named twice counts once.
-/// @throws InputError if a path does not exist or a folder holds no BVH file
+/// The BVH and AMC files that a command line means: files as they are, folders searched recursively
+/// for
+/// *.bvh and *.amc (any case), sorted by path within each folder; a file named twice counts once.
+/// @throws InputError if a path does not exist or a folder holds none
 std::vector<std::filesystem::path> find_clips(const std::vector<std::filesystem::path>& paths);
 
 /// A clip that the model was trained on, so that it is not taken for a test.

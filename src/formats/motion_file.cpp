@@ -1,0 +1,70 @@
+#include "mcdbn/formats/motion_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "base/text_file.hpp"
+#include "formats/asf_amc.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/bvh.hpp"
+
+namespace fs = std::filesystem;
+
+namespace mcdbn {
+namespace {
+
+bool ends_in(const fs::path& path, std::string_view extension) {
+  std::string own = path.extension().string();
+  std::ranges::transform(own, own.begin(),
+                         [](unsigned char letter) { return std::tolower(letter); });
+  return own == extension;
+}
+
+/// The ASF of an AMC: the one whose name begins the AMC's, before an underscore or as a whole; the
+/// longest if there are more; else the only one in the folder.
+fs::path skeleton_beside(const fs::path& amc) {
+  const fs::path folder = amc.has_parent_path() ? amc.parent_path() : fs::path(".");
+  const std::string name = amc.stem().string();
+  fs::path best, last;
+  std::size_t length = 0, count = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (!ends_in(entry.path(), ".asf")) continue;
+    last = entry.path();
+    ++count;
+    const std::string own = entry.path().stem().string();
+    const bool begins = name == own || name.starts_with(own + '_');
+    if (!begins || own.size() < length) continue;
+    best = entry.path();
+    length = own.size();
+  }
+  if (best.empty() && count == 1) best = last;
+  if (best.empty())
+    throw InputError(fmt::format(
+        "{}: its skeleton is missing; put the person's .asf beside it, named as the AMC begins",
+        amc.string()));
+  return best;
+}
+
+}  // namespace
+
+bool is_motion_file(const fs::path& path) {
+  return ends_in(path, ".bvh") || ends_in(path, ".amc");
+}
+
+Motion parse_motion(std::string_view text, const fs::path& path,
+                    std::vector<std::string>* warnings) {
+  if (ends_in(path, ".asf"))
+    throw InputError(
+        fmt::format("{}: is a skeleton; name the .amc files that hold its motion", path.string()));
+  if (!ends_in(path, ".amc")) return parse_bvh(text, path.string(), warnings);
+  const fs::path skeleton = skeleton_beside(path);
+  return parse_asf_amc(read_text_file(skeleton), skeleton.string(), text, path.string(), warnings);
+}
+
+Motion read_motion(const fs::path& path, std::vector<std::string>* warnings) {
+  return parse_motion(read_text_file(path), path, warnings);
+}
+
+}  // namespace mcdbn
