@@ -27,6 +27,7 @@ struct Call {
   std::optional<fs::path> camera = {}, skeleton = {};
   std::optional<std::size_t> samples = {}, gibbs_steps = {}, mrbm_gibbs_steps = {};
   std::optional<double> temperature = {};
+  mcdbn::AssumedView view = {};
   std::optional<std::uint64_t> seed = {};
   std::string fit = {}, to = {};
 
@@ -43,6 +44,9 @@ struct Call {
     add("--mrbm-gibbs-steps", mrbm_gibbs_steps);
     add("--temperature", temperature);
     add("--seed", seed);
+    add("--camera-pitch", view.pitch_deg);
+    add("--camera-roll", view.roll_deg);
+    add("--camera-fov", view.field_of_view_deg);
     if (!to.empty()) text += " --to " + to;
     return fit.empty() ? text : text + " --fit " + fit;
   }
@@ -53,6 +57,7 @@ std::vector<std::string> by_library(const Call& call) {
   const mcdbn::Model model = load_model(usual_device(), call.model);
   mcdbn::ClipPlacement placement;
   if (call.camera) placement.camera = mcdbn::read_camera(*call.camera);
+  placement.view = call.view;
   if (call.skeleton) placement.skeleton = mcdbn::read_bvh(*call.skeleton).skeleton;
   if (call.fit == "none") placement.fit.reset();
   mcdbn::RegenerationOptions options;
@@ -138,6 +143,9 @@ TEST_CASE("regenerate: every option changes what its help says") {
       row("--gibbs-steps", [](Call& c) { c.gibbs_steps = 3; }),
       row("--mrbm-gibbs-steps", [](Call& c) { c.mrbm_gibbs_steps = 2; }),
       row("--camera", [&](Call& c) { c.camera = folder / "camera.yaml"; }),
+      row("--camera-pitch", [](Call& c) { c.view.pitch_deg = 15; }),
+      row("--camera-roll", [](Call& c) { c.view.roll_deg = -20; }),
+      row("--camera-fov", [](Call& c) { c.view.field_of_view_deg = 70; }),
       row("--skeleton", [&](Call& c) { c.skeleton = first_test_clip(); }),
       row("--fit", [](Call& c) { c.fit = "track"; }),
       row("--input", [&](Call& c) { c.track = folder / "other.csv"; }),
@@ -159,7 +167,7 @@ TEST_CASE("regenerate: every option changes what its help says") {
   rows.push_back({"--output", [&] { CHECK(text() == by_library(one).at(0)); }});
   rows.push_back({"--quiet", [&] {
                     const std::string call = one.arguments(output);
-                    CHECK(count_lines(run_cli(call).standard_error) == 1);
+                    CHECK(count_lines(run_cli(call).standard_error) == 2);  // the camera, the file
                     const std::string seen = text();
                     CHECK(run_cli(call + " --quiet").standard_error.empty());
                     CHECK(text() == seen);
@@ -242,7 +250,8 @@ TEST_CASE("regenerate --to track: 2D from a clip, as the library makes it") {
   CHECK(written(" --samples 2 --temperature 0.7 --seed 9 --gibbs-steps 2 --mrbm-gibbs-steps 3",
                 {"out_01.csv", "out_02.csv"}) == wanted(options));
 
-  for (const char* other : {"--fit none", "--fit track", "--skeleton clip.bvh"}) {
+  for (const char* other : {"--fit none", "--fit track", "--skeleton clip.bvh", "--camera-pitch 3",
+                            "--camera-roll 3", "--camera-fov 50"}) {
     CAPTURE(other);
     const CliResult refused = run_cli(plain + " " + other);
     CHECK(refused.exit_code == 2);
