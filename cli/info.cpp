@@ -12,6 +12,8 @@
 #include "commands.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/track_summary.hpp"
+#include "mcdbn/formats/camera_file.hpp"
+#include "mcdbn/formats/motion_file.hpp"
 #include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/machines/machine_file.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
@@ -24,11 +26,18 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
+std::string extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char letter) { return std::tolower(letter); });
+  return extension;
+}
+
 json describe_clip(const fs::path& path) {
   const Motion motion = load_clip_with_notices(path, {.fps = 0.0, .keep_first_frame = true});
   json joints = json::array();
   for (const Joint& joint : motion.skeleton.joints) joints.push_back(joint.name);
-  return {{"kind", "BVH clip"},
+  return {{"kind", extension_of(path) == ".bvh" ? "BVH clip" : "ASF/AMC clip"},
           {"joints", joints},
           {"channels", motion.skeleton.channel_count()},
           {"frames", motion.frames()},
@@ -88,18 +97,36 @@ json describe_track(const fs::path& path, TrackReadOptions options) {
           {"notices", notices}};
 }
 
+json describe_cameras(const fs::path& path, const CameraFormat& format) {
+  const CameraRig rig = read_cameras(path);
+  json cameras = json::array();
+  for (const auto& [name, camera] : rig.cameras) {
+    const Eigen::Vector3d centre = -camera.camera_from_world.transpose() * camera.translation;
+    cameras.push_back({{"name", name},
+                       {"width_px", camera.width_px},
+                       {"height_px", camera.height_px},
+                       {"fx_px", camera.fx_px},
+                       {"fy_px", camera.fy_px},
+                       {"distortions", camera.distortion.size()},
+                       {"centre", {centre.x(), centre.y(), centre.z()}},
+                       {"unit_m", camera.unit_m ? json(*camera.unit_m) : json()}});
+  }
+  return {
+      {"kind", "cameras"}, {"format", format.name}, {"cameras", cameras}, {"notices", rig.assumed}};
+}
+
 json describe(const fs::path& path, const TrackReadOptions& options) {
   if (!fs::exists(path)) throw InputError(fmt::format("{}: no such file", path.string()));
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char letter) { return std::tolower(letter); });
-  if (extension == ".bvh") return describe_clip(path);
+  const std::string extension = extension_of(path);
+  if (is_motion_file(path)) return describe_clip(path);
   if (extension == ".safetensors") {
     if (is_machine_file(path)) return describe_machine(path);
     json description = describe_model(path);
     description["kind"] = "trained model";
     return description;
   }
+  if (const CameraFormat* format = fs::is_directory(path) ? nullptr : camera_format_of(path))
+    return describe_cameras(path, *format);
   return describe_track(path, options);
 }
 
@@ -139,9 +166,11 @@ void print_for_people(const json& description) {
 void add_info_command(CLI::App& app, CommandContext& context) {
   auto path = std::make_shared<fs::path>();
   auto options = std::make_shared<TrackReadOptions>();
-  CLI::App* command =
-      app.add_subcommand("info", "Describes a BVH clip, a 2D track, a trained model or a machine");
-  command->add_option("file", *path, "BVH, track (a file or a folder), model or machine")
+  CLI::App* command = app.add_subcommand(
+      "info", "Describes a clip, a 2D track, cameras, a trained model or a machine");
+  command
+      ->add_option("file", *path,
+                   "BVH, AMC, track (a file or a folder), calibration, model or machine")
       ->required()
       ->type_name("FILE");
   add_track_options(*command, *options);

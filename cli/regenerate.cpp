@@ -15,6 +15,7 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/joint_map.hpp"
+#include "mcdbn/formats/motion_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "sample_path.hpp"
@@ -61,8 +62,7 @@ void report_assumed(const Camera& camera, const AssumedView& view) {
   const double pitch_deg = std::asin(-camera.camera_from_world(2, 1)) * 180 / EIGEN_PI;
   spdlog::info(
       "no --camera: taken to look down by {:.4g} degrees, to be turned by {:.4g}, and to see "
-      "{:.4g} "
-      "degrees from the image's top to its bottom; say what is known by --camera-pitch, "
+      "{:.4g} degrees from the image's top to its bottom; say what is known by --camera-pitch, "
       "--camera-roll, --camera-fov",
       std::abs(pitch_deg) < 1e-9 ? 0.0 : pitch_deg, view.roll_deg.value_or(0), fov_deg);
 }
@@ -105,7 +105,7 @@ ClipPlacement placement_of(const RegenerateOptions& options, const std::optional
   ClipPlacement placement;
   placement.camera = camera;
   placement.view = options.seen_by.view;
-  if (!options.skeleton.empty()) placement.skeleton = read_bvh(options.skeleton).skeleton;
+  if (!options.skeleton.empty()) placement.skeleton = read_motion(options.skeleton).skeleton;
   placement.fit = track_fit(options.fit);
   if (!options.joint_map.empty()) placement.joint_map = read_joint_map(options.joint_map);
   return placement;

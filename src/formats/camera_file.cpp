@@ -25,6 +25,12 @@ CameraSource source_of(const std::filesystem::path& path) {
   return source;
 }
 
+const CameraFormat* format_of(const CameraSource& source) {
+  const auto found = std::ranges::find_if(
+      camera_formats(), [&](const CameraFormat& format) { return format.recognises(source); });
+  return found == camera_formats().end() ? nullptr : &*found;
+}
+
 std::vector<std::string> names_of(const CameraRig& rig) {
   std::vector<std::string> names;
   for (const NamedCamera& camera : rig.cameras) names.push_back(camera.name);
@@ -52,11 +58,18 @@ const std::vector<CameraFormat>& camera_formats() {
   return formats;
 }
 
+const CameraFormat* camera_format_of(const std::filesystem::path& path) {
+  try {
+    return format_of(source_of(path));
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
 CameraRig read_cameras(const std::filesystem::path& path) {
   const CameraSource source = source_of(path);
-  const auto found = std::ranges::find_if(
-      camera_formats(), [&](const CameraFormat& format) { return format.recognises(source); });
-  if (found == camera_formats().end()) {
+  const CameraFormat* found = format_of(source);
+  if (found == nullptr) {
     std::vector<std::string_view> known;
     for (const CameraFormat& format : camera_formats()) known.push_back(format.name);
     throw InputError(

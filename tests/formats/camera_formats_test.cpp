@@ -9,8 +9,8 @@
 
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
-#include "formats/camera_formats.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/camera_file.hpp"
 #include "shared_data.hpp"
 
 using namespace mcdbn;
@@ -55,12 +55,9 @@ void check_as_section(const Camera& camera, double unit_m) {
   CHECK((centre_m(camera) - Eigen::Vector3d(0, 1.2, 3)).norm() < 1e-9);
 }
 
-const char* format_of(const std::filesystem::path& path) {
-  static std::string text;
-  const CameraSource source{path, read_text_file(path)};
-  for (const CameraFormat& format : camera_formats())
-    if (format.recognises(source)) return format.name.data();
-  return "none";
+std::string format_of(const std::filesystem::path& path) {
+  const CameraFormat* format = camera_format_of(path);
+  return format ? std::string(format->name) : "none";
 }
 
 }  // namespace
@@ -70,7 +67,7 @@ TEST_CASE("camera formats: Pose2Sim's world is z-up and in metres, its sizes are
   const auto file = folder.write("Calib.toml", section("cam_01", 1, "fisheye = false") +
                                                    section("cam_02", 1, "fisheye = false") +
                                                    "[metadata]\nadjusted = false\nerror = 0.0\n");
-  CHECK(std::string(format_of(file)) == "pose2sim");
+  CHECK(format_of(file) == "pose2sim");
   const CameraRig rig = read_cameras(file);
   REQUIRE(rig.cameras.size() == 2);
   CHECK(rig.cameras[1].name == "cam_02");
@@ -102,7 +99,7 @@ TEST_CASE("camera formats: Anipose's units are told by how far the cameras stand
   const ScratchFolder folder;
   const auto file = folder.write(
       "calibration.toml", section("cam_0", 1000, "", "0.1,\n 0, 0, 0, 0.2") + "[metadata]\n");
-  CHECK(std::string(format_of(file)) == "anipose");
+  CHECK(format_of(file) == "anipose");
   check_as_section(read_camera(file), 0.001);
   check_as_section(read_camera(folder.write("m.toml", section("cam_0", 1, "", "0, 0, 0, 0, 0"))),
                    1.0);
@@ -127,7 +124,7 @@ TEST_CASE("camera formats: caliscope's rotations are matrices, its cameras lie d
                "[[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0]]");
   text.replace(text.find("name = \"cameras.3\""), 18, "cam_id = 3");
   const auto file = folder.write("camera_array.toml", text);
-  CHECK(std::string(format_of(file)) == "caliscope");
+  CHECK(format_of(file) == "caliscope");
   check_as_section(read_camera(file.string() + ":3"), 1.0);
 }
 
@@ -150,7 +147,7 @@ TEST_CASE("camera formats: EasyMocap's two files are found from either") {
                                     matrix("Rot_1", 3, "1., 0., 0., 0., 0., -1., 0., 1., 0.") +
                                     matrix("T_1", 1, "0., 1.2, 3."));
   for (const auto& file : {intri, extri}) {
-    CHECK(std::string(format_of(file)) == "easymocap");
+    CHECK(format_of(file) == "easymocap");
     const CameraRig rig = read_cameras(file);
     REQUIRE(rig.cameras.size() == 1);  // b has no pose
     const Camera& camera = rig.cameras[0].camera;
@@ -177,7 +174,7 @@ TEST_CASE("camera formats: Qualisys' pixels are 64ths, its camera looks backward
       "radialDistortion3=\"0\" tangentalDistortion1=\"0.064\" tangentalDistortion2=\"0.128\"/>\n"
       "  </camera>\n </cameras>\n</calibration>\n";
   const auto file = folder.write("a.qca.txt", text);
-  CHECK(std::string(format_of(file)) == "qualisys");
+  CHECK(format_of(file) == "qualisys");
   const CameraRig rig = read_cameras(file);
   REQUIRE(rig.cameras.size() == 1);
   CHECK(rig.cameras[0].name == "c7");
@@ -201,7 +198,7 @@ TEST_CASE("camera formats: VoxelPose's T is where the camera is, in millimetres"
           "fx": 1000.5, "fy": 1001.5, "cx": 640, "cy": 360, "k": [[0.1], [0], [0.3]],
           "p": [[0], [0.2]]}})";
   const auto file = folder.write("c.json", text);
-  CHECK(std::string(format_of(file)) == "voxelpose");
+  CHECK(format_of(file) == "voxelpose");
   const Camera camera = read_camera(file);
   CHECK(camera.width_px == 1280);
   CHECK(camera.distortion == std::vector<double>{0.1, 0, 0, 0.2, 0.3});
@@ -221,7 +218,7 @@ TEST_CASE("camera formats: MHAD's cameras stand in clusters") {
           [0, 0, 1]], "dist_k1k2p1p2": [0.1, 0, 0, 0], "rel_t_mm": [-100, 0, 0],
           "rel_rotvec_rad": [0, 0, 3.141592653589793]}}}}})";
   const auto file = folder.write("c.json", text);
-  CHECK(std::string(format_of(file)) == "mhad");
+  CHECK(format_of(file) == "mhad");
   const Camera camera = read_camera(file.string() + ":L1.C1");
   CHECK(camera.width_px == 640);
   CHECK(camera.fy_px == 501);
@@ -283,6 +280,20 @@ TEST_CASE("camera formats: what only nests, or is larger than any calibration, i
                        InputError);
 }
 
+TEST_CASE("camera formats: the docs list them all, and no other file is taken for one") {
+  const std::string page =
+      read_text_file(std::filesystem::path(MCDBN_SOURCE_DIR) / "docs/formats.md");
+  for (const CameraFormat& format : camera_formats()) {
+    CAPTURE(format.name);
+    CHECK(page.find(fmt::format("| `{}` | ", format.name)) != std::string::npos);
+    CHECK_FALSE(format.about.empty());
+  }
+  const ScratchFolder folder;
+  CHECK(camera_format_of(folder.write("a.csv", "Hips_x_px,Hips_y_px\n1,2\n")) == nullptr);
+  CHECK(camera_format_of(folder.write("a.json", "[{\"keypoints\": [1, 2, 3]}]")) == nullptr);
+  CHECK(camera_format_of(folder / "none.toml") == nullptr);
+}
+
 TEST_CASE("camera formats: real calibrations") {
   struct Case {
     const char *file, *format, *first;
@@ -310,7 +321,7 @@ TEST_CASE("camera formats: real calibrations") {
     if (!test::have_shared_data(c.file, "camera formats")) continue;
     const auto path = test::shared_data() / c.file;
     CAPTURE(c.file);
-    CHECK(std::string(format_of(path)) == c.format);
+    CHECK(format_of(path) == c.format);
     const CameraRig rig = read_cameras(path);
     CHECK(rig.cameras.size() == static_cast<std::size_t>(c.cameras));
     CHECK(rig.cameras.front().name == c.first);

@@ -38,6 +38,9 @@ struct CameraFormat {
 /// All that are read, in the order in which they are tried.
 const std::vector<CameraFormat>& camera_formats();
 
+/// The format that a file is told to be by its content; null if it is no camera file that is read.
+const CameraFormat* camera_format_of(const std::filesystem::path& path);
+
 /// All cameras of a file. @throws InputError with file and line; also where it is larger than 4 MB
 /// or nested deeper than any calibration, which is refused before it is parsed
 CameraRig read_cameras(const std::filesystem::path& path);
