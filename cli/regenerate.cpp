@@ -11,6 +11,7 @@
 #include "camera_options.hpp"
 #include "clip_options.hpp"
 #include "commands.hpp"
+#include "comparison/fitted_baseline.hpp"
 #include "fit_option.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
@@ -25,26 +26,27 @@
 namespace mcdbn::cli {
 namespace {
 
-constexpr const char *kToPose = "pose", *kToTrack = "track";
+constexpr const char *kToPose = "pose", *kToTrack = "track", *kModel = "model";
 
 struct RegenerateOptions {
   std::filesystem::path model, input, output, skeleton, joint_map;
   TrackReadOptions track;
   SeenByOptions seen_by;
   SamplingOptions sampling;
-  std::string to = kToPose, fit;
+  std::string to = kToPose, fit, method = kModel;
 };
 
 /// Options that mean nothing where a track is wanted. @throws ConfigError naming the first
 void check_direction(const RegenerateOptions& options) {
   if (options.to != kToTrack) return;
   const AssumedView& view = options.seen_by.view;
-  for (const auto& [said, flag] : {std::pair{!options.skeleton.empty(), "--skeleton"},
-                                   std::pair{!options.joint_map.empty(), "--joint-map"},
-                                   std::pair{!options.fit.empty(), "--fit"},
-                                   std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
-                                   std::pair{view.roll_deg.has_value(), "--camera-roll"},
-                                   std::pair{view.field_of_view_deg.has_value(), "--camera-fov"}})
+  for (const auto& [said, flag] :
+       {std::pair{!options.skeleton.empty(), "--skeleton"},
+        std::pair{!options.joint_map.empty(), "--joint-map"},
+        std::pair{options.method != kModel, "--method"}, std::pair{!options.fit.empty(), "--fit"},
+        std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
+        std::pair{view.roll_deg.has_value(), "--camera-roll"},
+        std::pair{view.field_of_view_deg.has_value(), "--camera-fov"}})
     if (said)
       throw ConfigError(fmt::format(
           "{} is for --to pose: a regenerated track has no skeleton and is not fitted, and its "
@@ -80,13 +82,20 @@ void report(const std::filesystem::path& path, const TrackFindings& findings) {
                  path.string(), filled.interpolated, filled.missing);
 }
 
-/// regenerate_clip; what is wrong with the track is said with its file.
+/// By the model, or by a simpler method if there is one; what is wrong with the track is said with
+/// its file.
 std::vector<Motion> regenerate_named(const std::filesystem::path& input, const Model& model,
-                                     const Track2d& track, const ClipPlacement& placement,
+                                     const Baseline* simpler, const Track2d& track,
+                                     const ClipPlacement& placement,
                                      const RegenerationOptions& regeneration,
                                      TrackFindings& findings) {
   try {
-    return regenerate_clip(model, track, placement, regeneration, &findings);
+    if (simpler == nullptr)
+      return regenerate_clip(model, track, placement, regeneration, &findings);
+    const auto single = [&](const MatrixF& features) { return simpler->predict(features); };
+    return regenerate_clip(
+        model.modalities, track, placement, single,
+        [&](const MatrixF& features) { return std::vector{single(features)}; }, &findings);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", input.string(), error.what()));
   }
@@ -120,10 +129,13 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
   const std::vector<Track2d> people = read_tracks_with_notices(options.input, reading).people;
   if (!camera)
     report_assumed(placement.camera_of(people.front(), model.modalities), placement.view);
+  const std::unique_ptr<Baseline> simpler =
+      options.method == kModel ? nullptr
+                               : fitted_baseline(options.method, model, all_lessons(model));
   for (std::size_t person = 0; person < people.size(); ++person) {
     TrackFindings findings;
-    const auto motions =
-        regenerate_named(options.input, model, people[person], placement, regeneration, findings);
+    const auto motions = regenerate_named(options.input, model, simpler.get(), people[person],
+                                          placement, regeneration, findings);
     report(options.input, findings);
     const auto output = person_path(options.output, person, people.size());
     for (std::size_t i = 0; i < motions.size(); ++i) {
@@ -193,6 +205,14 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
                    "plays which role, where its names and shape do not tell; for tracks of "
                    "detectors")
       ->type_name("FILE");
+  std::vector<std::string> methods = all_baselines();
+  methods.insert(methods.begin(), kModel);
+  command
+      ->add_option("--method", options->method,
+                   "What answers: the model, or a simpler method that learns from the model's "
+                   "training clips, which must still be where they were")
+      ->check(CLI::IsMember(methods))
+      ->capture_default_str();
   add_track_options(*command, options->track);
   add_sampling_options(*command, options->sampling,
                        "Variations; several are written as out_01.bvh … (default: 1)");

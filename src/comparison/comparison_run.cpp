@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "comparison/fitted_baseline.hpp"
 #include "corpus/people.hpp"
 #include "evaluation/bone_length.hpp"
 #include "evaluation/foot_slide.hpp"
@@ -58,20 +59,6 @@ MatrixD turned(MatrixD positions, const Eigen::Matrix3d& axes_from_world) {
   for (Eigen::Index joint = 0; joint < positions.cols(); joint += 3)
     positions.middleCols(joint, 3) = positions.middleCols(joint, 3) * axes_from_world.transpose();
   return positions;
-}
-
-std::vector<EncodedClip> encode_training_clips(const Model& model, const TestRunOptions& options) {
-  std::vector<EncodedClip> clips;
-  for (const TrainingClip& clip : model.training_clips) {
-    if (!std::filesystem::exists(clip.path))
-      throw InputError(fmt::format(
-          "{}: a training clip of the model is gone; baselines are fitted on it, so put "
-          "it back or leave them out",
-          clip.path));
-    clips.push_back(encode_clip(clip.path, model.modalities, model.modalities.camera,
-                                options.keep_first_frame));
-  }
-  return clips;
 }
 
 /// A test clip as everyone sees it.
@@ -195,20 +182,13 @@ void regenerate_tracks(const Model& model, std::vector<ClipResult>& results) {
 
 void run_baselines(const Model& model, const TestRunOptions& options, const Progress& progress,
                    std::vector<ClipResult>& results) {
-  std::vector<MatrixF> tracks, poses;
-  for (EncodedClip& clip : encode_training_clips(model, options)) {
-    tracks.push_back(std::move(clip.track_features));
-    poses.push_back(std::move(clip.pose_features));
-  }
-  const bool has_views = !options.view_tracks.empty();
+  BaselineLessons lessons = clip_lessons(model, options.keep_first_frame);
+  lessons.view_tracks = options.view_tracks;
+  lessons.view_poses = options.view_poses;
   for (std::size_t i = 0; i < options.baselines.size(); ++i) {
     const std::string& name = options.baselines[i];
     progress.show("baseline " + name, Progress::kBaselines, i, options.baselines.size());
-    const auto baseline = make_baseline(name, model.network.mrbm.device(), has_views);
-    if (has_views && baseline->learns_from_views())
-      baseline->fit(options.view_tracks, options.view_poses);
-    else
-      baseline->fit(tracks, poses);
+    const auto baseline = fitted_baseline(name, model, lessons);
     for (ClipResult& result : results) {
       const auto predict = [&](const MatrixF& track) { return baseline->predict(track); };
       const SeenClip seen = seen_by(model, options, result.truth, predict);

@@ -20,26 +20,34 @@ Motion with_frames(Motion motion, Eigen::Index frames) {
 
 }  // namespace
 
-std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
-                                    const ClipPlacement& placement,
-                                    const RegenerationOptions& options, TrackFindings* findings) {
-  const Modalities& modalities = model.modalities;
+std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d& track,
+                                    const ClipPlacement& placement, const PoseAnswer& single,
+                                    const PoseAnswers& all, TrackFindings* findings) {
   Track2d sides = track;
   std::vector<SideSwap> swaps;
   if (!joined_by_name(track, modalities.track_features)) {
     swaps = find_side_swaps(track);
     exchange_sides(sides, swaps);
   }
-  SeenClip seen = see_clip(modalities, resample_track(sides, modalities.fps), placement,
-                           [&](const MatrixF& some) { return single_answer(model.network, some); });
+  SeenClip seen = see_clip(modalities, resample_track(sides, modalities.fps), placement, single);
   std::vector<Motion> motions;
-  for (const MatrixF& pose : regenerate(model.network, {seen.features}, options)) {
+  for (const MatrixF& pose : all(seen.features)) {
     const FittedClip clip =
         fit_to_track(PosePrior::around(pose), modalities, seen.joints, placement, placement.fit);
     motions.push_back(with_frames(resample(clip.motion, track.fps), track.frames()));
   }
   if (findings) *findings = {std::move(seen.filled), std::move(swaps)};
   return motions;
+}
+
+std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
+                                    const ClipPlacement& placement,
+                                    const RegenerationOptions& options, TrackFindings* findings) {
+  return regenerate_clip(
+      model.modalities, track, placement,
+      [&](const MatrixF& features) { return single_answer(model.network, features); },
+      [&](const MatrixF& features) { return regenerate(model.network, {features}, options); },
+      findings);
 }
 
 std::vector<Track2d> regenerate_track(const Model& model, const Motion& clip,

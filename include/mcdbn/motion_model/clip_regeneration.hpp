@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,16 @@ std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
                                     const ClipPlacement& placement,
                                     const RegenerationOptions& options,
                                     TrackFindings* findings = nullptr);
+
+/// What a method answers to a track's standardized features: standardized poses, both
+/// [frames x dimension]; one, or several.
+using PoseAnswer = std::function<MatrixF(const MatrixF& features)>;
+using PoseAnswers = std::function<std::vector<MatrixF>(const MatrixF& features)>;
+
+/// The same by any method. @param single says what the track itself does not show
+std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d& track,
+                                    const ClipPlacement& placement, const PoseAnswer& single,
+                                    const PoseAnswers& all, TrackFindings* findings = nullptr);
 
 /// The other direction: a 2D track from 3D motion, `samples` times, one frame for each of the clip
 /// at the model's rate. Everything in it is the network's answer, the root's place in the image and
