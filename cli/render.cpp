@@ -52,6 +52,13 @@ void add_render_command(CLI::App& app, CommandContext& context) {
                    "What to write: .mp4 is a video, .png a contact sheet")
       ->required()
       ->type_name("FILE");
+  command
+      ->add_option("--over", render.over,
+                   "Film to draw over, through --camera, from --over-from on")
+      ->type_name("FILE");
+  command->add_option("--over-from", render.over_from, "Frame of the film where the clips begin")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->add_flag("--overlay", render.overlay, "All clips in one picture");
   command->add_flag("--orbit", render.orbit, "The camera goes round the figure");
   command->add_option("--orbit-speed", render.orbit_deg_per_s, "Of the camera, degrees a second")

@@ -1,7 +1,6 @@
 #include "mcdbn/drawing/render.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +8,11 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <string_view>
-#include <system_error>
 
 #include "base/text_file.hpp"
+#include "drawing/partial_file.hpp"
 #include "drawing/render_figure.hpp"
+#include "drawing/render_over.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using rendering::Figure;
 using rendering::Palette;
+using rendering::PartialFile;
 
 struct Size {
   int width_px, height_px;
@@ -37,19 +38,6 @@ Eigen::Vector3d box_centre(const MatrixD& points) {
 
 double distance_to(const Camera& camera, const Eigen::Vector3d& point) {
   return camera.camera_from_world.row(2) * point + camera.translation.z();
-}
-
-/// The same view in an image of another size.
-Camera scaled(Camera camera, Size size) {
-  const double x = static_cast<double>(size.width_px) / camera.width_px;
-  const double y = static_cast<double>(size.height_px) / camera.height_px;
-  camera.fx_px *= x;
-  camera.cx_px *= x;
-  camera.fy_px *= y;
-  camera.cy_px *= y;
-  camera.width_px = size.width_px;
-  camera.height_px = size.height_px;
-  return camera;
 }
 
 /// One panel: its figures, and the camera that sees all of their motion.
@@ -125,7 +113,7 @@ CameraPlacement Panel::placement_at(double t_s) const {
 }
 
 Camera Panel::camera_at(double t_s) const {
-  if (options_.camera) return scaled(*options_.camera, size_);
+  if (options_.camera) return rendering::scaled(*options_.camera, size_.width_px, size_.height_px);
   Camera camera = place_camera(framed_, placement_at(t_s));
   camera.translation -= camera.camera_from_world * origin_at(t_s);
   return camera;
@@ -208,34 +196,6 @@ double duration_s(const std::vector<Figure>& figures) {
   return longest;
 }
 
-/// A file that is written beside its final path; removed again unless it was put there.
-class PartialFile {
- public:
-  explicit PartialFile(const fs::path& path)
-      : path_(path),
-        temporary_(path.parent_path() / fmt::format(".{}.{}.tmp{}", path.stem().string(),
-                                                    ::getpid(), path.extension().string())) {}
-  ~PartialFile() {
-    std::error_code ignored;
-    fs::remove(temporary_, ignored);
-  }
-  PartialFile(const PartialFile&) = delete;
-  PartialFile& operator=(const PartialFile&) = delete;
-
-  const fs::path& temporary() const { return temporary_; }
-  void put_in_place() const {
-    std::error_code error;
-    fs::rename(temporary_, path_, error);
-    if (error) {
-      throw InputError(fmt::format("{}: cannot be put in place ({}); choose another output path",
-                                   path_.string(), error.message()));
-    }
-  }
-
- private:
-  fs::path path_, temporary_;
-};
-
 void render_video(const std::vector<Panel>& panels, const std::vector<Figure>& figures,
                   const fs::path& path, double fps) {
   const PartialFile file(path);
@@ -314,6 +274,10 @@ void render(const std::vector<RenderClip>& clips, const fs::path& path,
   std::vector<Figure> figures;
   figures.reserve(clips.size());
   for (const RenderClip& clip : clips) figures.emplace_back(clip.motion);
+  if (!options.over.empty()) {
+    rendering::render_over(figures, path, options);
+    return;
+  }
   const Size size = panel_size(options, video ? kVideoPanel : kSheetPanel);
   const std::vector<Panel> panels = make_panels(clips, figures, options, size);
   if (video) {

@@ -74,9 +74,26 @@ TEST_CASE("render: every option changes what its help says") {
   const fs::path camera_file = folder / "camera.yaml";
   write_camera(camera_file,
                place_camera(mcdbn::load_clip(clips[0]), {.azimuth_deg = 80, .distance = 300}));
+  const fs::path film = folder / "film.mp4";
+  mcdbn::RenderOptions turning;
+  turning.orbit = true;
+  render({{mcdbn::load_clip(clips[0]), "one"}}, film, turning);
   check_options(
       "render",
-      {row("--overlay", "--overlay", [](auto& call) { call.render.overlay = true; }),
+      {row("--over", fmt::format("--over '{}' --camera '{}'", film.string(), camera_file.string()),
+           [&](auto& call) {
+             call.render.over = film;
+             call.render.camera = mcdbn::read_camera(camera_file);
+           }),
+       row("--over-from",
+           fmt::format("--over '{}' --over-from 3 --camera '{}'", film.string(),
+                       camera_file.string()),
+           [&](auto& call) {
+             call.render.over = film;
+             call.render.over_from = 3;
+             call.render.camera = mcdbn::read_camera(camera_file);
+           }),
+       row("--overlay", "--overlay", [](auto& call) { call.render.overlay = true; }),
        row("--orbit", "--orbit", [](auto& call) { call.render.orbit = true; }),
        row("--orbit-speed", "--orbit --orbit-speed 55",
            [](auto& call) {

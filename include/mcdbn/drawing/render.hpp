@@ -23,8 +23,11 @@ struct RenderOptions {
   /// output (640 x 720 in a video, 240 x 320 in a contact sheet).
   CameraPlacement placement{.distance = std::nullopt, .width_px = 0, .height_px = 0};
   std::optional<Camera> camera;  ///< look through this one instead; then nothing follows or turns
-  bool overlay = false;          ///< all clips in one panel instead of side by side
-  bool orbit = false;            ///< the camera goes round the figure
+  /// A film to draw over, through `camera`, the clips from its frame `over_from` on.
+  std::filesystem::path over;
+  int over_from = 0;
+  bool overlay = false;  ///< all clips in one panel instead of side by side
+  bool orbit = false;    ///< the camera goes round the figure
   double orbit_deg_per_s = 30.0;
   bool follow_root = true;  ///< the camera goes with the figure, so that it stays large
   double fps = 0.0;         ///< of a video; 0: the first clip's own, at most 60
@@ -35,8 +38,10 @@ struct RenderOptions {
 /// red, paler with depth. Clips run by time; a shorter one holds its last frame.
 /// A `.mp4` shows the clips side by side. A `.png` is a contact sheet of frames at even times: two
 /// rows of one clip, or one row a clip (the first, say the truth, on top). Written atomically.
-/// @throws InputError if there is no frame, the ending is another one, or the file cannot be
-///         written; ConfigError if an option is out of range
+/// Over a film nothing else is drawn, and of a sheet both rows show the film.
+/// @throws InputError if there is no frame, the ending is another one, the film cannot be read, or
+///         the file cannot be written; ConfigError if an option is out of range, or a film is to be
+///         drawn over without a camera
 void render(const std::vector<RenderClip>& clips, const std::filesystem::path& path,
             const RenderOptions& options = {});
 

@@ -1,0 +1,105 @@
+// Figures drawn over the frames of a film.
+
+#include <doctest/doctest.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "base/scratch_folder.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/drawing/render.hpp"
+#include "motion/synthetic_motion.hpp"
+
+using namespace mcdbn;
+using test::ScratchFolder;
+
+namespace {
+
+constexpr int kWidth_px = 320, kHeight_px = 240;
+
+/// Each frame of one grey, 10 brighter than the frame before.
+std::filesystem::path write_film(const ScratchFolder& folder, int frames) {
+  const auto path = folder / "film.mp4";
+  cv::VideoWriter writer(path.string(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 30,
+                         {kWidth_px, kHeight_px});
+  for (int i = 0; i < frames; ++i)
+    writer.write(cv::Mat(kHeight_px, kWidth_px, CV_8UC3, cv::Scalar::all(20 + 10 * i)));
+  return path;
+}
+
+std::vector<cv::Mat> read_film(const std::filesystem::path& path) {
+  cv::VideoCapture capture(path.string());
+  std::vector<cv::Mat> images;
+  for (cv::Mat image; capture.read(image);) images.push_back(image.clone());
+  return images;
+}
+
+/// Pixels of some colour: the film has none.
+int coloured(const cv::Mat& image) {
+  cv::Mat hsv, strong;
+  cv::cvtColor(image, hsv, cv::COLOR_BGR2HSV);
+  cv::inRange(hsv, cv::Scalar(0, 80, 80), cv::Scalar(180, 255, 255), strong);
+  return cv::countNonZero(strong);
+}
+
+RenderOptions over(const std::filesystem::path& film, const Motion& motion, int from) {
+  RenderOptions options;
+  options.over = film;
+  options.over_from = from;
+  options.camera = place_camera(
+      motion, {.distance = std::nullopt, .width_px = 2 * kWidth_px, .height_px = 2 * kHeight_px});
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("a film is drawn over from the frame where the clip begins, in its own size") {
+  const ScratchFolder folder;
+  const auto film = write_film(folder, 20);
+  const Motion motion = test::swinging(test::small_body(), 8);
+  render({{motion, "clip"}}, folder / "drawn.mp4", over(film, motion, 5));
+  const std::vector<cv::Mat> images = read_film(folder / "drawn.mp4");
+  REQUIRE(images.size() == 8);
+  for (int i = 0; i < 8; ++i) {
+    const cv::Mat& image = images[static_cast<std::size_t>(i)];
+    CHECK(image.cols == kWidth_px);
+    // A corner shows the film, the middle the figure.
+    CHECK(std::abs(image.at<cv::Vec3b>(5, 5)[0] - (20 + 10 * (5 + i))) < 8);
+    CHECK(coloured(image) > 200);
+  }
+  // The film ends before the clip does.
+  render({{motion, "clip"}}, folder / "short.mp4", over(film, motion, 17));
+  CHECK(read_film(folder / "short.mp4").size() == 3);
+}
+
+TEST_CASE("a sheet over a film shows frames at even times") {
+  const ScratchFolder folder;
+  const Motion motion = test::swinging(test::small_body(), 10);
+  RenderOptions options = over(write_film(folder, 12), motion, 0);
+  options.sheet_columns = 2;
+  render({{motion, "clip"}}, folder / "sheet.png", options);
+  const cv::Mat sheet = cv::imread((folder / "sheet.png").string());
+  REQUIRE(sheet.cols == 2 * 640);
+  REQUIRE(sheet.rows == 2 * 480);
+  const auto grey = [&](int row, int column) { return sheet.at<cv::Vec3b>(row, column)[0]; };
+  CHECK(std::abs(grey(5, 5) - 20) < 8);
+  CHECK(std::abs(grey(485, 645) - 110) < 8);  // the clip's last frame
+}
+
+TEST_CASE("what cannot be drawn over is said") {
+  const ScratchFolder folder;
+  const Motion motion = test::swinging(test::small_body(), 4);
+  const auto film = write_film(folder, 6);
+  const auto draw = [&](const RenderOptions& options) {
+    render({{motion, "clip"}}, folder / "drawn.mp4", options);
+  };
+  RenderOptions options = over(film, motion, 0);
+  options.camera.reset();
+  CHECK_THROWS_AS(draw(options), ConfigError);
+  CHECK_THROWS_AS(draw(over(folder / "absent.mp4", motion, 0)), InputError);
+  CHECK_THROWS_AS(draw(over(folder.write("text.mp4", "no film"), motion, 0)), InputError);
+  CHECK_THROWS_AS(draw(over(film, motion, 6)), InputError);
+  CHECK_THROWS_AS(draw(over(film, motion, 60)), InputError);
+  CHECK(!std::filesystem::exists(folder / "drawn.mp4"));
+}
