@@ -36,6 +36,13 @@ void TrainingOptions::add_to(CLI::App& command) {
           "(default, but for the other presets)")
       ->check(CLI::IsMember({"greedy", "fine-tuning", "joint", "both"}));
   command
+      .add_option("--tracks", tracks_,
+                  "exact: the clips' own joints; detector: fine-tuning learns from what detectors "
+                  "see through cameras all around, in 0.8 of the views unless --augment-detector "
+                  "says another share")
+      ->check(CLI::IsMember({"exact", "detector"}))
+      ->capture_default_str();
+  command
       .add_option_function<std::filesystem::path>(
           "--config",
           [this](const std::filesystem::path& file) { file_ = read_settings_file(file); },
@@ -70,6 +77,7 @@ TrainingConfig TrainingOptions::resolve(const std::vector<SaidSetting>& last) co
     assign_settings(config, file_);
     assign_settings(config, flags_);
     apply_stages(config);
+    apply_tracks(config);
     assign_settings(config, last);
     return config;
   };
@@ -87,6 +95,12 @@ void TrainingOptions::apply_stages(TrainingConfig& config) const {
   else if (config.fine_tuning.steps == 0)
     config.fine_tuning.steps = FineTuningSettings{}.steps;
   config.fine_tuning.from_greedy = stages_ != "fine-tuning" && stages_ != "joint";
+}
+
+void TrainingOptions::apply_tracks(TrainingConfig& config) const {
+  constexpr double kUsualShare = 0.8;
+  if (tracks_ == "detector" && config.augment.detector == 0)
+    config.augment.detector = kUsualShare;
 }
 
 }  // namespace mcdbn::cli

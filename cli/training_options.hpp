@@ -12,7 +12,7 @@ namespace mcdbn::cli {
 /// sweep varies.
 class TrainingOptions {
  public:
-  /// --preset, --stages, --config and a flag for every setting of TrainingConfig.
+  /// --preset, --stages, --tracks, --config and a flag for every setting of TrainingConfig.
   void add_to(CLI::App& command);
   /// @param last the last word
   /// @throws ConfigError
@@ -21,8 +21,9 @@ class TrainingOptions {
  private:
   void add_setting(CLI::App& command, const Setting& setting, const nlohmann::json& usual);
   void apply_stages(TrainingConfig& config) const;
+  void apply_tracks(TrainingConfig& config) const;
 
-  std::string preset_ = "default", stages_;
+  std::string preset_ = "default", stages_, tracks_ = "exact";
   std::vector<SaidSetting> file_, flags_;
 };
 

@@ -5,7 +5,11 @@
 #include <cmath>
 
 #include "base/random_sequence.hpp"
+#include "camera/detector_track.hpp"
+#include "camera/keypoint_map.hpp"
+#include "camera/random_camera.hpp"
 #include "camera/track_noise.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
 #include "motion/mirror.hpp"
 #include "motion/other_body.hpp"
 #include "motion/resample.hpp"
@@ -14,7 +18,17 @@ namespace mcdbn {
 namespace {
 
 /// Which number of a view a draw decides; the column counts joints and axes.
-enum Draw : std::uint32_t { kSpeed, kPhase, kMirror, kCamera, kNoise, kBones, kTurns, kMissing };
+enum Draw : std::uint32_t {
+  kSpeed,
+  kPhase,
+  kMirror,
+  kCamera,
+  kNoise,
+  kBones,
+  kTurns,
+  kMissing,
+  kDetector
+};
 
 double uniform(const RandomKey& key, Draw draw, std::uint32_t column = 0) {
   return static_cast<double>(random_uniform(key, draw, column));
@@ -60,10 +74,32 @@ double size_px(const Track2d& track) {
   return std::isfinite(size) ? size : 0.0;
 }
 
+/// The view's motion as a detector sees it from anywhere.
+void see_by_detector(AugmentedView& view, const RandomKey& key, bool all_in_sight) {
+  const std::uint64_t seed = mixed_seed({key.seed, key.step, 0x64657465});
+  view.camera = random_camera(view.motion, {}, seed);
+  if (all_in_sight) {
+    view.track = project_motion(view.motion, view.camera);
+    return;
+  }
+  const auto which = static_cast<std::size_t>(uniform(key, kDetector, 1) *
+                                              static_cast<double>(detectors().size()));
+  const Detector& detector = detectors()[std::min(which, detectors().size() - 1)];
+  const std::vector<Keypoint>& keypoints = joint_set(detector.joint_set).keypoints;
+  const SkeletonRoles roles = skeleton_roles(view.motion.skeleton);
+  const Track2d seen =
+      detector_track(view.motion, roles, keypoints, view.camera, detector.noise, seed);
+  // Regeneration takes off what lies between keypoint and joint as its answer has it; an answer
+  // that learns from the truth comes near the truth.
+  view.track =
+      KeypointMap(keypoints, view.motion.skeleton, roles).joints_of(seen, view.motion, view.camera);
+}
+
 }  // namespace
 
 AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacement& placement,
-                             const AugmentationSettings& settings, const RandomKey& key) {
+                             const AugmentationSettings& settings, const RandomKey& key,
+                             bool all_in_sight) {
   AugmentedView view;
   view.motion = other_timing(raw, fps, settings.speed, key);
   if (settings.mirror && uniform(key, kMirror) < 0.5)
@@ -74,6 +110,10 @@ AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacemen
                       random_normal(key, kBones, static_cast<std::uint32_t>(joint)));
     });
   if (settings.turn_deg > 0) change_carriage(view.motion, settings.turn_deg, key);
+  if (uniform(key, kDetector) < settings.detector) {
+    see_by_detector(view, key, all_in_sight);
+    return view;
+  }
   CameraPlacement moved = placement;
   moved.azimuth_deg += within(key, kCamera, 0, settings.azimuth_deg);
   moved.elevation_deg += within(key, kCamera, 1, settings.elevation_deg);
@@ -85,7 +125,7 @@ AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacemen
       view.track,
       2.0 * uniform(key, kNoise) * settings.noise_px * size_px(view.track) / kUsualSize_px,
       mixed_seed({key.seed, key.step}));
-  if (uniform(key, kMissing) < settings.missing)
+  if (!all_in_sight && uniform(key, kMissing) < settings.missing)
     hide_limbs(view.track, view.motion.skeleton, mixed_seed({key.seed, key.step}));
   return view;
 }

@@ -41,10 +41,9 @@ std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair
 void add_views(const Motion& raw, const CorpusSettings& settings, RandomKey& key,
                std::vector<AugmentedView>& views) {
   constexpr std::size_t kViews = 4;  // with and without mirror
-  AugmentationSettings all_in_sight = settings.augment;
-  all_in_sight.missing = 0;
   for (std::size_t i = 0; i < std::min(kViews, settings.augment.views); ++i, ++key.step)
-    views.push_back(augmented_view(raw, settings.fps, settings.camera, all_in_sight, key));
+    views.push_back(
+        augmented_view(raw, settings.fps, settings.camera, settings.augment, key, true));
 }
 
 }  // namespace

@@ -119,6 +119,7 @@ const std::vector<SettingRow>& setting_rows() {
       SETTING("augment.speed", 0.09, augment.speed),
       SETTING("augment.noise", 1.5, augment.noise_px),
       SETTING("augment.missing", 0.65, augment.missing),
+      SETTING("augment.detector", 0.35, augment.detector),
       SETTING("camera.azimuth", -20, camera.azimuth_deg),
       SETTING("camera.elevation", 6, camera.elevation_deg),
       SETTING("camera.fov", 50, camera.field_of_view_deg),

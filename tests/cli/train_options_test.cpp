@@ -110,6 +110,21 @@ TEST_CASE("train: every option changes what its help says") {
       {"--preset", [&] { CHECK(train("x.bvh", run, "--preset other").exit_code == 2); }});
   rows.push_back(
       {"--stages", [&] { CHECK(train("x.bvh", run, "--stages other").exit_code == 2); }});
+  rows.push_back({"--tracks", [&] {
+                    CHECK(train("x.bvh", run, "--tracks other").exit_code == 2);
+                    const auto share = [&](const std::string& said) {
+                      const fs::path made = folder / "tracks";
+                      REQUIRE(train(pipeline.training_clips(), made, kTiny + said).exit_code == 0);
+                      const std::string text = mcdbn::read_text_file(made / "config.toml");
+                      fs::remove_all(made);
+                      const auto at = text.find("detector = ");
+                      return text.substr(at, text.find('\n', at) - at);
+                    };
+                    CHECK(share(" --tracks exact") == "detector = 0.0");
+                    CHECK(share(" --tracks detector").starts_with("detector = 0.8"));
+                    CHECK(share(" --tracks detector --augment-detector 0.25") ==
+                          "detector = 0.25");
+                  }});
   rows.push_back({"--sweep", [&] {
                     const CliResult result =
                         train(pipeline.training_clips(), folder / "sweep", "--sweep absent.toml");

@@ -26,6 +26,7 @@ const std::vector<Expected<CorpusSettings>>& corpus_settings() {
       {"augment.speed", [](C& c) { return at(c.augment.speed); }, "0.05"},
       {"augment.noise", [](C& c) { return at(c.augment.noise_px); }, "0.5"},
       {"augment.missing", [](C& c) { return at(c.augment.missing); }, "0.3"},
+      {"augment.detector", [](C& c) { return at(c.augment.detector); }, "0"},
       {"camera.azimuth", [](C& c) { return at(c.camera.azimuth_deg); }, "30"},
       {"camera.elevation", [](C& c) { return at(c.camera.elevation_deg); }, "10"},
       {"camera.fov", [](C& c) { return at(c.camera.field_of_view_deg); }, "45"}};

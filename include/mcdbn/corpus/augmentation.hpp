@@ -21,6 +21,7 @@ struct AugmentationSettings {
   double speed = 0.05;
   double noise_px = 0.5;
   double missing = 0.3;
+  double detector = 0.0;
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
@@ -52,6 +53,10 @@ struct AugmentationSettings {
     visit(Setting{"missing", within(0, 1), "",
                   "share of the views in which limbs go out of sight for a while"},
           self.missing);
+    visit(Setting{"detector", within(0, 1), "",
+                  "share of the views that a detector sees (OpenPose, MediaPipe or RTMPose, as "
+                  "measured) through a camera anywhere around the person"},
+          self.detector);
   }
 };
 
@@ -62,9 +67,12 @@ struct AugmentedView {
   Track2d track;
 };
 
-/// The clip seen otherwise. The same key gives the same view.
+/// The clip seen otherwise. The same key gives the same view. What a detector saw are the
+/// skeleton's own joints all the same, as far as its keypoints tell of them.
 /// @param raw at its own rate
+/// @param all_in_sight nothing goes out of sight and no detector loses anything; cameras stay
 AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacement& placement,
-                             const AugmentationSettings& settings, const RandomKey& key);
+                             const AugmentationSettings& settings, const RandomKey& key,
+                             bool all_in_sight = false);
 
 }  // namespace mcdbn
