@@ -15,6 +15,7 @@
 #include "fit_option.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/joint_map.hpp"
 #include "mcdbn/formats/motion_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
@@ -29,7 +30,7 @@ namespace {
 constexpr const char *kToPose = "pose", *kToTrack = "track", *kModel = "model";
 
 struct RegenerateOptions {
-  std::filesystem::path model, input, output, skeleton, joint_map;
+  std::filesystem::path model, input, output, skeleton, joint_map, write_camera;
   TrackReadOptions track;
   SeenByOptions seen_by;
   SamplingOptions sampling;
@@ -40,13 +41,14 @@ struct RegenerateOptions {
 void check_direction(const RegenerateOptions& options) {
   if (options.to != kToTrack) return;
   const AssumedView& view = options.seen_by.view;
-  for (const auto& [said, flag] :
-       {std::pair{!options.skeleton.empty(), "--skeleton"},
-        std::pair{!options.joint_map.empty(), "--joint-map"},
-        std::pair{options.method != kModel, "--method"}, std::pair{!options.fit.empty(), "--fit"},
-        std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
-        std::pair{view.roll_deg.has_value(), "--camera-roll"},
-        std::pair{view.field_of_view_deg.has_value(), "--camera-fov"}})
+  for (const auto& [said, flag] : {std::pair{!options.skeleton.empty(), "--skeleton"},
+                                   std::pair{!options.joint_map.empty(), "--joint-map"},
+                                   std::pair{options.method != kModel, "--method"},
+                                   std::pair{!options.write_camera.empty(), "--write-camera"},
+                                   std::pair{!options.fit.empty(), "--fit"},
+                                   std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
+                                   std::pair{view.roll_deg.has_value(), "--camera-roll"},
+                                   std::pair{view.field_of_view_deg.has_value(), "--camera-fov"}})
     if (said)
       throw ConfigError(fmt::format(
           "{} is for --to pose: a regenerated track has no skeleton and is not fitted, and its "
@@ -137,6 +139,8 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
     const auto motions = regenerate_named(options.input, model, simpler.get(), people[person],
                                           placement, regeneration, findings);
     report(options.input, findings);
+    if (!options.write_camera.empty())
+      write_camera(person_path(options.write_camera, person, people.size()), findings.camera);
     const auto output = person_path(options.output, person, people.size());
     for (std::size_t i = 0; i < motions.size(); ++i) {
       const auto path = sample_path(output, i, motions.size());
@@ -213,6 +217,11 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
                    "training clips, which must still be where they were")
       ->check(CLI::IsMember(methods))
       ->capture_default_str();
+  command
+      ->add_option("--write-camera", options->write_camera,
+                   "Also write the camera that sees the motion as the track shows it, given or "
+                   "assumed, as OpenCV YAML: for render --over")
+      ->type_name("FILE");
   add_track_options(*command, options->track);
   add_sampling_options(*command, options->sampling,
                        "Variations; several are written as out_01.bvh … (default: 1)");

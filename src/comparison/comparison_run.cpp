@@ -8,6 +8,7 @@
 #include "corpus/people.hpp"
 #include "evaluation/bone_length.hpp"
 #include "evaluation/foot_slide.hpp"
+#include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/side_swaps.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
@@ -71,6 +72,8 @@ EncodedClip test_clip(const std::filesystem::path& file, const Model& model,
     clip = encoded_view(file, model.modalities, std::move(view));
   }
   damage_track(clip.track, clip.motion.skeleton, options.damage, seed);
+  if (!options.detector)
+    clip.track_features = model.modalities.encode_track(smooth_track(clip.track), clip.camera);
   return clip;
 }
 

@@ -31,12 +31,14 @@ std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d&
   }
   SeenClip seen = see_clip(modalities, resample_track(sides, modalities.fps), placement, single);
   std::vector<Motion> motions;
+  Camera camera;
   for (const MatrixF& pose : all(seen.features)) {
     const FittedClip clip =
         fit_to_track(PosePrior::around(pose), modalities, seen.joints, placement, placement.fit);
+    if (motions.empty()) camera = clip.camera;
     motions.push_back(with_frames(resample(clip.motion, track.fps), track.frames()));
   }
-  if (findings) *findings = {std::move(seen.filled), std::move(swaps)};
+  if (findings) *findings = {std::move(seen.filled), std::move(swaps), std::move(camera)};
   return motions;
 }
 

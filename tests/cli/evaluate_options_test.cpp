@@ -8,6 +8,7 @@
 #include "comparison/comparison_run.hpp"
 #include "evaluation/evaluation_report.hpp"
 #include "library_calls.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
 #include "option_table.hpp"
 #include "tiny_pipeline.hpp"
 
@@ -28,6 +29,10 @@ struct Call {
   std::uint64_t seed = 1;
   double azimuth_deg = 30, elevation_deg = 10;  // as the tiny model was trained
   mcdbn::TrackDamage damage = {};
+  std::string like = {};  // empty: exact tracks
+  mcdbn::DetectorCameras cameras = {};
+  mcdbn::OtherBody people = {};
+  bool camera_known = true;
 };
 
 /// Views of the training clips, for the MLP among the baselines to learn from.
@@ -49,6 +54,11 @@ json by_library(const Call& call, const std::optional<Views>& views = {}) {
   options.regeneration.sampling = call.sampling.value_or(model.network.sampling);
   if (!call.fit) options.fit.reset();
   options.damage = call.damage;
+  options.camera_known = call.camera_known;
+  for (const mcdbn::Detector& detector : mcdbn::detectors())
+    if (call.like == detector.name)
+      options.detector = {mcdbn::joint_set(detector.joint_set).keypoints, detector.noise,
+                          call.cameras, call.people};
   options.keep_first_frame = call.keep_first_frame;
   options.include_training = call.include_training;
   if (!views) options.baselines.clear();
@@ -62,6 +72,8 @@ json by_library(const Call& call, const std::optional<Views>& views = {}) {
   report.temperature = call.temperature;
   report.fit = call.fit ? "track" : "none";
   report.damage = call.damage;
+  report.tracks = call.like.empty() ? "exact" : call.like;
+  report.camera_known = call.camera_known;
   return json(summary_json(report));
 }
 
@@ -112,6 +124,54 @@ fs::path with_calibration_pose(const fs::path& clip, const ScratchFolder& folder
 }
 
 }  // namespace
+
+/// Rows of what makes the tracks of a detector, each said together with it.
+std::vector<OptionRow> detector_rows() {
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  Call base;
+  base.model = pipeline.model();
+  base.test = {pipeline.motion() / "walk_s02_01.bvh"};
+  base.like = "openpose";
+  const auto row = [base](const std::string& option, const std::string& said,
+                          const std::function<void(Call&)>& change) {
+    return OptionRow{option, [=] {
+                       Call changed = base;
+                       change(changed);
+                       const json found = without_baselines(
+                           by_program(changed, "--baselines none --tracks detector " + said));
+                       CHECK(found == without_baselines(by_library(changed)));
+                       CHECK(found.at("model") != by_library(base).at("model"));
+                     }};
+  };
+  const auto camera_row = [&](const std::string& name, double mcdbn::DetectorCameras::*setting,
+                              double value) {
+    const std::string option = "--detector-" + name;
+    return row(option, fmt::format("{} {}", option, value),
+               [=](Call& call) { call.cameras.*setting = value; });
+  };
+  using Cameras = mcdbn::DetectorCameras;
+  return {
+      {"--tracks",
+       [base] {
+         Call exact = base;
+         exact.like.clear();
+         CHECK(by_library(exact).at("model") != by_library(base).at("model"));
+         CHECK(without_baselines(by_program(base, "--baselines none --tracks detector")) ==
+               without_baselines(by_library(base)));
+       }},
+      row("--like", "--like mediapipe", [](Call& call) { call.like = "mediapipe"; }),
+      row("--camera-unknown", "--camera-unknown", [](Call& call) { call.camera_known = false; }),
+      row("--person-height", "--person-height 0.2", [](Call& call) { call.people.height = 0.2; }),
+      row("--person-proportions", "--person-proportions 0.2",
+          [](Call& call) { call.people.proportions = 0.2; }),
+      camera_row("elevation-from", &Cameras::elevation_from_deg, 10),
+      camera_row("elevation-to", &Cameras::elevation_to_deg, 60),
+      camera_row("roll", &Cameras::roll_deg, 1),
+      camera_row("fov-from", &Cameras::fov_from_deg, 20),
+      camera_row("fov-to", &Cameras::fov_to_deg, 90),
+      camera_row("distance-from", &Cameras::distance_from_m, 12),
+      camera_row("distance-to", &Cameras::distance_to_m, 30)};
+}
 
 TEST_CASE("evaluate: every option changes what its help says") {
   if (!have_device()) return;
@@ -203,6 +263,7 @@ TEST_CASE("evaluate: every option changes what its help says") {
       {"--platform", [&] { CHECK(refused("--platform no-such-name", 4)); }},
       {"--device", [&] { CHECK(refused("--device no-such-name", 4)); }},
       {"--quiet", [] {}}};  // by_program says it, and the next test case does not
+  for (OptionRow& of_detector : detector_rows()) rows.push_back(std::move(of_detector));
   check_options("evaluate", rows);
 }
 

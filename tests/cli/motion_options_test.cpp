@@ -4,8 +4,11 @@
 
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
+#include "camera/detector_track.hpp"
+#include "camera/random_camera.hpp"
 #include "camera/track_noise.hpp"
 #include "mcdbn/camera/camera.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/camera/track.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/formats/bvh.hpp"
@@ -71,13 +74,16 @@ struct ProjectCall {
   std::optional<mcdbn::Camera> camera = {};
   double noise_px = 0;
   std::uint64_t seed = 1;
+  std::optional<mcdbn::DetectorCameras> random = {};
 };
 
 /// The track that the library makes of it, as the program would write it.
 std::string track_text(const fs::path& file, const ProjectCall& call) {
   const ScratchFolder folder;
   const mcdbn::Motion motion = mcdbn::load_clip(file, call.clip);
-  const mcdbn::Camera camera = call.camera ? *call.camera : place_camera(motion, call.placement);
+  const mcdbn::Camera camera = call.random   ? random_camera(motion, *call.random, call.seed)
+                               : call.camera ? *call.camera
+                                             : place_camera(motion, call.placement);
   mcdbn::Track2d track = project_motion(motion, camera);
   add_pixel_noise(track, call.noise_px, call.seed);
   write_track_csv(folder / "track.csv", track);
@@ -185,9 +191,58 @@ TEST_CASE("project: every option changes what its help says") {
   camera.fx_px = 700;
   const fs::path camera_file = folder / "camera.yaml";
   write_camera(camera_file, camera);
+  // Each setting of the cameras that are drawn, and what it changes.
+  const auto drawn_row = [&](const char* option, double mcdbn::DetectorCameras::*setting,
+                             double value) {
+    const std::string arguments = fmt::format("--random-camera {} {}", option, value);
+    return OptionRow{option, [=, &projected] {
+                       ProjectCall call;
+                       call.random.emplace().*setting = value;
+                       CHECK(projected(arguments) == track_text(clip, call));
+                       CHECK(projected(arguments) != projected("--random-camera"));
+                     }};
+  };
+  using Cameras = mcdbn::DetectorCameras;
   check_options(
       "project",
-      {row("--noise-px", "--noise-px 3", [](auto& call) { call.noise_px = 3; }),
+      {row("--random-camera", "--random-camera", [](auto& call) { call.random.emplace(); }),
+       drawn_row("--detector-elevation-from", &Cameras::elevation_from_deg, 10),
+       drawn_row("--detector-elevation-to", &Cameras::elevation_to_deg, 60),
+       drawn_row("--detector-roll", &Cameras::roll_deg, 1),
+       drawn_row("--detector-fov-from", &Cameras::fov_from_deg, 20),
+       drawn_row("--detector-fov-to", &Cameras::fov_to_deg, 90),
+       drawn_row("--detector-distance-from", &Cameras::distance_from_m, 12),
+       drawn_row("--detector-distance-to", &Cameras::distance_to_m, 30),
+       {"--like",
+        [&] {
+          SynthesisOptions options = short_clip();
+          const fs::path human = folder / "human.bvh";
+          write_bvh(human, synthesize(options));
+          const auto call = [&](const std::string& like) {
+            return run_cli(fmt::format("project '{}' -o '{}' --seed 4 --quiet --like '{}'",
+                                       human.string(), output.string(), like));
+          };
+          for (const mcdbn::Detector& detector : mcdbn::detectors()) {
+            REQUIRE(call(std::string(detector.name)).exit_code == 0);
+            const mcdbn::Motion motion = mcdbn::load_clip(human);
+            const ScratchFolder other;
+            write_track_csv(other / "track.csv",
+                            detector_track(motion, skeleton_roles(motion.skeleton),
+                                           mcdbn::joint_set(detector.joint_set).keypoints,
+                                           place_camera(motion, {}), detector.noise, 4));
+            CHECK(mcdbn::read_text_file(output) == mcdbn::read_text_file(other / "track.csv"));
+          }
+          // A track that a detector wrote: its joints.
+          REQUIRE(call("openpose").exit_code == 0);
+          const fs::path own = folder / "own.csv";
+          fs::copy_file(output, own, fs::copy_options::overwrite_existing);
+          REQUIRE(call(own.string()).exit_code == 0);
+          CHECK(mcdbn::read_track_csv(output).joint_names ==
+                mcdbn::read_track_csv(own).joint_names);
+          CHECK(mcdbn::read_text_file(output) != mcdbn::read_text_file(own));
+          CHECK(call("nobody").exit_code == 3);
+        }},
+       row("--noise-px", "--noise-px 3", [](auto& call) { call.noise_px = 3; }),
        row("--seed", "--noise-px 3 --seed 6",
            [](auto& call) {
              call.noise_px = 3;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/text_file.hpp"
+#include "comparison/fitted_baseline.hpp"
 #include "library_calls.hpp"
 #include "mcdbn/camera/camera.hpp"
 #include "mcdbn/camera/track.hpp"
@@ -13,6 +14,7 @@
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "option_table.hpp"
 #include "tiny_pipeline.hpp"
@@ -163,6 +165,44 @@ TEST_CASE("regenerate: every option changes what its help says") {
                     same.to = "pose";
                     CHECK(by_program(same) == by_program(one));  // its default
                     CHECK(run_cli(one.arguments(output) + " --to video").exit_code == 2);
+                  }});
+  rows.push_back(
+      {"--method", [&] {
+         const std::string call = one.arguments(output), seen = text();
+         REQUIRE(run_cli(call + " --method model").exit_code == 0);
+         CHECK(text() == seen);
+         REQUIRE(run_cli(call + " --method mean_pose").exit_code == 0);
+         const mcdbn::Model model = load_model(usual_device(), one.model);
+         const auto mean = fitted_baseline("mean_pose", model, clip_lessons(model, false));
+         const auto predict = [&](const mcdbn::MatrixF& seen_features) {
+           return mean->predict(seen_features);
+         };
+         mcdbn::ClipPlacement placement;
+         placement.fit = mcdbn::TrackFitSettings{};
+         REQUIRE(run_cli(fmt::format("regenerate --model '{}' --input '{}' -o '{}' "
+                                     "--method mean_pose",
+                                     one.model.string(), one.track.string(), output.string()))
+                     .exit_code == 0);
+         const auto motions = regenerate_clip(
+             model.modalities, mcdbn::read_track(one.track), placement, predict,
+             [&](const mcdbn::MatrixF& features) { return std::vector{predict(features)}; });
+         CHECK(text() == mcdbn::bvh_text(motions.at(0)));
+         CHECK(text() != seen);
+         CHECK(run_cli(call + " --method nobody").exit_code == 2);
+         CHECK(run_cli(call + " --to track --method mean_pose").exit_code == 2);
+       }});
+  rows.push_back({"--write-camera", [&] {
+                    const fs::path written = folder / "written.yaml";
+                    REQUIRE(
+                        run_cli(fmt::format("regenerate --model '{}' --input '{}' -o '{}' "
+                                            "--camera '{}' --write-camera '{}'",
+                                            one.model.string(), one.track.string(), output.string(),
+                                            (folder / "camera.yaml").string(), written.string()))
+                            .exit_code == 0);
+                    const mcdbn::Camera given = mcdbn::read_camera(folder / "camera.yaml"),
+                                        back = mcdbn::read_camera(written);
+                    CHECK(back.translation.isApprox(given.translation, 1e-6));
+                    CHECK(back.camera_from_world.isApprox(given.camera_from_world, 1e-6));
                   }});
   rows.push_back({"--output", [&] { CHECK(text() == by_library(one).at(0)); }});
   rows.push_back({"--quiet", [&] {

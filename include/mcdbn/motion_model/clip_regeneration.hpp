@@ -15,6 +15,7 @@ namespace mcdbn {
 struct TrackFindings {
   TrackFeatures::FillCount filled;
   std::vector<SideSwap> swaps;  ///< that were put right
+  Camera camera;  ///< that sees the first motion as the track shows it, in its file units
 };
 
 /// 3D motion from a 2D track, `samples` times. The track is brought to the model's rate and the

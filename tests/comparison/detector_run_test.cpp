@@ -1,0 +1,149 @@
+// A test run on what a detector would see: the same for every method.
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+#include "base/scratch_folder.hpp"
+#include "comparison/comparison_run.hpp"
+#include "device/every_device.hpp"
+#include "mcdbn/camera/side_swaps.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/synthesis/synthesize.hpp"
+#include "motion_model/clip_scene.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+constexpr double kFps = 30;
+
+/// The limbs' joints and the middle of the hips, as COCO has them.
+std::vector<Keypoint> limb_keypoints() {
+  std::vector<Keypoint> keypoints;
+  for (const JointRole role : limb_joints()) {
+    Keypoint keypoint;
+    keypoint.name = name_of(role);
+    keypoint.role = role;
+    keypoints.push_back(keypoint);
+  }
+  return keypoints;
+}
+
+Motion walk(int subject, int clip) {
+  SynthesisOptions options;
+  options.subject = subject;
+  options.clip = clip;
+  options.seconds = 1.0;
+  options.fps = kFps;
+  return synthesize(options);
+}
+
+struct Scene {
+  ScratchFolder folder;
+  std::vector<std::filesystem::path> training, tests;
+  Modalities modalities;
+
+  Scene() : modalities(modalities_of({walk(1, 1), walk(2, 1)}, {})) {
+    training = {write("walk_s01_01.bvh", walk(1, 1)), write("walk_s02_01.bvh", walk(2, 1))};
+    tests = {write("walk_s03_01.bvh", walk(3, 1)), write("walk_s04_01.bvh", walk(4, 1))};
+  }
+  std::filesystem::path write(const std::string& name, const Motion& motion) const {
+    write_bvh(folder / name, motion);
+    return folder / name;
+  }
+  Model model(Device& device) const {
+    Model model{random_network(device, modalities), modalities, {}, {}};
+    for (const auto& file : training) model.training_clips.push_back(identify_clip(file));
+    return model;
+  }
+  TestRunOptions options() const {
+    TestRunOptions options;
+    options.baselines.clear();
+    options.regeneration.run_in = 4;
+    options.regeneration.seed = 40;
+    options.detector = DetectorViews{limb_keypoints(), detectors().front().noise, {}, {}};
+    return options;
+  }
+};
+
+bool same(const MatrixD& a, const MatrixD& b) {
+  return a.rows() == b.rows() &&
+         ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
+}
+
+}  // namespace
+
+TEST_CASE("a detector's test run: the clip by another body, from another camera, sides put right") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const TestRunOptions options = scene.options();
+    const Model model = scene.model(device);
+    const auto results = run_test(model, scene.tests, options);
+    REQUIRE(results.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CAPTURE(i);
+      const EncodedClip& truth = results[i].truth;
+      AugmentedView want =
+          detector_view(load_clip(scene.tests[i], {.fps = kFps}), *options.detector, 40 + i);
+      exchange_sides(want.track, find_side_swaps(want.track));
+      CHECK(truth.motion.channels == want.motion.channels);
+      CHECK(truth.camera.camera_from_world == want.camera.camera_from_world);
+      CHECK(same(truth.track.x_px, want.track.x_px));
+      CHECK(same(truth.track.confidence, want.track.confidence));
+      CHECK(truth.track.joint_names[2] == "left_elbow");
+      // Nobody is told the body: the answer has the model's.
+      const Skeleton& answered = results[i].samples.at(0).motion.skeleton;
+      CHECK(answered.joints[3].offset ==
+            scene.modalities.pose_features.skeleton().joints[3].offset);
+      CHECK(answered.joints[3].offset != truth.motion.skeleton.joints[3].offset);
+      CHECK(std::isfinite(results[i].samples.at(0).score.limbs.pa_mpjpe_mm));
+    }
+    CHECK(results[0].truth.camera.camera_from_world != results[1].truth.camera.camera_from_world);
+    // What the report shows as the 2D input are the model's joints, some of them never seen.
+    const auto clips = report_clips(model, results, false);
+    CHECK(clips[0].track_px.array().isNaN().any());
+    CHECK(!clips[0].track_px.array().isNaN().all());
+  });
+}
+
+TEST_CASE("a detector's test run shows every method the same track, whatever else runs") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    TestRunOptions options = scene.options();
+    const Model model = scene.model(device);
+    const auto alone = run_test(model, scene.tests, options);
+    options.baselines = {"mean_pose", "nearest_neighbour"};
+    const auto together = run_test(model, scene.tests, options);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(same(alone[i].truth.track.x_px, together[i].truth.track.x_px));
+      CHECK(alone[i].samples.at(0).motion.channels == together[i].samples.at(0).motion.channels);
+      const auto& others = together[i].others;
+      REQUIRE(others.size() == 2);
+      // The mean pose is fitted to that track, too: turned, it is no mean pose any more.
+      CHECK(others.at("mean_pose").motion.channels.row(0) !=
+            others.at("mean_pose").motion.channels.row(9));
+    }
+  });
+}
+
+TEST_CASE(
+    "a test run whose camera nobody knows answers in the assumed camera's axes, turned back") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    TestRunOptions options = scene.options();
+    const Model model = scene.model(device);
+    const auto known = run_test(model, scene.tests, options);
+    options.camera_known = false;
+    const auto unknown = run_test(model, scene.tests, options);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const LimbError &a = known[i].samples.at(0).score.limbs,
+                      &b = unknown[i].samples.at(0).score.limbs;
+      CHECK(same(known[i].truth.track.x_px, unknown[i].truth.track.x_px));
+      CHECK(a.mpjpe_mm != b.mpjpe_mm);
+      // Without the turn back the heading would be off by up to half a turn.
+      CHECK(b.mpjpe_mm < a.mpjpe_mm + 150);
+    }
+  });
+}
