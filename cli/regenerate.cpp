@@ -201,7 +201,7 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
   add_seen_by_options(*command, options->seen_by);
   command
       ->add_option("--skeleton", options->skeleton,
-                   "BVH whose skeleton to use, of the same joint names")
+                   "BVH whose skeleton to use; of other joint names it is joined by roles")
       ->type_name("FILE");
   command
       ->add_option("--joint-map", options->joint_map,

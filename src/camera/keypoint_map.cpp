@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <utility>
 
 #include "camera/keypoint_places.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -17,6 +19,8 @@ using enum JointRole;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewestJoints = 3;
+/// Joints that lie between two others, by the left one of them.
+constexpr std::array kBetween{std::pair{pelvis, left_hip}, std::pair{neck, left_shoulder}};
 /// How well a detector hits its place at all, in body heights.
 constexpr double kHit = 0.01;
 /// How far an answer's joints are turned wrong, which takes a place on a lever with them.
@@ -46,7 +50,42 @@ Eigen::Vector2d middle(const Track2d& track, Eigen::Index frame, int left, int r
   return 0.5 * (pixel(track, frame, left) + pixel(track, frame, right));
 }
 
+void hide_column(Track2d& track, int column) {
+  track.x_px.col(column).setConstant(kNan);
+  track.y_px.col(column).setConstant(kNan);
+  track.confidence.col(column).setZero();
+}
+
 }  // namespace
+
+std::vector<JointRole> told_roles(const std::vector<Keypoint>& keypoints) {
+  std::vector<JointRole> told;
+  for (const Keypoint& keypoint : keypoints)
+    if (keypoint.role) told.push_back(*keypoint.role);
+  for (const auto& [middle, left] : kBetween)
+    if (column_of(keypoints, left) >= 0 && column_of(keypoints, other_side(left)) >= 0)
+      told.push_back(middle);
+  return told;
+}
+
+void hide_untold(Track2d& track, const Skeleton& skeleton, const SkeletonRoles& roles,
+                 const std::vector<Keypoint>& keypoints) {
+  std::vector<std::string> told;
+  for (const JointRole role : told_roles(keypoints))
+    if (roles.has(role))
+      told.push_back(skeleton.joints[static_cast<std::size_t>(roles.joint(role))].name);
+  const auto is_told = [&](const std::string& name) {
+    return std::ranges::find(told, name) != told.end();
+  };
+  const auto count = std::ranges::count_if(track.joint_names, is_told);
+  if (count < static_cast<std::ptrdiff_t>(kFewestJoints) || !roles.has(pelvis) ||
+      !is_told(skeleton.joints[static_cast<std::size_t>(roles.joint(pelvis))].name))
+    return;
+  for (int column = 0; column < track.joint_count(); ++column) {
+    if (is_told(track.joint_names[static_cast<std::size_t>(column)])) continue;
+    hide_column(track, column);
+  }
+}
 
 KeypointMap::KeypointMap(const std::vector<Keypoint>& keypoints, const Skeleton& skeleton,
                          const SkeletonRoles& roles)
@@ -70,11 +109,15 @@ KeypointMap::KeypointMap(const std::vector<Keypoint>& keypoints, const Skeleton&
       names_.push_back(skeleton.joints[static_cast<std::size_t>(joint)].name);
     }
     const Eigen::Vector3d offset = place - rest.position[static_cast<std::size_t>(joint)];
-    readings_.push_back({index, std::move(columns), axes.transpose() * offset / height});
+    const auto& halfway = keypoints[static_cast<std::size_t>(columns.front())].halfway;
+    const bool own =
+        columns.size() == 1 && !(halfway && column_of(keypoints, halfway->first) >= 0 &&
+                                 column_of(keypoints, halfway->second) >= 0);
+    readings_.push_back({index, std::move(columns), axes.transpose() * offset / height, own});
   };
   for (std::size_t k = 0; k < keypoints.size(); ++k)
     if (keypoints[k].role) add(*keypoints[k].role, {static_cast<int>(k)});
-  for (const auto& [role, left] : {std::pair{pelvis, left_hip}, std::pair{neck, left_shoulder}}) {
+  for (const auto& [role, left] : kBetween) {
     const int left_column = column_of(keypoints, left),
               right_column = column_of(keypoints, other_side(left));
     const bool told = std::ranges::find(joints_, roles.joint(role)) != joints_.end();
@@ -178,6 +221,15 @@ Track2d KeypointMap::joints_of(const Track2d& track, const Motion& answer,
     displacements.uncertain.push_back(kTurn_rad * reading.offset.norm());
   }
   return without(track, displacements);
+}
+
+Track2d KeypointMap::evidence(Track2d joints) const {
+  for (std::size_t joint = 0; joint < names_.size(); ++joint) {
+    const bool own = std::ranges::any_of(
+        readings_, [&](const Reading& reading) { return reading.joint == joint && reading.own; });
+    if (!own) hide_column(joints, static_cast<int>(joint));
+  }
+  return joints;
 }
 
 }  // namespace mcdbn

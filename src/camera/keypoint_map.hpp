@@ -10,6 +10,15 @@
 
 namespace mcdbn {
 
+/// The roles that keypoints tell of: their own; and the pelvis and the neck where both hips and
+/// both shoulders are shown.
+std::vector<JointRole> told_roles(const std::vector<Keypoint>& keypoints);
+
+/// Hides every joint of a track of a skeleton's joints that a detector of these keypoints would not
+/// show, throughout. Nothing is hidden if it would show too little (KeypointMap).
+void hide_untold(Track2d& track, const Skeleton& skeleton, const SkeletonRoles& roles,
+                 const std::vector<Keypoint>& keypoints);
+
 /// Where a detector's keypoints put the joints of a skeleton. A keypoint is a place on the body,
 /// not the joint itself: what lies between them is taken off, first as far as the track alone tells
 /// it, then as a 3D answer to the track has it. A joint that several keypoints tell of is where
@@ -32,6 +41,10 @@ class KeypointMap {
   /// @param answer of the skeleton, as many frames as the track  @param camera that sees it as the
   /// track shows it  @throws ShapeError
   Track2d joints_of(const Track2d& track, const Motion& answer, const Camera& camera) const;
+  /// What of such joints is evidence: those that are told only by others that are told themselves,
+  /// as the pelvis is by both hips, are unseen. In a fit they would speak for the answer that put
+  /// them there.
+  Track2d evidence(Track2d joints) const;
 
  private:
   /// What some columns, in their middle, tell of a joint.
@@ -39,6 +52,7 @@ class KeypointMap {
     std::size_t joint = 0;     ///< index into joints_
     std::vector<int> columns;  ///< one, or those of both sides
     Eigen::Vector3d offset;    ///< of the place from the joint: left, up, forward; body heights
+    bool own = true;           ///< told by a place of its own, not by other joints that are told
   };
   /// Pixels from joint to place for each reading in turn, and how far off that may be, in body
   /// heights. [frames x 2·readings]

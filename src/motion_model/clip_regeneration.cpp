@@ -5,6 +5,7 @@
 #include "camera/track_resample.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/resample.hpp"
+#include "motion/retarget.hpp"
 
 namespace mcdbn {
 namespace {
@@ -18,11 +19,46 @@ Motion with_frames(Motion motion, Eigen::Index frames) {
   return motion;
 }
 
+/// A skeleton that is wanted and has other joints than the model: the model's own is regenerated
+/// with its limbs, and the motion put on it by roles.
+class OtherSkeleton {
+ public:
+  OtherSkeleton(const Skeleton& own, const ClipPlacement& wanted) : own_(own) {
+    if (!wanted.skeleton || has_joints_of(own, *wanted.skeleton)) return;
+    target_ = wanted.skeleton;
+    roles_ = skeleton_roles(own);
+    target_roles_ = skeleton_roles(*target_, wanted.joint_map);
+  }
+
+  ClipPlacement placement(ClipPlacement wanted) const {
+    if (!target_) return wanted;
+    wanted.skeleton = with_limbs_of(own_, roles_, *target_, target_roles_);
+    wanted.joint_map.clear();  // it was the other's
+    return wanted;
+  }
+
+  Motion moved(Motion motion) const {
+    return target_ ? retargeted(motion, roles_, *target_, target_roles_) : motion;
+  }
+
+ private:
+  static bool has_joints_of(const Skeleton& own, const Skeleton& other) {
+    return std::ranges::all_of(own.joints,
+                               [&](const Joint& joint) { return other.find(joint.name) >= 0; });
+  }
+
+  const Skeleton& own_;
+  std::optional<Skeleton> target_;
+  SkeletonRoles roles_, target_roles_;
+};
+
 }  // namespace
 
 std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d& track,
-                                    const ClipPlacement& placement, const PoseAnswer& single,
+                                    const ClipPlacement& wanted, const PoseAnswer& single,
                                     const PoseAnswers& all, TrackFindings* findings) {
+  const OtherSkeleton other(modalities.pose_features.skeleton(), wanted);
+  const ClipPlacement placement = other.placement(wanted);
   Track2d sides = track;
   std::vector<SideSwap> swaps;
   if (!joined_by_name(track, modalities.track_features)) {
@@ -36,7 +72,7 @@ std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d&
     const FittedClip clip =
         fit_to_track(PosePrior::around(pose), modalities, seen.joints, placement, placement.fit);
     if (motions.empty()) camera = clip.camera;
-    motions.push_back(with_frames(resample(clip.motion, track.fps), track.frames()));
+    motions.push_back(other.moved(with_frames(resample(clip.motion, track.fps), track.frames())));
   }
   if (findings) *findings = {std::move(seen.filled), std::move(swaps), std::move(camera)};
   return motions;

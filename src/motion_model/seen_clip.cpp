@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "camera/confidence_weights.hpp"
 #include "camera/keypoint_map.hpp"
 #include "fitting/track_smoothing.hpp"
 
@@ -65,11 +66,11 @@ SeenClip see_clip(const Modalities& modalities, const Track2d& track,
   const Camera camera = placement.camera_of(track, modalities);
   SeenClip seen;
   const auto look = [&](const Track2d& joints) {
-    seen.joints = joints;
     seen.features = modalities.encode_track(smooth_track(joints), camera, &seen.filled);
   };
   if (joined_by_name(track, modalities.track_features)) {
     look(track);
+    seen.joints = track;
     seen.features = fill_gaps(modalities, seen.features, track, placement, answer);
     return seen;
   }
@@ -77,14 +78,18 @@ SeenClip see_clip(const Modalities& modalities, const Track2d& track,
       placement.skeleton ? *placement.skeleton : modalities.pose_features.skeleton();
   const KeypointMap map(keypoints_of_columns(track), skeleton,
                         skeleton_roles(skeleton, placement.joint_map));
-  look(map.joints_of(track));
+  const Track2d weighted = weighted_by_confidence(track);
+  Track2d joints = map.joints_of(weighted);
+  look(joints);
   MatrixF filled = seen.features;
   for (int round = 0; round < kRounds; ++round) {
-    const FittedClip clip = fit_to_track(PosePrior::around(answer(filled)), modalities, seen.joints,
-                                         placement, placement.fit);
-    look(map.joints_of(track, clip.motion, clip.camera));
+    const FittedClip clip = fit_to_track(PosePrior::around(answer(filled)), modalities,
+                                         map.evidence(joints), placement, placement.fit);
+    joints = map.joints_of(weighted, clip.motion, clip.camera);
+    look(joints);
     filled = where_known(seen.features, modalities.encode_track(clip.shown, camera));
   }
+  seen.joints = map.evidence(joints);
   seen.features = filled;
   return seen;
 }

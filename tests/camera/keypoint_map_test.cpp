@@ -123,6 +123,43 @@ TEST_CASE("keypoint map: what is not seen is missing, and others stand in") {
   }
 }
 
+TEST_CASE("keypoint map: what only other joints tell of is no evidence") {
+  const Scene scene;
+  for (auto keypoints : {coco_keypoints(), body_25_keypoints()}) {
+    const auto hidden = [&](const char* name) {
+      const Track2d seen = keypoint_track(scene.motion, scene.camera, keypoints);
+      const KeypointMap map = scene.map(keypoints);
+      const Track2d joints = map.joints_of(seen), evidence = map.evidence(joints);
+      CHECK(evidence.x_px.col(evidence.find("LeftLeg")) == joints.x_px.col(joints.find("LeftLeg")));
+      CHECK(evidence.confidence.col(evidence.find("Head")).minCoeff() == 1);
+      return (evidence.confidence.col(evidence.find(name)).array() == 0).all();
+    };
+    CHECK(hidden("Hips"));
+    CHECK(hidden("Neck"));
+    keypoints.push_back(keypoint("sacrum", JointRole::pelvis, {0, 0, -0.05}));
+    CHECK_FALSE(hidden("Hips"));
+  }
+}
+
+TEST_CASE("keypoint map: what a detector would not show is hidden from a track of joints") {
+  const Scene scene;
+  Track2d track = scene.joints;
+  hide_untold(track, scene.motion.skeleton, scene.roles, coco_keypoints());
+  for (int column = 0; column < track.joint_count(); ++column) {
+    const std::string& name = track.joint_names[static_cast<std::size_t>(column)];
+    CAPTURE(name);
+    const bool hidden = name.ends_with("Toe");
+    CHECK(track.x_px.col(column).array().isNaN().all() == hidden);
+    CHECK((track.confidence.col(column).array() == 0).all() == hidden);
+    if (!hidden) CHECK(track.y_px.col(column) == scene.joints.y_px.col(column));
+  }
+  auto upper = coco_keypoints();
+  std::erase_if(upper, [](const Keypoint& place) { return place.name.ends_with("_hip"); });
+  Track2d whole = scene.joints;
+  hide_untold(whole, scene.motion.skeleton, scene.roles, upper);
+  CHECK(whole.x_px == scene.joints.x_px);
+}
+
 TEST_CASE("keypoint map: too little of a body is said to be too little") {
   const Scene scene;
   auto upper = coco_keypoints();

@@ -1,0 +1,132 @@
+// What a model sees of tracks whose columns are not its own joints.
+
+#include "mcdbn/motion_model/seen_clip.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "camera/keypoint_track.hpp"
+#include "features/clip_modalities.hpp"
+#include "fitting/track_smoothing.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/synthesis/synthesize.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+struct Scene {
+  Motion truth = synthesize({.seconds = 2});
+  CameraPlacement view{60, 5, std::nullopt, 45, 1920, 1080};
+  Modalities modalities = modalities_of({truth}, view);
+  Camera camera = place_camera(truth, view);
+  MatrixF pose = modalities.encode_pose(truth, camera.camera_from_world);
+  Track2d exact = project_motion(truth, camera);
+  ClipPlacement placement{{camera, truth.skeleton}};
+  int asked = 0;
+
+  Track2d seen(const std::vector<Keypoint>& keypoints) const {
+    return keypoint_track(truth, camera, keypoints);
+  }
+  SeenClip see(const Track2d& track) {
+    return see_clip(modalities, track, placement, [&](const MatrixF& features) -> MatrixF {
+      CHECK(features.cols() == modalities.track_scale.output_dimension());
+      ++asked;
+      return pose;
+    });
+  }
+  /// The farthest that a joint is from where it is, in pixels.
+  double off_px(const Track2d& joints, const std::string& name) const {
+    const int here = joints.find(name), there = exact.find(name);
+    REQUIRE(here >= 0);
+    return std::max((joints.x_px.col(here) - exact.x_px.col(there)).cwiseAbs().maxCoeff(),
+                    (joints.y_px.col(here) - exact.y_px.col(there)).cwiseAbs().maxCoeff());
+  }
+};
+
+}  // namespace
+
+TEST_CASE("seen clips: a track of the model's joints is taken as it is") {
+  Scene scene;
+  Track2d track = scene.exact;
+  track.confidence.col(track.find(scene.truth.skeleton.joints[3].name)).segment(10, 20).setZero();
+  const MatrixF features = scene.modalities.encode_track(smooth_track(track), scene.camera);
+  const SeenClip seen = scene.see(track);
+  const auto answer = [&](const MatrixF&) { return scene.pose; };
+  CHECK(seen.features == fill_gaps(scene.modalities, features, track, scene.placement, answer));
+  CHECK(seen.joints.x_px.col(0) == track.x_px.col(0));
+  CHECK(seen.filled.missing == 20);
+  CHECK(seen.filled.unseen.empty());
+  // Whatever its columns are said to show besides.
+  track.keypoints = {keypoint("Hips", JointRole::head)};
+  CHECK(scene.see(track).features == seen.features);
+}
+
+TEST_CASE("seen clips: a detector's keypoints, the answer's own pose takes off what lies between") {
+  Scene scene;
+  for (const auto& keypoints : {coco_keypoints(), body_25_keypoints()}) {
+    scene.asked = 0;
+    const SeenClip seen = scene.see(scene.seen(keypoints));
+    CHECK(scene.asked == 3);
+    for (const std::string& name : seen.joints.joint_names) {
+      CAPTURE(name);
+      // Hips and shoulders are told; what they tell of pelvis and neck is nothing new to the fit.
+      const bool derived = name == "Hips" || name == "Neck";
+      CHECK((seen.joints.confidence.col(seen.joints.find(name)).array() == 0).all() == derived);
+      // Of a figure some 900 px tall; the fit stands between the true answer and the joints.
+      if (!derived) CHECK(scene.off_px(seen.joints, name) < 4);
+    }
+    CHECK_FALSE(seen.features.array().isNaN().any());
+    CHECK(std::ranges::count(seen.filled.unseen, "LeftLeg") == 0);
+    const MatrixF whole = scene.modalities.encode_track(scene.exact, scene.camera);
+    const Standardizer& scale = scene.modalities.track_scale;
+    CHECK((scale.invert(seen.features) - scale.invert(whole)).cwiseAbs().maxCoeff() < 0.05);
+    const bool feet = keypoints.size() > 17;
+    CHECK((std::ranges::count(seen.filled.unseen, "LeftToeBase") == 0) == feet);
+    CHECK(std::ranges::count(seen.filled.unseen, "Spine") == 1);
+  }
+}
+
+TEST_CASE("seen clips: roles said by hand come to their use") {
+  Scene scene;
+  const Track2d track = scene.seen(coco_keypoints());
+  scene.placement.joint_map = {{JointRole::left_knee, "LeftFoot"}};
+  const SeenClip seen = scene.see(track);
+  CHECK(seen.joints.find("LeftLeg") < 0);
+  CHECK(scene.off_px(seen.joints, "LeftFoot") > 50);
+}
+
+TEST_CASE("seen clips: the columns of another skeleton, by its names") {
+  Scene scene;
+  Track2d track = scene.exact;
+  for (std::string& name : track.joint_names) {
+    for (const auto& [own, other] :
+         {std::pair{"LeftUpLeg", "UpperLeg_L"}, std::pair{"RightUpLeg", "UpperLeg_R"},
+          std::pair{"LeftLeg", "LowerLeg_L"}, std::pair{"RightLeg", "LowerLeg_R"},
+          std::pair{"LeftArm", "UpperArm_L"}, std::pair{"RightArm", "UpperArm_R"},
+          std::pair{"Hips", "Pelvis"}})
+      if (name == own) {
+        name = other;
+        break;
+      }
+  }
+  for (std::string& name : track.joint_names)
+    if (scene.truth.skeleton.find(name) >= 0) name = "unknown " + name;
+  const SeenClip seen = scene.see(track);
+  CHECK(seen.joints.joint_count() == 8);  // and the neck, from the shoulders
+  for (const char* name : {"LeftUpLeg", "RightLeg", "LeftArm", "Hips", "RightArm"}) {
+    CAPTURE(name);
+    CHECK(scene.off_px(seen.joints, name) < 1e-6);
+  }
+}
+
+TEST_CASE("seen clips: too little of a person is an error") {
+  Scene scene;
+  Track2d track = scene.seen(coco_keypoints());
+  track.keypoints.resize(7);
+  CHECK_THROWS_WITH_AS(scene.see(track), doctest::Contains("shows too little of the body"),
+                       InputError);
+}
