@@ -26,6 +26,12 @@ constexpr double kHit = 0.01;
 /// How far an answer's joints are turned wrong, which takes a place on a lever with them.
 constexpr double kTurn_rad = 0.3;
 
+/// The weight of a place that lies off its joint by so much that is not known, in body heights,
+/// beside that of the joint itself.
+double sureness(double uncertain) {
+  return kHit * kHit / (kHit * kHit + uncertain * uncertain);
+}
+
 /// The column whose keypoint is the joint itself, or -1.
 int column_of(const std::vector<Keypoint>& keypoints, JointRole role) {
   const auto found = std::ranges::find_if(keypoints, [&](const Keypoint& keypoint) {
@@ -176,7 +182,6 @@ Track2d KeypointMap::without(const Track2d& track, const Displacements& displace
   for (std::size_t k = 0; k < readings_.size(); ++k) {
     const Reading& reading = readings_[k];
     const auto joint = static_cast<Eigen::Index>(reading.joint);
-    const double variance = kHit * kHit + displacements.uncertain[k] * displacements.uncertain[k];
     for (Eigen::Index t = 0; t < track.frames(); ++t) {
       const Eigen::Vector2d place =
           middle(track, t, reading.columns.front(), reading.columns.back());
@@ -185,7 +190,7 @@ Track2d KeypointMap::without(const Track2d& track, const Displacements& displace
       if (!place.allFinite() || !shift.allFinite()) continue;
       const double confidence = std::min(track.confidence(t, reading.columns.front()),
                                          track.confidence(t, reading.columns.back()));
-      const double weight = confidence * (kHit * kHit / variance);
+      const double weight = confidence * sureness(displacements.uncertain[k]);
       weights(t, joint) += weight;
       result.x_px(t, joint) += weight * (place - shift).x();
       result.y_px(t, joint) += weight * (place - shift).y();
@@ -225,9 +230,14 @@ Track2d KeypointMap::joints_of(const Track2d& track, const Motion& answer,
 
 Track2d KeypointMap::evidence(Track2d joints) const {
   for (std::size_t joint = 0; joint < names_.size(); ++joint) {
-    const bool own = std::ranges::any_of(
-        readings_, [&](const Reading& reading) { return reading.joint == joint && reading.own; });
-    if (!own) hide_column(joints, static_cast<int>(joint));
+    double trust = 0;
+    for (const Reading& reading : readings_)
+      if (reading.joint == joint && reading.own)
+        trust = std::max(trust, sureness(kTurn_rad * reading.offset.norm()));
+    if (trust > 0)
+      joints.confidence.col(static_cast<Eigen::Index>(joint)) *= trust;
+    else
+      hide_column(joints, static_cast<int>(joint));
   }
   return joints;
 }

@@ -42,8 +42,8 @@ class KeypointMap {
   /// track shows it  @throws ShapeError
   Track2d joints_of(const Track2d& track, const Motion& answer, const Camera& camera) const;
   /// What of such joints is evidence: those that are told only by others that are told themselves,
-  /// as the pelvis is by both hips, are unseen. In a fit they would speak for the answer that put
-  /// them there.
+  /// as the pelvis is by both hips, are unseen, and those that are told by places away from them
+  /// count less. In a fit they would speak for the answer that put them there.
   Track2d evidence(Track2d joints) const;
 
  private:

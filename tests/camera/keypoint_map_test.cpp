@@ -131,7 +131,9 @@ TEST_CASE("keypoint map: what only other joints tell of is no evidence") {
       const KeypointMap map = scene.map(keypoints);
       const Track2d joints = map.joints_of(seen), evidence = map.evidence(joints);
       CHECK(evidence.x_px.col(evidence.find("LeftLeg")) == joints.x_px.col(joints.find("LeftLeg")));
-      CHECK(evidence.confidence.col(evidence.find("Head")).minCoeff() == 1);
+      CHECK(evidence.confidence.col(evidence.find("LeftLeg")).minCoeff() == 1);
+      // Its ears are 0.042 of body height off, and turned by 0.3 rad more or less.
+      CHECK(evidence.confidence(0, evidence.find("Head")) == doctest::Approx(0.39).epsilon(0.02));
       return (evidence.confidence.col(evidence.find(name)).array() == 0).all();
     };
     CHECK(hidden("Hips"));
