@@ -64,35 +64,6 @@ void hide_column(Track2d& track, int column) {
 
 }  // namespace
 
-std::vector<JointRole> told_roles(const std::vector<Keypoint>& keypoints) {
-  std::vector<JointRole> told;
-  for (const Keypoint& keypoint : keypoints)
-    if (keypoint.role) told.push_back(*keypoint.role);
-  for (const auto& [middle, left] : kBetween)
-    if (column_of(keypoints, left) >= 0 && column_of(keypoints, other_side(left)) >= 0)
-      told.push_back(middle);
-  return told;
-}
-
-void hide_untold(Track2d& track, const Skeleton& skeleton, const SkeletonRoles& roles,
-                 const std::vector<Keypoint>& keypoints) {
-  std::vector<std::string> told;
-  for (const JointRole role : told_roles(keypoints))
-    if (roles.has(role))
-      told.push_back(skeleton.joints[static_cast<std::size_t>(roles.joint(role))].name);
-  const auto is_told = [&](const std::string& name) {
-    return std::ranges::find(told, name) != told.end();
-  };
-  const auto count = std::ranges::count_if(track.joint_names, is_told);
-  if (count < static_cast<std::ptrdiff_t>(kFewestJoints) || !roles.has(pelvis) ||
-      !is_told(skeleton.joints[static_cast<std::size_t>(roles.joint(pelvis))].name))
-    return;
-  for (int column = 0; column < track.joint_count(); ++column) {
-    if (is_told(track.joint_names[static_cast<std::size_t>(column)])) continue;
-    hide_column(track, column);
-  }
-}
-
 KeypointMap::KeypointMap(const std::vector<Keypoint>& keypoints, const Skeleton& skeleton,
                          const SkeletonRoles& roles)
     : keypoints_(keypoints), roles_(roles) {

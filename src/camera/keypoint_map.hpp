@@ -10,15 +10,6 @@
 
 namespace mcdbn {
 
-/// The roles that keypoints tell of: their own; and the pelvis and the neck where both hips and
-/// both shoulders are shown.
-std::vector<JointRole> told_roles(const std::vector<Keypoint>& keypoints);
-
-/// Hides every joint of a track of a skeleton's joints that a detector of these keypoints would not
-/// show, throughout. Nothing is hidden if it would show too little (KeypointMap).
-void hide_untold(Track2d& track, const Skeleton& skeleton, const SkeletonRoles& roles,
-                 const std::vector<Keypoint>& keypoints);
-
 /// Where a detector's keypoints put the joints of a skeleton. A keypoint is a place on the body,
 /// not the joint itself: what lies between them is taken off, first as far as the track alone tells
 /// it, then as a 3D answer to the track has it. A joint that several keypoints tell of is where

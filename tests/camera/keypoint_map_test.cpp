@@ -143,25 +143,6 @@ TEST_CASE("keypoint map: what only other joints tell of is no evidence") {
   }
 }
 
-TEST_CASE("keypoint map: what a detector would not show is hidden from a track of joints") {
-  const Scene scene;
-  Track2d track = scene.joints;
-  hide_untold(track, scene.motion.skeleton, scene.roles, coco_keypoints());
-  for (int column = 0; column < track.joint_count(); ++column) {
-    const std::string& name = track.joint_names[static_cast<std::size_t>(column)];
-    CAPTURE(name);
-    const bool hidden = name.ends_with("Toe");
-    CHECK(track.x_px.col(column).array().isNaN().all() == hidden);
-    CHECK((track.confidence.col(column).array() == 0).all() == hidden);
-    if (!hidden) CHECK(track.y_px.col(column) == scene.joints.y_px.col(column));
-  }
-  auto upper = coco_keypoints();
-  std::erase_if(upper, [](const Keypoint& place) { return place.name.ends_with("_hip"); });
-  Track2d whole = scene.joints;
-  hide_untold(whole, scene.motion.skeleton, scene.roles, upper);
-  CHECK(whole.x_px == scene.joints.x_px);
-}
-
 TEST_CASE("keypoint map: too little of a body is said to be too little") {
   const Scene scene;
   auto upper = coco_keypoints();

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <map>
 #include <optional>
 
 #include "base/text_file.hpp"
@@ -13,6 +14,7 @@
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
+#include "mcdbn/formats/joint_map.hpp"
 #include "mcdbn/formats/track_csv.hpp"
 #include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
@@ -26,7 +28,7 @@ namespace {
 
 struct Call {
   fs::path model, track;
-  std::optional<fs::path> camera = {}, skeleton = {};
+  std::optional<fs::path> camera = {}, skeleton = {}, joint_map = {};
   std::optional<std::size_t> samples = {}, gibbs_steps = {}, mrbm_gibbs_steps = {};
   std::optional<double> temperature = {};
   mcdbn::AssumedView view = {};
@@ -41,6 +43,7 @@ struct Call {
     };
     if (camera) text += fmt::format(" --camera '{}'", camera->string());
     if (skeleton) text += fmt::format(" --skeleton '{}'", skeleton->string());
+    if (joint_map) text += fmt::format(" --joint-map '{}'", joint_map->string());
     add("--samples", samples);
     add("--gibbs-steps", gibbs_steps);
     add("--mrbm-gibbs-steps", mrbm_gibbs_steps);
@@ -61,6 +64,7 @@ std::vector<std::string> by_library(const Call& call) {
   if (call.camera) placement.camera = mcdbn::read_camera(*call.camera);
   placement.view = call.view;
   if (call.skeleton) placement.skeleton = mcdbn::read_bvh(*call.skeleton).skeleton;
+  if (call.joint_map) placement.joint_map = mcdbn::read_joint_map(*call.joint_map);
   if (call.fit == "none") placement.fit.reset();
   mcdbn::RegenerationOptions options;
   options.samples = call.samples.value_or(1);
@@ -105,6 +109,21 @@ void check_same(const Call& call, const std::vector<std::string>& before) {
 
 fs::path first_test_clip() {
   return TinyPipeline::instance().motion() / "walk_s02_01.bvh";
+}
+
+/// The track with some joints called as a detector calls them, the rest as nobody does.
+void make_places(const fs::path& track, const fs::path& places) {
+  mcdbn::Track2d seen = mcdbn::read_track_csv(track);
+  seen.keypoints.clear();
+  const std::map<std::string, std::string> names{
+      {"LeftUpLeg", "left_hip"},  {"RightUpLeg", "right_hip"},  {"LeftLeg", "left_knee"},
+      {"RightLeg", "right_knee"}, {"LeftArm", "left_shoulder"}, {"RightArm", "right_shoulder"}};
+  int others = 0;
+  for (std::string& name : seen.joint_names) {
+    const auto found = names.find(name);
+    name = found == names.end() ? fmt::format("x{}", ++others) : found->second;
+  }
+  mcdbn::write_track_csv(places, seen);
 }
 
 /// A track of another number of frames, seen by a camera whose file is kept.
@@ -203,6 +222,20 @@ TEST_CASE("regenerate: every option changes what its help says") {
                                         back = mcdbn::read_camera(written);
                     CHECK(back.translation.isApprox(given.translation, 1e-6));
                     CHECK(back.camera_from_world.isApprox(given.camera_from_world, 1e-6));
+                  }});
+  rows.push_back({"--joint-map", [&] {
+                    make_places(folder / "track.csv", folder / "places.csv");
+                    Call places = one;
+                    places.track = folder / "places.csv";
+                    const auto by_names = by_program(places);
+                    const fs::path map = folder.write("map.toml", "left_knee = \"LeftFoot\"\n");
+                    places.joint_map = map;
+                    check_same(places, by_names);
+                    folder.write("map.toml", "# nobody's\nleft_knee = 3\n");
+                    const CliResult wrong = run_cli(places.arguments(output));
+                    CHECK(wrong.exit_code == 3);
+                    CHECK(wrong.standard_error.find("map.toml:2: left_knee: ") !=
+                          std::string::npos);
                   }});
   rows.push_back({"--output", [&] { CHECK(text() == by_library(one).at(0)); }});
   rows.push_back({"--quiet", [&] {
