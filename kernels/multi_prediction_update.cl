@@ -1,22 +1,24 @@
 // Every gradient of multi-prediction (eq 42) and what the optimizer makes of it (optimizer.clh), over
 // the outputs of multi_prediction.cl, whose names and stacks are used here. Two launches: the stacks are
-// long (STEPS times the mini-batch) and wide, so multi_prediction_products adds up the tiles of every W
-// over pieces of them that stay in a core's cache, and multi_prediction_update adds up the pieces, in
-// order, and updates. A tile is TILE_ROWS x VEC; tiles of the first modality's W come first; in the
-// update those of every a and of b follow, and the last work-item adds up the losses.
+// long (STEPS times the mini-batch) and wide, so multi_prediction_products adds up the panels of every W
+// (weight_tile.clh) over pieces of them, and multi_prediction_update adds up the pieces, in order, and
+// updates tiles of ROWS x VEC. Those of the first modality's W come first; in the update those of every
+// a and of b follow, and the last work-item adds up the losses.
 //
-// multi_prediction_products: global (at least the tiles of every W, pieces). The pieces of PIECE_ROWS
+// multi_prediction_products: global (panels · GROUP, pieces), local (GROUP, 1). The pieces of PIECE_ROWS
 //   rows count through the products of a W: value_errorsᵀ·hidden, valuesᵀ·hidden_errors of the step
-//   after, and codesᵀ·drive_errors of each other direction. partial[piece][tile][TILE_ROWS][VEC].
+//   after, and codesᵀ·drive_errors of each other direction. partial[piece] is [partial_rows x H_LD], the
+//   rows of every W one after another, padded.
 // multi_prediction_update: global (tiles + 1). loss_sums[m] is of the direction in which m is absent.
-// Compile-time: mrbm_shape.clh, TILE_ROWS (divides 16), PIECE_ROWS, OPTIMIZER.
+// Compile-time: mrbm_shape.clh, PIECE_ROWS, OPTIMIZER, tile.clh's ROWS (divides 16), COLUMNS and GROUP,
+// PANEL_TILES.
 //
 // Variants that `scripts/lint kernels` compiles:
-//   VEC=1,4,8,16 TILE_ROWS=4,8,16 PIECE_ROWS=256 SAMPLE= BINARY=
+//   VEC=1,4,8,16 ROWS=4,8,16 PANEL_TILES=1,3 CHUNK=128 PIECE_ROWS=256 SAMPLE= BINARY=
+//   VEC=1,16 GROUP=1,64,256 ROWS=4,8 COLUMNS=1,2,3,4
 //   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97 STEPS=1,10
 //   OPTIMIZER=none,momentum,adam
 
-#include "units.clh"
 #include "mrbm_shape.clh"
 #include "weight_tile.clh"
 
@@ -25,13 +27,6 @@
 #endif
 
 #define PIECES(rows) (((rows) + PIECE_ROWS - 1) / PIECE_ROWS)
-#define TILES(units) (PADDED(units) / TILE_ROWS * (H_LD / VEC))
-
-INLINE int all_tiles(global const int* layout) {
-  int tiles = 0;
-  for (int m = 0; m < MODALITIES; ++m) tiles += TILES(UNITS(m));
-  return tiles;
-}
 
 INLINE floatN column_sum(global const float* x, int rows, const int ld) {
   floatN sum = (floatN)(0.0f);
@@ -39,33 +34,19 @@ INLINE floatN column_sum(global const float* x, int rows, const int ld) {
   return sum;
 }
 
-// A tile of one piece: Σ_i x[i · x_ld + r] · y[i · H_LD …]
-INLINE void piece_product(int rows, global const float* x, const int x_ld, global const float* y,
-                          global float* partial) {
-  floatN sum[TILE_ROWS];
-  clear_sums(sum);
-  for (int i = 0; i < rows; ++i) add_outer(sum, x + i * x_ld, loadN(i * H_LD, y));
-#pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r) storeN(sum[r], r * VEC, partial);
-}
-
-kernel void multi_prediction_products(global const int* layout, int stride,
-                                      global const float* codes, global const float* values,
-                                      global const float* value_errors,
-                                      global const float* hidden,
-                                      global const float* hidden_errors,
-                                      global const float* drive_errors, global float* partial) {
-  const int tiles = all_tiles(layout);
-  int tile = get_global_id(0);
-  if (tile >= tiles) return;
-  partial += (get_global_id(1) * tiles + tile) * TILE_ROWS * VEC;
-  int m = 0;
-  for (; tile >= TILES(UNITS(m)); ++m) tile -= TILES(UNITS(m));
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction_products(
+    global const int* layout, int stride, global const float* codes, global const float* values,
+    global const float* value_errors, global const float* hidden, global const float* hidden_errors,
+    global const float* drive_errors, global float* partial, int partial_rows) {
+  local float packed[PANEL_FLOATS];
+  int panel = get_group_id(0), m = 0;
+  for (; panel >= PANELS(PADDED(UNITS(m))); ++m) panel -= PANELS(PADDED(UNITS(m)));
   const int ld = PADDED(UNITS(m));
-  const int row0 = TILE_ROW(tile), column = TILE_COLUMN(tile);
+  const int row0 = panel * PANEL_ROWS, tiles = TILES_IN(panel, ld);
   const int block = stride * H_LD, direction = m * STEPS * block;
 
-  int piece = get_global_id(1), rows = STEPS * stride;
+  int piece = get_group_id(1), rows = STEPS * stride;
+  partial += (piece * partial_rows + UNITS_BEFORE(m) + row0) * H_LD;
   global const float* x = value_errors + rows * UNITS_BEFORE(m);
   global const float* y = hidden + direction;
   if (piece >= PIECES(rows)) {
@@ -82,40 +63,46 @@ kernel void multi_prediction_products(global const int* layout, int stride,
       y = drive_errors + (i < m ? i : i + 1) * block;
     }
   }
-  const int first = piece * PIECE_ROWS;
-  piece_product(min(PIECE_ROWS, rows - first), x + first * ld + row0, ld, y + first * H_LD + column,
-                partial);
+  const int from = piece * PIECE_ROWS;
+  x += from * ld + row0;
+  y += from * H_LD;
+  rows = min(PIECE_ROWS, rows - from);
+  ADD_UP_PANEL(
+      rows, tiles, H_LD, partial, PANEL_ROWS, { pack_row(packed, i, tiles, x + (first + i) * ld); },
+      { add_outer(sum, count, packed + x_at, y + (first + i) * H_LD + column, 1.0f); },
+      { store_tile(sum, count, waiting, H_LD, column); });
 }
 
-INLINE void update_w(int tile, int tiles, const int units, int pieces, global const float* partial,
-                     int w_at, global float* wt, global float* parameters, global float* gradients,
-                     global float* states, int size, float8 rule) {
-  floatN sum[TILE_ROWS];
-  clear_sums(sum);
-  for (int piece = 0; piece < pieces; ++piece) {
-#pragma unroll
-    for (int r = 0; r < TILE_ROWS; ++r) sum[r] += loadN(r * VEC, partial);
-    partial += tiles * TILE_ROWS * VEC;
-  }
-  update_weights(tile, sum, 1.0f, units, PADDED(units), w_at, wt, parameters, gradients, states, size,
-                 rule);
+// One tile of W, a vector wide.
+INLINE void update_w(int tile, int partial_rows, const int units, int pieces,
+                     global const float* partial, int w_at, global float* wt,
+                     global float* parameters, global float* gradients, global float* states,
+                     int size, float8 rule) {
+  const int row0 = tile / (H_LD / VEC) * ROWS, column = tile % (H_LD / VEC) * VEC;
+  floatN sum[ROWS][COLUMNS];
+  clear_tile(sum, 1);
+  for (int piece = 0; piece < pieces; ++piece)
+    add_tile(sum, 1, partial + (piece * partial_rows + row0) * H_LD, H_LD, column);
+  update_tile(sum, 1, 1.0f, units - row0, H_LD, w_at + row0 * H_LD, column, parameters, gradients,
+              states, size, rule);
+  store_transposed(sum, 1, wt, PADDED(units), row0, units - row0, column, HIDDEN);
 }
 
 kernel void multi_prediction_update(
-    global const int* layout, int rows, int stride, int pieces, global const float* partial,
+    global const int* layout, int rows, int stride, int pieces, int partial_rows,
+    global const float* partial,
     global const float* value_errors, global const float* drive_errors, global float* parameters,
     global float* transposed, global float* gradients, global float* states, int size, float8 rule,
     global const float* loss, global float* loss_sums) {
-  const int tiles = all_tiles(layout);
   int tile = get_global_id(0);
-  partial += tile * TILE_ROWS * VEC;
   for (int m = 0; m < MODALITIES; ++m) {
-    if (tile < TILES(UNITS(m))) {
-      update_w(tile, tiles, UNITS(m), pieces, partial, W_AT(m), transposed + WT_AT(m), parameters,
-               gradients, states, size, rule);
+    const int tiles = PADDED(UNITS(m)) / ROWS * (H_LD / VEC);
+    if (tile < tiles) {
+      update_w(tile, partial_rows, UNITS(m), pieces, partial + UNITS_BEFORE(m) * H_LD, W_AT(m),
+               transposed + WT_AT(m), parameters, gradients, states, size, rule);
       return;
     }
-    tile -= TILES(UNITS(m));
+    tile -= tiles;
   }
   const float8 bias_rule = without_decay(rule);
   int column = tile * VEC;

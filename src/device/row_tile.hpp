@@ -11,11 +11,12 @@ namespace mcdbn {
 /// How the fused kernels divide their work (kernels/tile.clh, contrastive_divergence_update.cl). No
 /// choice changes a result, only the time it takes.
 struct RowTile {
-  int vector_width = 16;  ///< floats that a work-item takes at once: 1, 4, 8 or 16
-  int rows = 10;          ///< that one work-group carries through a whole chain
-  int columns = 1;        ///< vectors that a work-item accumulates side by side
-  int group = 1;          ///< work-items that share a block of rows
-  int update_rows = 16;   ///< rows of a gradient's tile: 4, 8 or 16
+  int vector_width = 16;   ///< floats that a work-item takes at once: 1, 4, 8 or 16
+  int rows = 10;           ///< that one work-group carries through a whole chain
+  int columns = 1;         ///< vectors that a work-item accumulates side by side
+  int group = 1;           ///< work-items that share a block of rows
+  int update_rows = 8;     ///< rows of a gradient's tile: 4, 8 or 16
+  int update_columns = 2;  ///< vectors of a row of that tile
   bool operator==(const RowTile&) const = default;
 };
 
@@ -27,6 +28,16 @@ std::optional<RowTile> choose_row_tile(const Device& device, std::size_t floats_
 
 /// A kernel's own definitions with those of tile.clh: ROWS, COLUMNS and GROUP.
 Defines with_tile(Defines defines, const RowTile& tile);
+
+/// The same for a kernel that works on panels of gradients (kernels/weight_tile.clh).
+Defines with_update_tile(Defines defines, const RowTile& tile);
+
+/// Work-groups for the gradient of a weight matrix of so many rows, which a device has padded.
+std::size_t update_panels(const RowTile& tile, std::size_t rows);
+
+/// Rows of a mini-batch that such a kernel takes at a time. Where there are more, sums that are not
+/// complete wait in memory.
+inline constexpr std::size_t kUpdateChunk = 128;
 
 /// The batch, filled up to whole blocks of rows; unchanged without a tile.
 std::size_t whole_blocks(std::size_t batch, const std::optional<RowTile>& tile);

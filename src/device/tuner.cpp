@@ -17,15 +17,16 @@ constexpr double kWorthwhile = 0.97;
 /// `to` with what `from` has otherwise than the default.
 Tuning with_changes(Tuning to, const Tuning& from, const Tuning& usual) {
   for (const auto parameter : {&Tuning::vector_width, &Tuning::largest_rows, &Tuning::accumulators,
-                               &Tuning::group, &Tuning::update_rows})
+                               &Tuning::group, &Tuning::update_rows, &Tuning::update_columns})
     if (from.*parameter != usual.*parameter) to.*parameter = from.*parameter;
   return to;
 }
 
 std::string described(const Tuning& tuning) {
-  return fmt::format("vector width {}, rows {}, accumulators {}, group {}, update rows {}",
-                     tuning.vector_width, tuning.largest_rows, tuning.accumulators, tuning.group,
-                     tuning.update_rows);
+  return fmt::format(
+      "vector width {}, rows {}, accumulators {}, group {}, update rows {}, columns {}",
+      tuning.vector_width, tuning.largest_rows, tuning.accumulators, tuning.group,
+      tuning.update_rows, tuning.update_columns);
 }
 
 /// CLBlast's product within the rounding error of two float sums of k terms (Higham 3.5) of the

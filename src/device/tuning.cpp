@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kKind = "tuning";
 
 std::string key_of(const DeviceInfo& info) {
-  return "2|" + info.platform_name + '|' + info.name + '|' + info.driver_version + '|' +
+  return "3|" + info.platform_name + '|' + info.name + '|' + info.driver_version + '|' +
          std::to_string(info.compute_units);
 }
 
@@ -20,19 +20,24 @@ bool is_one_of(int value, std::initializer_list<int> values) {
   return std::find(values.begin(), values.end(), value) != values.end();
 }
 
+bool is_in(int value, int least, int most) {
+  return value >= least && value <= most;
+}
+
 bool makes_sense(const Tuning& tuning) {
   return is_one_of(tuning.vector_width, {1, 4, 8, 16}) && tuning.largest_rows >= 1 &&
          tuning.largest_rows <= 32 && tuning.accumulators >= 1 && tuning.accumulators <= 64 &&
          tuning.group >= 1 && tuning.group <= 256 && is_one_of(tuning.update_rows, {4, 8, 16}) &&
-         tuning.product_rows >= 1 && tuning.product_rows <= 16 &&
-         is_one_of(tuning.transposed_rows, {4, 8, 16}) && tuning.summed_rows >= 0 &&
-         tuning.clblast_from >= 0;
+         is_in(tuning.update_columns, 1, 4) && is_in(tuning.product_columns, 1, 4) &&
+         is_in(tuning.transposed_columns, 1, 4) && tuning.product_rows >= 1 &&
+         tuning.product_rows <= 16 && is_one_of(tuning.transposed_rows, {4, 8, 16}) &&
+         tuning.summed_rows >= 0 && tuning.clblast_from >= 0;
 }
 
 }  // namespace
 
 Tuning default_tuning(const DeviceInfo& info) {
-  if (!info.is_gpu) return {};
+  if (!info.is_gpu) return {.update_rows = 8, .update_columns = 2};
   // Single lanes that coalesce, of which four keep enough work in flight.
   return {.vector_width = 4,
           .largest_rows = 4,
@@ -62,7 +67,8 @@ std::vector<Tuning> tuning_candidates(const DeviceInfo& info, const Tuning& from
     vary(&Tuning::vector_width, {8, 16});
     vary(&Tuning::largest_rows, {8, 10, 14});
     vary(&Tuning::accumulators, {12, 24, 28});
-    vary(&Tuning::update_rows, {8, 16});
+    vary(&Tuning::update_rows, {4, 8, 16});
+    vary(&Tuning::update_columns, {1, 2, 3, 4});
   }
   return candidates;
 }
@@ -78,6 +84,9 @@ std::optional<Tuning> load_tuning(const DeviceInfo& info) {
     tuning.accumulators = json.at("accumulators");
     tuning.group = json.at("group");
     tuning.update_rows = json.at("update_rows");
+    tuning.update_columns = json.at("update_columns");
+    tuning.product_columns = json.at("product_columns");
+    tuning.transposed_columns = json.at("transposed_columns");
     tuning.product_rows = json.at("product_rows");
     tuning.transposed_rows = json.at("transposed_rows");
     tuning.summed_rows = json.at("summed_rows");
@@ -90,12 +99,18 @@ std::optional<Tuning> load_tuning(const DeviceInfo& info) {
 }
 
 void store_tuning(const DeviceInfo& info, const Tuning& tuning) {
-  const nlohmann::json json = {
-      {"vector_width", tuning.vector_width},       {"largest_rows", tuning.largest_rows},
-      {"accumulators", tuning.accumulators},       {"group", tuning.group},
-      {"update_rows", tuning.update_rows},         {"product_rows", tuning.product_rows},
-      {"transposed_rows", tuning.transposed_rows}, {"summed_rows", tuning.summed_rows},
-      {"clblast_from", tuning.clblast_from}};
+  const nlohmann::json json = {{"vector_width", tuning.vector_width},
+                               {"largest_rows", tuning.largest_rows},
+                               {"accumulators", tuning.accumulators},
+                               {"group", tuning.group},
+                               {"update_rows", tuning.update_rows},
+                               {"update_columns", tuning.update_columns},
+                               {"product_columns", tuning.product_columns},
+                               {"transposed_columns", tuning.transposed_columns},
+                               {"product_rows", tuning.product_rows},
+                               {"transposed_rows", tuning.transposed_rows},
+                               {"summed_rows", tuning.summed_rows},
+                               {"clblast_from", tuning.clblast_from}};
   write_cache_entry(kKind, key_of(info), json.dump());
 }
 

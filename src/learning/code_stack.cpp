@@ -10,6 +10,12 @@ std::size_t all_units(const Mrbm& mrbm) {
   return units;
 }
 
+std::size_t all_panels(const Mrbm& mrbm, const RowTile& tile) {
+  std::size_t panels = 0;
+  for (const Matrix& W : mrbm.W) panels += update_panels(tile, padded(W.rows()));
+  return panels;
+}
+
 /// Two at a time; of an odd number one comes twice.
 void gather_codes(std::span<const Rows> codes, std::size_t block, const Matrix& stack) {
   std::vector<std::size_t> first{0};

@@ -20,12 +20,13 @@ cl_int8 first_floats(const Parameters& parameters) {
   return {{first("W"), first("A"), first("B"), first("a"), first("b"), 0, 0, 0}};
 }
 
-std::size_t update_work_items(const CrbmShape& shape, const RowTile& tile) {
+/// Panels of W, A and B, then a work-item for each vector of the biases, and one for the losses.
+std::size_t update_groups(const CrbmShape& shape, const RowTile& tile) {
   const std::size_t visible = padded(shape.visible), hidden = padded(shape.hidden);
   const auto vec = static_cast<std::size_t>(tile.vector_width);
-  const auto rows = static_cast<std::size_t>(tile.update_rows);
-  const std::size_t directed = shape.order_A() * (visible / vec) + shape.order_B() * (hidden / vec);
-  return visible / rows * (hidden / vec + directed) + (visible + hidden) / vec + 1;
+  return update_panels(tile, visible) + update_panels(tile, shape.order_A() * visible) +
+         update_panels(tile, shape.order_B() * visible) +
+         ceil_divide((visible + hidden) / vec + 1, static_cast<std::size_t>(tile.group));
 }
 
 }  // namespace
@@ -66,23 +67,25 @@ void ContrastiveDivergence::fused_chain(const Rows& rows, const CdRule& rule, co
 void ContrastiveDivergence::fused_update(const Rows& rows, const CdRule& rule,
                                          LossAccumulator& losses) {
   const CrbmShape& shape = crbm_.shape();
-  Defines defines = shape_defines(shape, *tile_);
-  defines["TILE_ROWS"] = tile_->update_rows;
+  Defines defines = with_update_tile(shape_defines(shape, *tile_), *tile_);
   defines["OPTIMIZER"] = optimizer_.define(rule.W.l1 + rule.A.l1 + rule.B.l1 > 0.0F);
   Device& device = crbm_.device();
   cl::Kernel& kernel =
       device.programs().kernel("contrastive_divergence_update.cl", "cd_update", defines);
   const float loss_scale = 1.0F / static_cast<float>(rows.count * shape.visible);
   const auto group = static_cast<std::size_t>(tile_->group);
-  const std::size_t groups = ceil_divide(update_work_items(shape, *tile_), group);
+  const std::size_t groups = update_groups(shape, *tile_);
+  // Sums that wait for the next chunk do so where gradients lie.
+  const cl::Buffer& gradients =
+      rows.count > kUpdateChunk ? optimizer_.gradients().buffer() : optimizer_.gradient_buffer();
   launch(device, kernel, {{groups * group, 1}, {group, 1}}, rows.matrix->buffer(),
          rows.index->buffer(), to_int(rows.index_first), rows.shift, to_int(rows.count),
          visible_data_.buffer(), visible_.buffer(), visible_bias_.buffer(), hidden_data_.buffer(),
          hidden_.buffer(), hidden_bias_.buffer(), first_floats(crbm_.parameters()),
-         crbm_.parameters().all().buffer(), crbm_.W_transposed.buffer(),
-         optimizer_.gradient_buffer(), optimizer_.state_buffer(), optimizer_.size(),
-         optimizer_.argument(rule.W), optimizer_.argument(rule.A), optimizer_.argument(rule.B),
-         row_losses_.buffer(), losses.buffer(), loss_scale);
+         crbm_.parameters().all().buffer(), crbm_.W_transposed.buffer(), gradients,
+         optimizer_.state_buffer(), optimizer_.size(), optimizer_.argument(rule.W),
+         optimizer_.argument(rule.A), optimizer_.argument(rule.B), row_losses_.buffer(),
+         losses.buffer(), loss_scale);
 }
 
 }  // namespace mcdbn

@@ -36,23 +36,24 @@ void JointLikelihood::fused_chain(const RandomKey& key) {
 }
 
 void JointLikelihood::fused_update(const UpdateRule& rule, LossAccumulator& losses) {
-  Defines defines = fused_defines();
-  defines["TILE_ROWS"] = tile_->update_rows;
+  Defines defines = with_update_tile(fused_defines(), *tile_);
   defines["OPTIMIZER"] = optimizer_.define();
   Device& device = mrbm_.device();
   cl::Kernel& kernel =
       device.programs().kernel("joint_likelihood_update.cl", "joint_likelihood_update", defines);
   const auto vec = static_cast<std::size_t>(tile_->vector_width);
-  const auto tile_rows = static_cast<std::size_t>(tile_->update_rows);
-  const std::size_t hidden = padded(mrbm_.hidden()), units = all_units(mrbm_);
-  const std::size_t items = units / tile_rows * (hidden / vec) + (units + hidden) / vec + 1;
   const auto group = static_cast<std::size_t>(tile_->group);
-  launch(device, kernel, {{ceil_divide(items, group) * group, 1}, {group, 1}},
-         mrbm_.layout().buffer(), to_int(batch_), to_int(block_), codes_.buffer(),
-         stacked_visible_.buffer(), hidden_data_.buffer(), hidden_.buffer(),
-         mrbm_.parameters().all().buffer(), mrbm_.transposed().all().buffer(),
-         optimizer_.gradient_buffer(), optimizer_.state_buffer(), optimizer_.size(),
-         optimizer_.argument(rule), row_losses_.buffer(), losses.buffer());
+  // Panels, then a work-item for each vector of the biases, and one for the losses.
+  const std::size_t biases = (all_units(mrbm_) + padded(mrbm_.hidden())) / vec;
+  const std::size_t groups = all_panels(mrbm_, *tile_) + ceil_divide(biases + 1, group);
+  // Sums that wait for the next chunk do so where gradients lie.
+  const cl::Buffer& gradients =
+      batch_ > kUpdateChunk ? optimizer_.gradients().buffer() : optimizer_.gradient_buffer();
+  launch(device, kernel, {{groups * group, 1}, {group, 1}}, mrbm_.layout().buffer(), to_int(batch_),
+         to_int(block_), codes_.buffer(), stacked_visible_.buffer(), hidden_data_.buffer(),
+         hidden_.buffer(), mrbm_.parameters().all().buffer(), mrbm_.transposed().all().buffer(),
+         gradients, optimizer_.state_buffer(), optimizer_.size(), optimizer_.argument(rule),
+         row_losses_.buffer(), losses.buffer());
 }
 
 }  // namespace mcdbn

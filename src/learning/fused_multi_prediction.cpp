@@ -29,27 +29,23 @@ void MultiPrediction::fused_chain() {
 
 /// Adds up the tiles of every W over pieces of the stacks. @return the pieces
 std::size_t MultiPrediction::fused_products(const Defines& defines) {
-  const auto vec = static_cast<std::size_t>(tile_->vector_width);
-  const std::size_t tile_floats = static_cast<std::size_t>(tile_->update_rows) * vec;
-  const std::size_t tiles = all_units(mrbm_) * padded(mrbm_.hidden()) / tile_floats;
   const auto pieces_of = [](std::size_t rows) { return ceil_divide(rows, kPieceRows); };
   const std::size_t pieces = pieces_of(steps_ * block_) + pieces_of((steps_ - 1) * block_) +
                              (mrbm_.W.size() - 1) * pieces_of(block_);
   Device& device = mrbm_.device();
-  if (partial_.empty()) partial_ = Matrix(device, pieces, tiles * tile_floats);
+  if (partial_.empty()) partial_ = Matrix(device, pieces * all_units(mrbm_), mrbm_.hidden());
   cl::Kernel& kernel =
       device.programs().kernel("multi_prediction_update.cl", "multi_prediction_products", defines);
   const auto group = static_cast<std::size_t>(tile_->group);
-  launch(device, kernel, {{ceil_divide(tiles, group) * group, pieces}, {group, 1}},
+  launch(device, kernel, {{all_panels(mrbm_, *tile_) * group, pieces}, {group, 1}},
          mrbm_.layout().buffer(), to_int(block_), codes_.buffer(), stacked_values_.buffer(),
          stacked_value_errors_.buffer(), hidden_.buffer(), hidden_errors_.buffer(),
-         drive_error_.buffer(), partial_.buffer());
+         drive_error_.buffer(), partial_.buffer(), to_int(all_units(mrbm_)));
   return pieces;
 }
 
 void MultiPrediction::fused_update(const UpdateRule& rule, LossAccumulator& losses) {
-  Defines defines = fused_defines();
-  defines["TILE_ROWS"] = tile_->update_rows;
+  Defines defines = with_update_tile(fused_defines(), *tile_);
   defines["PIECE_ROWS"] = to_int(kPieceRows);
   defines["OPTIMIZER"] = optimizer_.define();
   const std::size_t pieces = fused_products(defines);
@@ -62,8 +58,9 @@ void MultiPrediction::fused_update(const UpdateRule& rule, LossAccumulator& loss
   const std::size_t items = units / tile_rows * (hidden / vec) + (units + hidden) / vec + 1;
   const auto group = static_cast<std::size_t>(tile_->group);
   launch(device, kernel, {{ceil_divide(items, group) * group, 1}, {group, 1}},
-         mrbm_.layout().buffer(), to_int(batch_), to_int(block_), to_int(pieces), partial_.buffer(),
-         stacked_value_errors_.buffer(), drive_error_.buffer(), mrbm_.parameters().all().buffer(),
+         mrbm_.layout().buffer(), to_int(batch_), to_int(block_), to_int(pieces),
+         to_int(all_units(mrbm_)), partial_.buffer(), stacked_value_errors_.buffer(),
+         drive_error_.buffer(), mrbm_.parameters().all().buffer(),
          mrbm_.transposed().all().buffer(), optimizer_.gradient_buffer(), optimizer_.state_buffer(),
          optimizer_.size(), optimizer_.argument(rule), row_losses_.buffer(), losses.buffer());
 }

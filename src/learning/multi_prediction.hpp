@@ -70,7 +70,7 @@ class MultiPrediction : public LearningRule {
   Matrix drive_, drive_error_;            // [block x hidden]
   Matrix hidden_, hidden_errors_;         // [steps·block x hidden]
   Matrix row_losses_;                     // [1 x modalities·block], fused
-  Matrix partial_;                        // [pieces x floats of every W], fused
+  Matrix partial_;                        // [pieces · all_units() x hidden], fused
   std::optional<MrbmMatrices> gradient_;  // the optimizer's, composed
 };
 

@@ -30,12 +30,13 @@ TEST_CASE("tuner: the winners of one parameter after another are put together") 
         double time_s = 10;
         if (tuning.vector_width == 8) time_s -= 1;
         if (tuning.largest_rows == 8 && tuning.vector_width == 8) time_s -= 2;
-        if (tuning.update_rows == 8) time_s -= 1;
+        if (tuning.update_rows == 4) time_s -= 1;
         return time_s;
       },
       [&](const std::string& notice) { notices.push_back(notice); });
   Tuning want = usual;
-  want.vector_width = want.largest_rows = want.update_rows = 8;
+  want.vector_width = want.largest_rows = 8;
+  want.update_rows = 4;
   CHECK(found == want);
   CHECK(notices.size() == tuning_candidates(some_cpu(), usual).size() - 1);
   CHECK(notices.front().find("0.90 of the best so far") != std::string::npos);
@@ -44,11 +45,11 @@ TEST_CASE("tuner: the winners of one parameter after another are put together") 
 TEST_CASE("tuner: a gain that noise could make changes nothing") {
   const auto tuned = [](double gain) {
     return fastest_tuning(some_cpu(), [=](const Tuning& tuning) {
-      return tuning.update_rows == 8 ? 1.0 - gain : 1.0;
+      return tuning.update_rows == 4 ? 1.0 - gain : 1.0;
     });
   };
   CHECK(tuned(0.02) == default_tuning(some_cpu()));
-  CHECK(tuned(0.04).update_rows == 8);
+  CHECK(tuned(0.04).update_rows == 4);
 }
 
 TEST_CASE("tuner: what was found is set on the device and stored for the next time") {

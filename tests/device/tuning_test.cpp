@@ -32,7 +32,17 @@ DeviceInfo some_device(std::string driver = {}) {
   return info;
 }
 
-const Tuning kTuned{8, 10, 12, 1, 8, 5, 8, 64, 1000};
+const Tuning kTuned{.vector_width = 8,
+                    .largest_rows = 10,
+                    .accumulators = 12,
+                    .update_rows = 4,
+                    .update_columns = 3,
+                    .product_rows = 5,
+                    .product_columns = 4,
+                    .transposed_rows = 8,
+                    .transposed_columns = 2,
+                    .summed_rows = 64,
+                    .clblast_from = 1000};
 
 }  // namespace
 

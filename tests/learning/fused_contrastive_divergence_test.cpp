@@ -23,9 +23,10 @@ struct Case {
 };
 
 /// Sizes, orders and both kinds of units that contrastive_divergence_test.cpp does not have; every
-/// one is compiled for itself. The last ones' A and B see histories of their own.
+/// one is compiled for itself. The second has more rows than a panel of gradients takes at a time,
+/// the last ones' A and B see histories of their own.
 const std::vector<Case> kCases = {{{13, 17, 0, kBinary}, 29, 5},
-                                  {{33, 31, 5, kBinary}, 103, 1},
+                                  {{33, 31, 5, kBinary}, 131, 1},
                                   {{11, 19, 4, kBinary, 4, 2}, 9, 2},
                                   {{19, 5, 4, kGaussian, 0, 3}, 10, 2}};
 
@@ -189,8 +190,8 @@ TEST_CASE("every tile of the fused kernels gives the same bits") {
     const auto chosen = choose_chain_tile(device, kOddCase.shape, kOddCase.batch);
     REQUIRE(chosen);
     const TrainedBits want = train_two(device, kOddCase, *chosen);
-    for (const RowTile& tile : {RowTile{16, 7, 2, 1, 8}, RowTile{8, 14, 1, 1, 4},
-                                RowTile{4, 4, 1, 32, 4}, RowTile{1, 3, 1, 64, 16}}) {
+    for (const RowTile& tile : {RowTile{16, 7, 2, 1, 8, 3}, RowTile{8, 14, 1, 1, 4, 1},
+                                RowTile{4, 4, 1, 32, 4, 2}, RowTile{1, 3, 1, 64, 16, 4}}) {
       CAPTURE(tile.vector_width);
       CAPTURE(tile.rows);
       CAPTURE(tile.group);

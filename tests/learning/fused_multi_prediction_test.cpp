@@ -137,7 +137,8 @@ TEST_CASE("every tile of fused multi-prediction gives the same bits, and so does
   on_every_device([](Device& device) {
     const Problem problem(kOddCase);
     const Step want = run_step(device, problem, tile_for(device, kOddCase), UpdateRule::adam(), 3);
-    for (const RowTile& tile : {RowTile{4, 4, 1, 32, 4}, RowTile{1, 3, 1, 64, 16}}) {
+    for (const RowTile& tile :
+         {RowTile{16, 7, 2, 1, 8, 3}, RowTile{4, 4, 1, 32, 4, 2}, RowTile{1, 3, 1, 64, 16, 4}}) {
       CAPTURE(tile.vector_width);
       CAPTURE(tile.rows);
       check_against_reference(device, kOddCase, tile);

@@ -14,7 +14,7 @@ namespace {
 
 /// Of more than a vector, a tile and a block, and whole in none.
 const Scene& odd() {
-  static const Scene scene({{17, kBinary}, {33, kGaussian}, {5, kBinary}}, 19, 29, 0.2F);
+  static const Scene scene({{17, kBinary}, {33, kGaussian}, {5, kBinary}}, 19, 131, 0.2F);
   return scene;
 }
 
@@ -24,7 +24,7 @@ std::vector<std::optional<RowTile>> both_ways(Mrbm& mrbm, std::size_t batch) {
   REQUIRE(suiting);
   return {suiting, std::nullopt};
 }
-const std::vector<RowTile> kOtherTiles = {{4, 4, 1, 32, 4}, {8, 3, 2, 1, 16}};
+const std::vector<RowTile> kOtherTiles = {{4, 4, 1, 32, 4, 2}, {8, 3, 2, 1, 16, 3}};
 
 /// The joint likelihood's gradient and losses with each of these tiles.
 void check_joint_likelihood(const Scene& scene, const MrbmSettings& settings,

@@ -13,13 +13,16 @@ class Device;
 /// How the kernels divide their work on a device. No choice changes what a kernel computes (sums
 /// keep their order), only the time it takes; CLBlast's products may differ in the last bits.
 struct Tuning {
-  int vector_width = 16;  ///< floats that a work-item takes at once: 1, 4, 8 or 16
-  int largest_rows = 14;  ///< of a block that a work-group carries through a fused chain
-  int accumulators = 24;  ///< vectors that a work-item of a fused chain sums up at once, at most
-  int group = 1;          ///< work-items that share a block of rows
-  int update_rows = 16;   ///< rows of a gradient's tile: 4, 8 or 16
-  int product_rows = 10;  ///< of a tile of A·B: enough to hide the fma latency, within registers
-  int transposed_rows = 16;  ///< of a tile of Aᵀ·B; divides the column padding, so no row test
+  int vector_width = 16;    ///< floats that a work-item takes at once: 1, 4, 8 or 16
+  int largest_rows = 14;    ///< of a block that a work-group carries through a fused chain
+  int accumulators = 24;    ///< vectors that a work-item of a fused chain sums up at once, at most
+  int group = 1;            ///< work-items that share a block of rows
+  int update_rows = 16;     ///< rows of a gradient's tile: 4, 8 or 16
+  int update_columns = 1;   ///< vectors of a row of that tile, 1 to 4
+  int product_rows = 10;    ///< of a tile of A·B: enough to hide the fma latency, within registers
+  int product_columns = 1;  ///< vectors of a row of that tile, 1 to 4
+  int transposed_rows = 16;    ///< of a tile of Aᵀ·B; divides the column padding, so no row test
+  int transposed_columns = 1;  ///< vectors of a row of that tile, 1 to 4
   /// Rows of A and B that Aᵀ·B sums in one go: their columns stay in a CPU's caches while the tiles
   /// of C read them again and again, which doubles the speed of sums over thousands of rows. 0:
   /// all.
