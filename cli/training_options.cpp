@@ -99,8 +99,7 @@ void TrainingOptions::apply_stages(TrainingConfig& config) const {
 
 void TrainingOptions::apply_tracks(TrainingConfig& config) const {
   constexpr double kUsualShare = 0.8;
-  if (tracks_ == "detector" && config.augment.detector == 0)
-    config.augment.detector = kUsualShare;
+  if (tracks_ == "detector" && config.augment.detector == 0) config.augment.detector = kUsualShare;
 }
 
 }  // namespace mcdbn::cli

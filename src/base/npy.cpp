@@ -137,7 +137,7 @@ struct StoredArray {
 StoredArray stored_in(std::string_view bytes) {
   const auto [header, data] = split(bytes);
   StoredArray stored{number_type_of(text_of(header, "descr")), truth_of(header, "fortran_order"),
-                shape_of(header), data};
+                     shape_of(header), data};
   // Divided, not multiplied: the product of a wrong shape may be any number.
   std::size_t left = data.size() / stored.type.bytes;
   bool fits = data.size() % stored.type.bytes == 0, none = false;

@@ -122,8 +122,7 @@ TEST_CASE("train: every option changes what its help says") {
                     };
                     CHECK(share(" --tracks exact") == "detector = 0.0");
                     CHECK(share(" --tracks detector").starts_with("detector = 0.8"));
-                    CHECK(share(" --tracks detector --augment-detector 0.25") ==
-                          "detector = 0.25");
+                    CHECK(share(" --tracks detector --augment-detector 0.25") == "detector = 0.25");
                   }});
   rows.push_back({"--sweep", [&] {
                     const CliResult result =
