@@ -1,0 +1,100 @@
+// Frames by the numbers in a file, or in the names of a folder's files.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "base/scratch_folder.hpp"
+#include "formats/frame_numbers.hpp"
+#include "formats/layout_samples.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/track_file.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+using Numbers = std::vector<std::optional<long long>>;
+
+const LayoutSample& sample_called(const std::string& name) {
+  return *std::ranges::find(layout_samples(), name, &LayoutSample::name);
+}
+
+/// A folder of OpenPose's files of these names.
+std::filesystem::path openpose_folder(const ScratchFolder& folder, const std::string& name,
+                                      const std::vector<std::string>& files) {
+  std::filesystem::create_directory(folder / name);
+  for (const std::string& file : files)
+    std::ofstream(folder / name / file) << sample_called("frame_0007_keypoints.json").text;
+  return folder / name;
+}
+
+bool tells(const TrackReading& reading, const std::string& what) {
+  return std::ranges::any_of(reading.notices, [&](const std::string& notice) {
+    return notice.find(what) != std::string::npos;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("frame numbers: the last group of digits that is different in each name") {
+  CHECK(frame_numbers({"input_000000000007_keypoints"}) == Numbers{7});
+  CHECK(frame_numbers({"cam01.0007", "cam01.0008"}) == Numbers{7, 8});
+  CHECK(frame_numbers({"cam1_003_v2", "cam1_004_v2"}) == Numbers{3, 4});
+  CHECK(frame_numbers({"3", "no number"}) == Numbers{3, std::nullopt});
+  CHECK(frame_numbers({"99999999999999999999"}) == Numbers{std::nullopt});
+}
+
+TEST_CASE("frame numbers: gaps are missing joints, steps are none") {
+  const ScratchFolder folder;
+  const TrackReading gap =
+      read_tracks(openpose_folder(folder, "gap", {"f_003.json", "f_004.json", "f_006.json"}));
+  CHECK(gap.first_frame == 3);
+  REQUIRE(gap.people.front().frames() == 4);
+  CHECK((gap.people.front().confidence.row(2).array() == 0).all());
+  CHECK((gap.people.front().confidence.row(3).array() > 0).any());
+
+  const TrackReading steps =
+      read_tracks(openpose_folder(folder, "steps", {"f_000.json", "f_005.json", "f_010.json"}));
+  CHECK(steps.people.front().frames() == 3);
+  CHECK(tells(steps, "steps of 5"));
+
+  const TrackReading images = read_tracks(
+      openpose_folder(folder, "images", {"f_000785.json", "f_040083.json", "f_196141.json"}));
+  CHECK(images.people.front().frames() == 3);
+  CHECK(tells(images, "one after the other"));
+}
+
+TEST_CASE("frame numbers: names that have none are left out and said, doubles refused") {
+  const ScratchFolder folder;
+  const TrackReading odd =
+      read_tracks(openpose_folder(folder, "odd", {"f_1.json", "f_2.json", "front.json"}));
+  CHECK(odd.people.front().frames() == 2);
+  CHECK(tells(odd, "front.json has no frame number"));
+  const auto doubles = openpose_folder(folder, "doubles", {"a_1.json", "b_1.json", "b_2.json"});
+  CHECK_THROWS_WITH_AS(read_track(doubles), doctest::Contains("a second file of frame 1"),
+                       InputError);
+  CHECK_THROWS_WITH_AS(read_track(openpose_folder(folder, "empty", {})),
+                       doctest::Contains("no .json files"), InputError);
+}
+
+TEST_CASE("COCO's flags: visible, hidden and not labelled") {
+  const ScratchFolder folder;
+  const LayoutSample& sample = sample_called("annotations.json");
+  const TrackReading reading = read_tracks(folder.write(sample.name, sample.text));
+  const Track2d& track = reading.people.front();
+  CHECK(track.confidence(0, 0) == 1);
+  CHECK(track.confidence(0, 1) == 0.5);
+  CHECK(track.width_px == 1280);
+  CHECK(tells(reading, "visibility flags"));
+}
+
+TEST_CASE("confidences a little beyond 1 are cut, not scaled") {
+  const ScratchFolder folder;
+  const LayoutSample& sample = sample_called("mmpose_video.json");
+  const TrackReading reading = read_tracks(folder.write(sample.name, sample.text));
+  CHECK((reading.people.front().confidence.array() == 1).all());
+  CHECK(tells(reading, "are cut at 1"));
+}
