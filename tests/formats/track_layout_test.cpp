@@ -135,3 +135,31 @@ TEST_CASE("layouts: lists in lists without end are refused") {
                     InputError);
   CHECK_THROWS_AS(read_track(folder.write("deep.json", deep)), InputError);
 }
+
+TEST_CASE("layouts: 33 landmarks numbered from 1 are those numbered from 0") {
+  const ScratchFolder folder;
+  std::string from_zero = "frame,landmark,x,y\n", from_one = from_zero;
+  for (int joint = 0; joint < 33; ++joint) {
+    const double at = 0.1 + 0.02 * joint;
+    from_zero += "0," + std::to_string(joint) + "," + std::to_string(at) + ",0.5\n";
+    from_one += "0," + std::to_string(joint + 1) + "," + std::to_string(at) + ",0.5\n";
+  }
+  const Track2d zero = read_track(folder.write("zero.csv", from_zero));
+  const Track2d one = read_track(folder.write("one.csv", from_one));
+  CHECK(one.joint_names == zero.joint_names);
+  CHECK(one.x_px == zero.x_px);
+  CHECK(zero.x_px(0, 32) == doctest::Approx(1920 * 0.74));
+}
+
+TEST_CASE("layouts: shares of an image whose size nobody says are told as such") {
+  const ScratchFolder folder;
+  for (const LayoutSample& sample : layout_samples()) {
+    if (sample.name != "rows.csv") continue;
+    const auto path = folder.write(sample.name, sample.text);
+    const auto told = [&](const TrackReadOptions& options) {
+      return read_tracks(path, options).notices.front();
+    };
+    CHECK(told({}).find("1920 x 1080 px, for the file does not say its size") != std::string::npos);
+    CHECK(told({.image_size = ImageSize{640, 480}}).ends_with("taken as 640 x 480 px"));
+  }
+}
