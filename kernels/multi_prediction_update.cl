@@ -45,7 +45,9 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction_
   const int row0 = panel * PANEL_ROWS, tiles = TILES_IN(panel, ld);
   const int block = stride * H_LD, direction = m * STEPS * block;
 
-  int piece = get_group_id(1), rows = STEPS * stride;
+  // The long pieces last: who takes groups in order, half of what is left at a time, as PoCL's threads
+  // do, would else give one thread all of them.
+  int piece = get_num_groups(1) - 1 - get_group_id(1), rows = STEPS * stride;
   partial += (piece * partial_rows + UNITS_BEFORE(m) + row0) * H_LD;
   global const float* x = value_errors + rows * UNITS_BEFORE(m);
   global const float* y = hidden + direction;
