@@ -18,6 +18,7 @@ namespace mcdbn::cli {
 namespace {
 
 constexpr std::size_t kTimedRuns = 15;  // whose launches are timed: the median counts
+constexpr double kTunedPairs = 5;       // a tuner measures so often (tuner.cpp)
 constexpr double kLongest_s = 600;      // of a measurement: no machine is steady for longer
 
 struct BenchOptions {
@@ -93,7 +94,7 @@ void run_bench(const CommandContext& context, const BenchOptions& options) {
   Device device = Device::open({context.platform, context.device});
   if (options.tune)
     tune(
-        device, [&](const Tuning&) { return minibatches_s(device, options.seconds); },
+        device, [&](const Tuning&) { return minibatches_s(device, options.seconds / kTunedPairs); },
         options.seconds, [](const std::string& measured) { spdlog::info("{}", measured); });
   const double peak_gflops = measure_peak_gflops(device);
   nlohmann::ordered_json results = nlohmann::ordered_json::array();

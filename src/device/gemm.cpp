@@ -17,8 +17,8 @@ int tile_rows_for(const Device& device, std::size_t rows) {
 }
 
 /// One work-item a tile; on a CPU one a group, as a tile is work enough for a core.
-LaunchSize tiles_of(const Rows& c, int vec, int tile_rows) {
-  LaunchSize size{{ceil_divide(c.columns, static_cast<std::size_t>(vec)),
+LaunchSize tiles_of(const Rows& c, int width, int tile_rows) {
+  LaunchSize size{{ceil_divide(c.columns, static_cast<std::size_t>(width)),
                    ceil_divide(c.count, static_cast<std::size_t>(tile_rows))}};
   if (c.matrix->device().tuning().group == 1) size.local = {1, 1};
   return size;
@@ -50,20 +50,22 @@ void gemm_own(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& op
   Defines defines = epilogue_defines(options);
   defines["VEC"] = vec;
   defines["TILE_ROWS"] = tile_rows;
+  const int columns = device.tuning().product_columns;
+  defines["COLUMNS"] = columns;
   defines["A_ROWS"] = a.index ? 1 : 0;
   cl::Kernel& kernel = device.programs().kernel("gemm.cl", "gemm", defines);
   // Arguments that this variant does not read still need a buffer: C's own.
   const Matrix& bias = options.bias ? *options.bias : *c.matrix;
   const Rows& factor = options.factor ? *options.factor : c;
   const Rows& sample = options.sample ? *options.sample : c;
-  launch(device, kernel, tiles_of(c, vec, tile_rows), a.matrix->buffer(), a.offset(), a.stride(),
-         a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first), a.shift,
-         b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(), c.stride(),
-         to_int(c.count), to_int(c.columns), to_int(b.count), options.alpha, options.beta,
-         bias.buffer(), to_int(options.bias_first * bias.stride()), to_int(bias.stride()),
-         factor.matrix->buffer(), factor.offset(), factor.stride(), sample.matrix->buffer(),
-         sample.offset(), sample.stride(), options.temperature, options.kept_share,
-         random_argument(options.random));
+  launch(device, kernel, tiles_of(c, columns * vec, tile_rows), a.matrix->buffer(), a.offset(),
+         a.stride(), a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first),
+         a.shift, b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(),
+         c.stride(), to_int(c.count), to_int(c.columns), to_int(b.count), options.alpha,
+         options.beta, bias.buffer(), to_int(options.bias_first * bias.stride()),
+         to_int(bias.stride()), factor.matrix->buffer(), factor.offset(), factor.stride(),
+         sample.matrix->buffer(), sample.offset(), sample.stride(), options.temperature,
+         options.kept_share, random_argument(options.random));
 }
 
 /// Row-major product by CLBlast, which reads no index: indexed rows are gathered first.
@@ -106,13 +108,14 @@ void add_transposed_a(const Rows& a, const Rows& b, const Rows& c, float alpha, 
   Device& device = c.matrix->device();
   const int vec = vector_width(device);
   const int tile_rows = device.tuning().transposed_rows;
+  const int columns = device.tuning().transposed_columns;
   cl::Kernel& kernel = device.programs().kernel(
       "gemm.cl", "gemm_transposed_a",
-      {{"VEC", vec}, {"TILE_ROWS", tile_rows}, {"A_ROWS", a.index ? 1 : 0}});
-  launch(device, kernel, tiles_of(c, vec, tile_rows), a.matrix->buffer(), a.offset(), a.stride(),
-         a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first), a.shift,
-         b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(), c.stride(),
-         to_int(c.count), to_int(c.columns), to_int(b.count), alpha, beta);
+      {{"VEC", vec}, {"TILE_ROWS", tile_rows}, {"COLUMNS", columns}, {"A_ROWS", a.index ? 1 : 0}});
+  launch(device, kernel, tiles_of(c, columns * vec, tile_rows), a.matrix->buffer(), a.offset(),
+         a.stride(), a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first),
+         a.shift, b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(),
+         c.stride(), to_int(c.count), to_int(c.columns), to_int(b.count), alpha, beta);
 }
 
 bool goes_to_clblast(const Rows& c, std::size_t k, GemmBackend backend) {

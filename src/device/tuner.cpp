@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "device/gemm.hpp"
@@ -16,17 +17,31 @@ constexpr double kWorthwhile = 0.97;
 
 /// `to` with what `from` has otherwise than the default.
 Tuning with_changes(Tuning to, const Tuning& from, const Tuning& usual) {
-  for (const auto parameter : {&Tuning::vector_width, &Tuning::largest_rows, &Tuning::accumulators,
-                               &Tuning::group, &Tuning::update_rows, &Tuning::update_columns})
+  for (const auto parameter :
+       {&Tuning::vector_width, &Tuning::largest_rows, &Tuning::accumulators, &Tuning::group,
+        &Tuning::update_rows, &Tuning::update_columns, &Tuning::product_columns})
     if (from.*parameter != usual.*parameter) to.*parameter = from.*parameter;
   return to;
 }
 
 std::string described(const Tuning& tuning) {
   return fmt::format(
-      "vector width {}, rows {}, accumulators {}, group {}, update rows {}, columns {}",
+      "vector width {}, rows {}, accumulators {}, group {}, update rows {}, columns {}, "
+      "product columns {}",
       tuning.vector_width, tuning.largest_rows, tuning.accumulators, tuning.group,
-      tuning.update_rows, tuning.update_columns);
+      tuning.update_rows, tuning.update_columns, tuning.product_columns);
+}
+
+/// The rival's time as a share of the best's: the median over pairs measured side by side, as a
+/// machine's speed drifts and one noisy run must not decide.
+double paired_ratio(const TunedTime& time_s, const Tuning& rival, const Tuning& best) {
+  std::array<double, 5> ratios{};
+  for (double& ratio : ratios) {
+    const double best_s = time_s(best);
+    ratio = time_s(rival) / best_s;
+  }
+  std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
+  return ratios[ratios.size() / 2];
 }
 
 /// CLBlast's product within the rounding error of two float sums of k terms (Higham 3.5) of the
@@ -61,11 +76,9 @@ Tuning fastest_tuning(const DeviceInfo& info, const TunedTime& time_s, const Tun
   for (const Tuning& rival : tuning_candidates(info, usual)) {
     if (rival == usual) continue;
     const Tuning merged = with_changes(best, rival, usual);
-    // The best so far is measured again beside each rival: a machine's speed drifts.
-    const double best_s = time_s(best), merged_s = time_s(merged);
-    if (notice)
-      notice(fmt::format("{}: {:.2f} of the best so far", described(merged), merged_s / best_s));
-    if (merged_s < kWorthwhile * best_s) best = merged;
+    const double ratio = paired_ratio(time_s, merged, best);
+    if (notice) notice(fmt::format("{}: {:.2f} of the best so far", described(merged), ratio));
+    if (ratio < kWorthwhile) best = merged;
   }
   return best;
 }

@@ -37,7 +37,13 @@ bool makes_sense(const Tuning& tuning) {
 }  // namespace
 
 Tuning default_tuning(const DeviceInfo& info) {
-  if (!info.is_gpu) return {.update_rows = 8, .update_columns = 2};
+  if (!info.is_gpu)
+    return {.largest_rows = 12,
+            .update_rows = 8,
+            .update_columns = 2,
+            .product_columns = 2,
+            .transposed_rows = 8,
+            .transposed_columns = 2};
   // Single lanes that coalesce, of which four keep enough work in flight.
   return {.vector_width = 4,
           .largest_rows = 4,
@@ -69,6 +75,7 @@ std::vector<Tuning> tuning_candidates(const DeviceInfo& info, const Tuning& from
     vary(&Tuning::accumulators, {12, 24, 28});
     vary(&Tuning::update_rows, {4, 8, 16});
     vary(&Tuning::update_columns, {1, 2, 3, 4});
+    vary(&Tuning::product_columns, {1, 2});
   }
   return candidates;
 }
