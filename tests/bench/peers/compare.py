@@ -43,6 +43,9 @@ def run_json(*command):
     return json.loads(done.stdout) if done.stdout.strip() else {}
 
 
+PEERS = ("pytorch_peer.py", "jax_peer.py")
+
+
 def ours(name, batch, seconds):
     """One measurement of mcdbn-cl: its median and its share of the peak of that moment."""
     layer, which = STEPS[name]
@@ -60,9 +63,10 @@ def measure(layer, batch, rounds, seconds, python):
         step, peak = ours(layer, batch, seconds)
         steps.append(step)
         peaks.append(peak)
-        results = [{"mcdbn-cl": step["median_us"]},
-                   run_json(python, "tests/bench/peers/pytorch_peer.py", layer, str(batch),
-                            str(seconds))]
+        results = [{"mcdbn-cl": step["median_us"]}]
+        for peer in PEERS:
+            results.append(run_json(python, f"tests/bench/peers/{peer}", layer, str(batch),
+                                    str(seconds)))
         if layer in WITH_ALL_PEERS:
             for peer in ("eigen_peer", "clblast_peer"):
                 results.append(run_json(BUILD / "tests/bench/peers" / peer, layer, str(batch),
@@ -70,7 +74,8 @@ def measure(layer, batch, rounds, seconds, python):
         for result in results:
             for name, median in result.items():
                 times.setdefault(name, []).append(median)
-        ratios.append(min(results[1].values()) / step["median_us"])
+        best = min(time for result in results[1:1 + len(PEERS)] for time in result.values())
+        ratios.append(best / step["median_us"])
     medians = {name: statistics.median(t) for name, t in times.items()}
     return medians, ratios, steps[0], max(peaks)
 
@@ -100,16 +105,16 @@ def main():
     print(f"{cpu_model()}; medians of {options.rounds} rounds in turn, times of the peers as "
           "multiples of mcdbn-cl's.\n")
     columns = ["pytorch eager, bernoulli", "pytorch eager, rand < p", "pytorch compiled, bernoulli",
-               "pytorch compiled, rand < p", "Eigen + OpenMP", "CLBlast + elementwise"]
+               "pytorch compiled, rand < p", "jax", "Eigen + OpenMP", "CLBlast + elementwise"]
     print("| step | batch | mcdbn-cl | launches | GFLOP/s | % of peak | "
-          + " | ".join(columns) + " | PyTorch's best | its ratio, round by round |")
+          + " | ".join(columns) + " | best of PyTorch and JAX | its ratio, round by round |")
     print("|---" * (8 + len(columns)) + "|")
     for layer, batch in cases(options.steps or STEPS):
         times, ratios, step, peak = measure(layer, batch, options.rounds, options.seconds,
                                             options.python)
         times = fold_adam(times)
         own = times["mcdbn-cl"]
-        best = min(t for name, t in times.items() if name.startswith("pytorch"))
+        best = min(t for name, t in times.items() if name.startswith(("pytorch", "jax")))
         rate = "–"
         if "gflops" in step:
             rate = step["gflops"] * step["median_us"] / own
