@@ -37,11 +37,12 @@ constexpr std::array kNames{
     NamedRole{JointRole::right_toe, "right_toe"},
 };
 
-constexpr auto kRoles = [] {
+constexpr std::array<JointRole, kNames.size()> roles_of_names() {
   std::array<JointRole, kNames.size()> roles{};
   for (std::size_t i = 0; i < roles.size(); ++i) roles[i] = kNames[i].role;
   return roles;
-}();
+}
+constexpr std::array kRoles = roles_of_names();
 
 constexpr int kFirstLeft = static_cast<int>(JointRole::left_clavicle);
 constexpr int kFirstRight = static_cast<int>(JointRole::right_clavicle);

@@ -80,8 +80,9 @@ void check_same(const Call& call, const std::vector<std::string>& before) {
   CHECK(texts != before);
 }
 
-fs::path test_clip(int clip) {
-  return TinyPipeline::instance().motion() / fmt::format("walk_s02_{:02}.bvh", clip);
+/// Of the person who was trained on: a stranger drives so small a network's units to 0 and 1.
+fs::path seed_clip(int clip) {
+  return TinyPipeline::instance().motion() / fmt::format("walk_s01_{:02}.bvh", clip);
 }
 
 }  // namespace
@@ -91,7 +92,7 @@ TEST_CASE("generate: every option changes what its help says") {
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;
   const Call plain{.model = pipeline.model(),
-                   .seed_clip = test_clip(1),
+                   .seed_clip = seed_clip(1),
                    .frames = 60,
                    .samples = 2,
                    .gibbs_steps = 4,
@@ -112,8 +113,8 @@ TEST_CASE("generate: every option changes what its help says") {
       row("--temperature", [](Call& c) { c.temperature = 0.3; }),
       row("--samples", [](Call& c) { c.samples = 3; }),
       row("--frames", [](Call& c) { c.frames = 31; }),
-      row("--gibbs-steps", [](Call& c) { c.gibbs_steps = 1; }),
-      row("--seed-clip", [](Call& c) { c.seed_clip = test_clip(2); }),
+      row("--gibbs-steps", [](Call& c) { c.gibbs_steps = 0; }),
+      row("--seed-clip", [](Call& c) { c.seed_clip = seed_clip(2); }),
       row("--model", [&](Call& c) {
         REQUIRE(train(pipeline.test_clips(), folder / "run", kTiny).exit_code == 0);
         c.model = folder / "run/model.safetensors";
@@ -136,14 +137,14 @@ TEST_CASE("generate: every option changes what its help says") {
 
 TEST_CASE("generate: what holds where an option is not said") {
   if (!have_device()) return;
-  const Call bare{.model = TinyPipeline::instance().model(), .seed_clip = test_clip(1)};
+  const Call bare{.model = TinyPipeline::instance().model(), .seed_clip = seed_clip(1)};
   CHECK(by_program(bare) == by_library(bare));
 }
 
 TEST_CASE("generate: a seed clip that is too short is named") {
   if (!have_device()) return;
   const ScratchFolder folder;
-  mcdbn::Motion clip = mcdbn::read_bvh(test_clip(1));
+  mcdbn::Motion clip = mcdbn::read_bvh(seed_clip(1));
   clip.channels = mcdbn::MatrixD(clip.channels.topRows(5));
   write_bvh(folder / "short.bvh", clip);
   const Call call{.model = TinyPipeline::instance().model(), .seed_clip = folder / "short.bvh"};

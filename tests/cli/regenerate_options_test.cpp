@@ -237,7 +237,32 @@ TEST_CASE("regenerate: every option changes what its help says") {
                     CHECK(wrong.standard_error.find("map.toml:2: left_knee: ") !=
                           std::string::npos);
                   }});
-  rows.push_back({"--output", [&] { CHECK(text() == by_library(one).at(0)); }});
+  rows.push_back({"--format", [&] {
+                    const std::string seen = by_program(one).at(0);
+                    CHECK(run_cli(one.arguments(output) + " --format csv").exit_code == 0);
+                    CHECK(text() == seen);
+                    CHECK(run_cli(one.arguments(output) + " --format openpose").exit_code == 3);
+                  }});
+  rows.push_back({"--fps", [&] {
+                    CHECK(run_cli(one.arguments(output) + " --fps 25").exit_code == 0);
+                    CHECK(mcdbn::read_bvh(output).fps() == doctest::Approx(25));
+                  }});
+  rows.push_back({"--image-size", [&] {
+                    const std::string seen = by_program(one).at(0);
+                    CHECK(run_cli(one.arguments(output) + " --image-size 3000 2000").exit_code ==
+                          0);
+                    CHECK(text() != seen);  // another focal length is assumed
+                  }});
+  rows.push_back({"--person", [&] {
+                    const std::string seen = by_program(one).at(0);
+                    CHECK(run_cli(one.arguments(output) + " --person 1").exit_code == 0);
+                    CHECK(text() == seen);
+                    CHECK(run_cli(one.arguments(output) + " --person 2").exit_code == 3);
+                  }});
+  rows.push_back({"--output", [&] {
+                    CHECK(run_cli(one.arguments(output)).exit_code == 0);
+                    CHECK(text() == by_library(one).at(0));
+                  }});
   rows.push_back({"--quiet", [&] {
                     const std::string call = one.arguments(output);
                     CHECK(count_lines(run_cli(call).standard_error) == 2);  // the camera, the file
