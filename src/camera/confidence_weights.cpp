@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "base/upper_median.hpp"
 
 namespace mcdbn {
 namespace {
@@ -14,10 +17,7 @@ double usual_confidence(const MatrixD& confidence) {
   std::vector<double> seen;
   std::ranges::copy_if(confidence.reshaped(), std::back_inserter(seen),
                        [](double value) { return value > 0; });
-  if (seen.empty()) return 0;
-  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
-  std::nth_element(seen.begin(), middle, seen.end());
-  return *middle;
+  return seen.empty() ? 0 : upper_median(std::move(seen));
 }
 
 }  // namespace

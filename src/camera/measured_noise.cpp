@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "camera/detector_noise.hpp"
+#include "camera/track_columns.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -26,18 +27,14 @@ int column_of(const Track2d& track, JointRole role) {
   return -1;
 }
 
-Eigen::Vector2d at(const Track2d& track, Eigen::Index frame, Eigen::Index column) {
-  return {track.x_px(frame, column), track.y_px(frame, column)};
-}
-
 /// The deviation per axis of a fourth difference, of which movement leaves nothing, if each frame
 /// had new noise of that deviation.
 double fourth_difference(const Track2d& track, Eigen::Index frame, Eigen::Index column) {
   constexpr double kSquares = 1 + 16 + 36 + 16 + 1;
   const Eigen::Vector2d difference =
-      at(track, frame - 2, column) - 4 * at(track, frame - 1, column) +
-      6 * at(track, frame, column) - 4 * at(track, frame + 1, column) +
-      at(track, frame + 2, column);
+      pixel_at(track, frame - 2, column) - 4 * pixel_at(track, frame - 1, column) +
+      6 * pixel_at(track, frame, column) - 4 * pixel_at(track, frame + 1, column) +
+      pixel_at(track, frame + 2, column);
   return difference.norm() / std::sqrt(2 * kSquares);
 }
 
@@ -59,7 +56,8 @@ double noise_ratio(const Track2d& track, double height_px, const DetectorNoise& 
     for (Eigen::Index frame = 2; frame + 2 < track.frames(); ++frame) {
       const double difference = fourth_difference(track, frame, column) / height_px;
       if (!std::isfinite(difference)) continue;
-      const double moved = (at(track, frame + 1, column) - at(track, frame - 1, column)).norm();
+      const double moved =
+          (pixel_at(track, frame + 1, column) - pixel_at(track, frame - 1, column)).norm();
       const double speed = moved * track.fps / 2 / height_px;
       ratios.push_back(std::sqrt(2.0) * difference / kMedianLength /
                        expected_difference(usual, track.fps, speed));
@@ -98,8 +96,9 @@ double person_height_px(const Track2d& track) {
               last = column_of(track, ankle);
     if (first < 0 || middle < 0 || last < 0) continue;
     for (Eigen::Index frame = 0; frame < track.frames(); ++frame) {
-      const double length = (at(track, frame, first) - at(track, frame, middle)).norm() +
-                            (at(track, frame, middle) - at(track, frame, last)).norm();
+      const double length =
+          (pixel_at(track, frame, first) - pixel_at(track, frame, middle)).norm() +
+          (pixel_at(track, frame, middle) - pixel_at(track, frame, last)).norm();
       if (std::isfinite(length)) legs.push_back(length);
     }
   }

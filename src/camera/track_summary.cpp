@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
+
+#include "base/upper_median.hpp"
 
 namespace mcdbn {
 namespace {
-
-/// Of an even number of values the upper one of the two in the middle.
-double median(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 double jitter(const Track2d& track) {
   std::vector<double> differences;
@@ -24,8 +20,9 @@ double jitter(const Track2d& track) {
             (*axis)(frame - 1, joint) - 2 * (*axis)(frame, joint) + (*axis)(frame + 1, joint);
         if (!std::isnan(second)) differences.push_back(std::abs(second));
       }
+  if (differences.empty()) return std::numeric_limits<double>::quiet_NaN();
   // The median of |z| of a normal z is 0.6745; 1² + 2² + 1² = 6 independent deviations add up.
-  return median(std::move(differences)) / 0.6745 / std::sqrt(6.0);
+  return upper_median(std::move(differences)) / 0.6745 / std::sqrt(6.0);
 }
 
 }  // namespace
@@ -58,7 +55,7 @@ TrackSummary summarize(const Track2d& track) {
     }
     heights.push_back(bottom - top);
   }
-  summary.height_px = heights.empty() ? 0.0 : median(std::move(heights));
+  summary.height_px = heights.empty() ? 0.0 : upper_median(std::move(heights));
   summary.jitter_px = jitter(track);
   return summary;
 }

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <map>
 
+#include "base/upper_median.hpp"
+
 namespace mcdbn {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double seconds(std::uint64_t from_ns, std::uint64_t to_ns) {
   return to_ns > from_ns ? 1e-9 * static_cast<double>(to_ns - from_ns) : 0.0;
@@ -54,10 +50,10 @@ StepTimes time_kernels(Device& device, const std::function<void()>& run,
                      [&](const KernelRate& known) { return known.work.kernel == launch.kernel; });
     if (rate == result.kernels.end())
       rate = result.kernels.insert(
-          rate, {work_of(launch.kernel, work), 0, median(kernel_s.at(launch.kernel))});
+          rate, {work_of(launch.kernel, work), 0, upper_median(kernel_s.at(launch.kernel))});
     ++rate->launches;
   }
-  if (!between_s.empty()) result.between_s = median(between_s);
+  if (!between_s.empty()) result.between_s = upper_median(between_s);
   return result;
 }
 

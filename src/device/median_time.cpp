@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 #include <vector>
+
+#include "base/upper_median.hpp"
 
 namespace mcdbn {
 namespace {
@@ -34,9 +37,7 @@ double median_time_s(Device& device, const std::function<void()>& run, double se
   const auto start = Clock::now();
   while (samples_s.size() < kFewestSamples || since_s(start) < seconds)
     samples_s.push_back(mean_time_s(device, run, runs));
-  const auto middle = samples_s.begin() + static_cast<std::ptrdiff_t>(samples_s.size() / 2);
-  std::nth_element(samples_s.begin(), middle, samples_s.end());
-  return *middle;
+  return upper_median(std::move(samples_s));
 }
 
 }  // namespace mcdbn

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <vector>
 
+#include "base/upper_median.hpp"
 #include "device/kernel_arguments.hpp"
 
 namespace mcdbn {
@@ -25,12 +27,11 @@ double seconds_of(Device& device, const std::function<void()>& run) {
 double best_median_s(Device& device, const std::function<void()>& run) {
   constexpr std::size_t kRounds = 5, kRuns = 5;
   run();
-  double best_s = seconds_of(device, run);
+  double best_s = std::numeric_limits<double>::infinity();
   for (std::size_t round = 0; round < kRounds; ++round) {
     std::vector<double> runs_s(kRuns);
     for (double& run_s : runs_s) run_s = seconds_of(device, run);
-    std::nth_element(runs_s.begin(), runs_s.begin() + kRuns / 2, runs_s.end());
-    best_s = round == 0 ? runs_s[kRuns / 2] : std::min(best_s, runs_s[kRuns / 2]);
+    best_s = std::min(best_s, upper_median(std::move(runs_s)));
   }
   return best_s;
 }
@@ -63,7 +64,7 @@ double measure_read_gbytes_per_s(Device& device, std::size_t bytes) {
   constexpr double kLeastBytes = 256e6;  // of a run: some milliseconds
   const int vec = vector_width(device);
   const Range range(device, 16);
-  const std::size_t row = 8 * static_cast<std::size_t>(vec);  // what a step of the loop reads
+  const auto row = std::size_t{8} * static_cast<std::size_t>(vec);  // what a step of the loop reads
   const std::size_t rows = std::max<std::size_t>(1, bytes / sizeof(float) / range.items / row);
   const double pass_bytes = static_cast<double>(rows * row * range.items * sizeof(float));
   const int passes = std::max(1, static_cast<int>(kLeastBytes / pass_bytes));

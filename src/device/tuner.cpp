@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/upper_median.hpp"
 #include "device/gemm.hpp"
 #include "device/median_time.hpp"
 #include "mcdbn/device/matrix.hpp"
@@ -35,13 +36,12 @@ std::string described(const Tuning& tuning) {
 /// The rival's time as a share of the best's: the median over pairs measured side by side, as a
 /// machine's speed drifts and one noisy run must not decide.
 double paired_ratio(const TunedTime& time_s, const Tuning& rival, const Tuning& best) {
-  std::array<double, 5> ratios{};
+  std::vector<double> ratios(5);
   for (double& ratio : ratios) {
     const double best_s = time_s(best);
     ratio = time_s(rival) / best_s;
   }
-  std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
-  return ratios[ratios.size() / 2];
+  return upper_median(std::move(ratios));
 }
 
 /// CLBlast's product within the rounding error of two float sums of k terms (Higham 3.5) of the

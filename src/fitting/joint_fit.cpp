@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/upper_median.hpp"
 #include "fitting/frame_fit.hpp"
 #include "fitting/robust_residuals.hpp"
 #include "fitting/rows_around.hpp"

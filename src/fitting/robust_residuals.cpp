@@ -1,16 +1,11 @@
 #include "fitting/robust_residuals.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace mcdbn {
+#include "base/upper_median.hpp"
 
-double upper_median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+namespace mcdbn {
 
 double robust_deviation(std::vector<double> residuals) {
   if (residuals.empty()) return 0;

@@ -6,12 +6,6 @@
 
 using namespace mcdbn;
 
-TEST_CASE("robust residuals: the middle by size, the upper one of two") {
-  CHECK(upper_median({7}) == 7);
-  CHECK(upper_median({3, -9, 5}) == 3);
-  CHECK(upper_median({4, 1, 3, 2}) == 3);
-}
-
 TEST_CASE("robust residuals: the deviation of normal noise, whatever a twentieth of it does") {
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0, 2.5);
