@@ -12,6 +12,7 @@
 #include "base/random_sequence.hpp"
 #include "base/random_streams.hpp"
 #include "camera/keypoint_pairs.hpp"
+#include "camera/track_columns.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -26,7 +27,7 @@ class Drift {
   Drift(double time_s, double fps, RandomSequence& random)
       : kept_(std::exp(-1.0 / (time_s * fps))), random_(random), now_(drawn()) {}
   Eigen::Vector2d next() {
-    const Eigen::Vector2d value = now_;
+    Eigen::Vector2d value = now_;
     now_ = kept_ * now_ + std::sqrt(1 - kept_ * kept_) * drawn();
     return value;
   }
@@ -134,10 +135,6 @@ class ColumnNoise {
   Eigen::Vector2d stray_to_ = Eigen::Vector2d::Zero();
 };
 
-Eigen::Vector2d at(const Track2d& track, Eigen::Index frame, Eigen::Index column) {
-  return {track.x_px(frame, column), track.y_px(frame, column)};
-}
-
 /// Body heights a second, over the frames to both sides. @return [frames]
 Eigen::VectorXd speed_of(const Track2d& track, Eigen::Index column,
                          const Eigen::VectorXd& height_px) {
@@ -146,7 +143,7 @@ Eigen::VectorXd speed_of(const Track2d& track, Eigen::Index column,
     const Eigen::Index before = std::max<Eigen::Index>(frame - 1, 0),
                        after = std::min<Eigen::Index>(frame + 1, speed.size() - 1);
     if (before == after) continue;
-    const double moved = (at(track, after, column) - at(track, before, column)).norm();
+    const double moved = (pixel_at(track, after, column) - pixel_at(track, before, column)).norm();
     const double now = moved * track.fps / static_cast<double>(after - before) / height_px[frame];
     if (std::isfinite(now)) speed[frame] = now;
   }
@@ -175,7 +172,7 @@ std::vector<bool> close_frames(const Track2d& track, const LimbPairs& limbs,
   for (Eigen::Index frame = 0; frame < track.frames(); ++frame) {
     double sum = 0;
     for (const auto& [left, right] : limbs.telling)
-      sum += (at(track, frame, left) - at(track, frame, right)).norm();
+      sum += (pixel_at(track, frame, left) - pixel_at(track, frame, right)).norm();
     const double mean = sum / static_cast<double>(limbs.telling.size());
     close[static_cast<std::size_t>(frame)] = mean < kClose * height_px[frame];
   }
@@ -188,9 +185,7 @@ void swap_limbs(Track2d& track, const LimbPairs& limbs, const std::vector<bool>&
   Episodes swapped(time_s, track.fps, random);
   for (Eigen::Index frame = 0; frame < track.frames(); ++frame) {
     if (!swapped.next(close[static_cast<std::size_t>(frame)] ? share : 0.0)) continue;
-    for (const auto& [left, right] : limbs.columns)
-      for (MatrixD* values : {&track.x_px, &track.y_px, &track.confidence})
-        std::swap((*values)(frame, left), (*values)(frame, right));
+    for (const auto& [left, right] : limbs.columns) exchange_columns(track, frame, left, right);
   }
 }
 

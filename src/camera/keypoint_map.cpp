@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "camera/keypoint_places.hpp"
+#include "camera/track_columns.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
 
@@ -45,15 +46,11 @@ bool seen(const Track2d& track, Eigen::Index frame, int column) {
          std::isfinite(track.y_px(frame, column));
 }
 
-Eigen::Vector2d pixel(const Track2d& track, Eigen::Index frame, int column) {
-  return {track.x_px(frame, column), track.y_px(frame, column)};
-}
-
 /// The middle of two columns; NaN unless both are seen.
 Eigen::Vector2d middle(const Track2d& track, Eigen::Index frame, int left, int right) {
   if (left < 0 || right < 0 || !seen(track, frame, left) || !seen(track, frame, right))
     return {kNan, kNan};
-  return 0.5 * (pixel(track, frame, left) + pixel(track, frame, right));
+  return 0.5 * (pixel_at(track, frame, left) + pixel_at(track, frame, right));
 }
 
 void hide_column(Track2d& track, int column) {
@@ -132,7 +129,8 @@ KeypointMap::Displacements KeypointMap::seen_displacements(const Track2d& track)
     const Eigen::Vector2d hips = middle(track, t, left, right);
     const Eigen::Vector2d up = (middle(track, t, left_top, right_top) - hips) / trunk_length_;
     if (!up.allFinite() || !(hip_width_ > 0)) continue;
-    const Eigen::Vector2d leftward = (pixel(track, t, left) - pixel(track, t, right)) / hip_width_;
+    const Eigen::Vector2d leftward =
+        (pixel_at(track, t, left) - pixel_at(track, t, right)) / hip_width_;
     for (std::size_t k = 0; k < readings_.size(); ++k) {
       const Eigen::Vector3d& offset = readings_[k].offset;
       result.px.row(t).segment<2>(2 * static_cast<Eigen::Index>(k)) =

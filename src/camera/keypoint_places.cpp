@@ -1,12 +1,12 @@
 #include "camera/keypoint_places.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "motion/body_size.hpp"
+#include "motion/nearest_rotation.hpp"
 
 namespace mcdbn {
 namespace {
@@ -39,11 +39,7 @@ std::vector<Eigen::Matrix3d> joint_from_upright(const Motion& motion, const Skel
     if (const auto axes = trunk_axes(pose, roles))
       for (std::size_t j = 0; j < joints; ++j)
         turns[j] += pose.world_from_joint[j].transpose() * *axes;
-  for (Eigen::Matrix3d& turn : turns) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
-    turn = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  }
+  for (Eigen::Matrix3d& turn : turns) turn = nearest_rotation(turn);
   return turns;
 }
 

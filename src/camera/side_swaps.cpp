@@ -7,6 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
+
+#include "base/upper_median.hpp"
+#include "camera/track_columns.hpp"
 
 namespace mcdbn {
 namespace {
@@ -95,10 +99,7 @@ double body_height_px(const Track2d& track) {
       squares += (place - sum / static_cast<double>(seen.size())).squaredNorm();
     spreads.push_back(std::sqrt(squares / static_cast<double>(seen.size())));
   }
-  if (spreads.empty()) return 0;
-  const auto middle = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
-  std::nth_element(spreads.begin(), middle, spreads.end());
-  return *middle / kSpreadOfHeight;
+  return spreads.empty() ? 0 : upper_median(std::move(spreads)) / kSpreadOfHeight;
 }
 
 /// How far both places of a pair are from going on as they went, given which of the three frames up
@@ -225,9 +226,8 @@ std::vector<SideSwap> find_side_swaps(const Track2d& track, const SideSwapSettin
 void exchange_sides(Track2d& track, const std::vector<SideSwap>& swaps) {
   for (const SideSwap& swap : swaps)
     for (std::size_t k = 0; k < swap.left.size(); ++k)
-      for (MatrixD* values : {&track.x_px, &track.y_px, &track.confidence})
-        for (int t = swap.first_frame; t <= swap.last_frame; ++t)
-          std::swap((*values)(t, swap.left[k]), (*values)(t, swap.right[k]));
+      for (int t = swap.first_frame; t <= swap.last_frame; ++t)
+        exchange_columns(track, t, swap.left[k], swap.right[k]);
 }
 
 std::string described(const std::vector<SideSwap>& swaps) {

@@ -1,7 +1,8 @@
 #include "evaluation/procrustes.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
+
+#include "motion/nearest_rotation.hpp"
 
 namespace mcdbn {
 
@@ -25,10 +26,7 @@ RowVectorD procrustes_residual(const Eigen::Ref<const RowVectorD>& truth,
 Eigen::Matrix3d nearest_rotation(const MatrixD& target, const MatrixD& source) {
   using Points = Eigen::Map<const Eigen::Matrix3Xd>;
   const Points to(target.data(), 3, target.size() / 3), from(source.data(), 3, source.size() / 3);
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(to * from.transpose(),
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double mirror = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  return svd.matrixU() * Eigen::Vector3d(1, 1, mirror).asDiagonal() * svd.matrixV().transpose();
+  return nearest_rotation(to * from.transpose());
 }
 
 }  // namespace mcdbn
