@@ -2,17 +2,10 @@
 
 #include "device/kernel_arguments.hpp"
 #include "learning/contrastive_divergence.hpp"
+#include "machines/crbm_defines.hpp"
 
 namespace mcdbn {
 namespace {
-
-Defines shape_defines(const CrbmShape& shape, const RowTile& tile) {
-  return {{"VEC", tile.vector_width},
-          {"VISIBLE", to_int(shape.visible)},
-          {"HIDDEN", to_int(shape.hidden)},
-          {"ORDER_A", to_int(shape.order_A())},
-          {"ORDER_B", to_int(shape.order_B())}};
-}
 
 /// The first floats of W, A, B, a and b.
 cl_int8 first_floats(const Parameters& parameters) {
@@ -34,8 +27,7 @@ std::size_t update_groups(const CrbmShape& shape, const RowTile& tile) {
 void ContrastiveDivergence::fused_chain(const Rows& rows, const CdRule& rule, const RandomKey& key,
                                         const Matrix* particles, bool fresh) {
   const CrbmShape& shape = crbm_.shape();
-  Defines defines = with_tile(shape_defines(shape, *tile_), *tile_);
-  defines["GAUSSIAN"] = shape.kind == VisibleKind::gaussian ? 1 : 0;
+  Defines defines = crbm_row_defines(shape, *tile_);
   if (rule.sample_visible) defines["SAMPLE_VISIBLE"] = 1;
   if (particles) defines["PERSISTENT"] = 1;
   if (seen_) defines["MASKED"] = 1;
@@ -67,7 +59,7 @@ void ContrastiveDivergence::fused_chain(const Rows& rows, const CdRule& rule, co
 void ContrastiveDivergence::fused_update(const Rows& rows, const CdRule& rule,
                                          LossAccumulator& losses) {
   const CrbmShape& shape = crbm_.shape();
-  Defines defines = with_update_tile(shape_defines(shape, *tile_), *tile_);
+  Defines defines = with_update_tile(crbm_defines(shape, *tile_), *tile_);
   defines["OPTIMIZER"] = optimizer_.define(rule.W.l1 + rule.A.l1 + rule.B.l1 > 0.0F);
   Device& device = crbm_.device();
   cl::Kernel& kernel =

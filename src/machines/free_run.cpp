@@ -7,6 +7,7 @@
 #include "base/random_streams.hpp"
 #include "device/kernel_arguments.hpp"
 #include "device/row_tile.hpp"
+#include "machines/crbm_defines.hpp"
 #include "machines/unit_kinds.hpp"
 
 namespace mcdbn {
@@ -36,15 +37,8 @@ void run_fused(const Crbm& crbm, const Matrix& state, const Frames& frames,
                const GenerationOptions& options, const RowTile& tile) {
   const CrbmShape& shape = crbm.shape();
   Device& device = crbm.device();
-  cl::Kernel& kernel = device.programs().kernel(
-      "cdbn_generation.cl", "generate_frames",
-      with_tile({{"VEC", tile.vector_width},
-                 {"VISIBLE", to_int(shape.visible)},
-                 {"HIDDEN", to_int(shape.hidden)},
-                 {"ORDER_A", to_int(shape.order_A())},
-                 {"ORDER_B", to_int(shape.order_B())},
-                 {"GAUSSIAN", shape.kind == VisibleKind::gaussian ? 1 : 0}},
-                tile));
+  cl::Kernel& kernel = device.programs().kernel("cdbn_generation.cl", "generate_frames",
+                                                crbm_row_defines(shape, tile));
   const std::size_t rows = whole_blocks(frames.sequences, tile);
   const Matrix visible_bias(device, rows, shape.visible), hidden_bias(device, rows, shape.hidden);
   const auto group = static_cast<std::size_t>(tile.group);

@@ -7,6 +7,7 @@
 #include "base/random_streams.hpp"
 #include "device/kernel_arguments.hpp"
 #include "machines/cdbn_decoder.hpp"
+#include "machines/crbm_defines.hpp"
 
 namespace mcdbn {
 namespace {
@@ -14,16 +15,9 @@ namespace {
 /// @param order_B history that the hidden units see; 0 where they are not asked
 cl::Kernel& decoder_kernel(const Crbm& layer, const char* name, std::size_t order_B,
                            const RowTile& tile) {
-  const CrbmShape& shape = layer.shape();
-  return layer.device().programs().kernel(
-      "cdbn_decoder.cl", name,
-      with_tile({{"VEC", tile.vector_width},
-                 {"VISIBLE", to_int(shape.visible)},
-                 {"HIDDEN", to_int(shape.hidden)},
-                 {"ORDER_A", to_int(shape.order_A())},
-                 {"ORDER_B", to_int(order_B)},
-                 {"GAUSSIAN", shape.kind == VisibleKind::gaussian ? 1 : 0}},
-                tile));
+  Defines defines = crbm_row_defines(layer.shape(), tile);
+  defines["ORDER_B"] = to_int(order_B);
+  return layer.device().programs().kernel("cdbn_decoder.cl", name, defines);
 }
 
 LaunchSize size_for(std::size_t sequences, const RowTile& tile) {
