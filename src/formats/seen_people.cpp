@@ -55,6 +55,18 @@ std::vector<double> numbers_of(const Track2d& track, int frame) {
   return numbers;
 }
 
+bool shows_anyone(const Track2d& track, int frame) {
+  return (track.confidence.row(frame).array() > 0).any();
+}
+
+std::vector<int> frames_to_list(const Track2d& track) {
+  std::vector<int> frames;
+  for (int frame = 0; frame < track.frames(); ++frame)
+    if (shows_anyone(track, frame) || frame == 0 || frame + 1 == track.frames())
+      frames.push_back(frame);
+  return frames;
+}
+
 const std::string& set_to_write(const Track2d& track, const std::vector<std::string>& sets,
                                 const std::string& format) {
   const JointSet* set = joint_set_of(track.joint_names);

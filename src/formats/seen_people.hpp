@@ -43,6 +43,13 @@ void mark_missing(SeenPerson& person);
 /// it is missing.
 std::vector<double> numbers_of(const Track2d& track, int frame);
 
+/// Whether the frame shows any joint.
+bool shows_anyone(const Track2d& track, int frame);
+
+/// The frames that a list of people has entries of: those that show anyone, and the first and the
+/// last one, so that none is lost.
+std::vector<int> frames_to_list(const Track2d& track);
+
 /// The joint set that the track's columns are, of those that the format has.
 /// @throws InputError naming the format's sets
 const std::string& set_to_write(const Track2d& track, const std::vector<std::string>& sets,

@@ -78,19 +78,15 @@ SeenPeople read(const TrackSource& source) {
   return people;
 }
 
-/// A frame in which nobody was seen has no entry, but the first and the last one.
 void write(const std::filesystem::path& path, const Track2d& track) {
   set_to_write(track, kSets, kName);
   json entries = json::array();
-  for (int frame = 0; frame < track.frames(); ++frame) {
-    const bool seen = (track.confidence.row(frame).array() > 0).any();
-    if (!seen && frame != 0 && frame + 1 != track.frames()) continue;
+  for (const int frame : frames_to_list(track))
     entries.push_back({{"image_id", fmt::format("{}.jpg", frame)},
                        {"category_id", 1},
                        {"keypoints", numbers_of(track, frame)},
                        {"score", track.confidence.row(frame).sum()},
                        {"idx", {0.0}}});
-  }
   write_text_file(path, entries.dump());
 }
 

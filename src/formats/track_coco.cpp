@@ -122,14 +122,11 @@ SeenPeople read(const TrackSource& source) {
   return people;
 }
 
-/// Results, with numbers of frames as numbers of images. A frame in which nobody was seen has no
-/// entry, but the first and the last one, so that none is lost.
+/// Results, with numbers of frames as numbers of images.
 void write(const std::filesystem::path& path, const Track2d& track) {
   set_to_write(track, kSets, kName);
   json entries = json::array();
-  for (int frame = 0; frame < track.frames(); ++frame) {
-    const bool seen = (track.confidence.row(frame).array() > 0).any();
-    if (!seen && frame != 0 && frame + 1 != track.frames()) continue;
+  for (const int frame : frames_to_list(track)) {
     const auto joints = static_cast<double>(track.joint_count());
     entries.push_back({{"image_id", frame},
                        {"category_id", 1},

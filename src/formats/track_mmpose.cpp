@@ -151,7 +151,7 @@ void write(const std::filesystem::path& path, const Track2d& track) {
       keypoints.push_back({numbers[i], numbers[i + 1]});
       scores.push_back(numbers[i + 2]);
     }
-    if ((track.confidence.row(frame).array() > 0).any())
+    if (shows_anyone(track, frame))
       instances.push_back({{"keypoints", keypoints}, {"keypoint_scores", scores}});
     frames.push_back({{"frame_id", frame + 1}, {"instances", instances}});
   }

@@ -97,7 +97,7 @@ SeenPeople read(const TrackSource& source) {
 
 std::string frame_text(const Track2d& track, int frame) {
   json people = json::array();
-  if ((track.confidence.row(frame).array() > 0).any())
+  if (shows_anyone(track, frame))
     people.push_back({{"person_id", {-1}},
                       {"pose_keypoints_2d", numbers_of(track, frame)},
                       {"face_keypoints_2d", json::array()},
