@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "base/scratch_folder.hpp"
 #include "comparison/baseline.hpp"
+#include "comparison/clip_files.hpp"
 #include "comparison/comparison_run.hpp"
 #include "comparison/mlp_window.hpp"
 #include "device/every_device.hpp"
@@ -29,27 +29,15 @@ Motion clip_of(int frames, double pace) {
 }
 
 /// Two clips that a model was trained on, three to test it on, all in files.
-struct Scene {
-  ScratchFolder folder;
-  CameraPlacement model_view{35, 12, std::nullopt, 45, 1920, 1080},
-      test_view{-50, 5, std::nullopt, 40, 1280, 720};
-  std::vector<std::filesystem::path> training, tests;
-  Modalities modalities;
+struct Scene : ClipFiles {
+  CameraPlacement test_view{-50, 5, std::nullopt, 40, 1280, 720};
 
-  Scene() : modalities(modalities_of({clip_of(14, 1.0), clip_of(9, 1.4)}, model_view)) {
-    training = {write("08_01.bvh", clip_of(14, 1.0)), write("walk_s02_01.bvh", clip_of(9, 1.4))};
-    tests = {write("08_02.bvh", clip_of(21, 1.2)), write("09_01.bvh", clip_of(12, 0.8)),
-             write("jump_s02_07.bvh", clip_of(17, 1.1))};
-  }
-  std::filesystem::path write(const std::string& name, const Motion& motion) const {
-    write_bvh(folder / name, motion);
-    return folder / name;
-  }
-  Model model(Device& device) const {
-    Model model{random_network(device, modalities), modalities, {}, {}};
-    for (const auto& file : training) model.training_clips.push_back(identify_clip(file));
-    return model;
-  }
+  Scene()
+      : ClipFiles({{"08_01.bvh", clip_of(14, 1.0)}, {"walk_s02_01.bvh", clip_of(9, 1.4)}},
+                  {{"08_02.bvh", clip_of(21, 1.2)},
+                   {"09_01.bvh", clip_of(12, 0.8)},
+                   {"jump_s02_07.bvh", clip_of(17, 1.1)}},
+                  {35, 12, std::nullopt, 45, 1920, 1080}) {}
 };
 
 TestRunOptions plain_options(const Scene& scene) {

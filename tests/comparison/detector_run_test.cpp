@@ -4,13 +4,11 @@
 
 #include <set>
 
-#include "base/scratch_folder.hpp"
+#include "comparison/clip_files.hpp"
 #include "comparison/comparison_run.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/camera/side_swaps.hpp"
-#include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
-#include "motion_model/clip_scene.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -40,24 +38,10 @@ Motion walk(int subject, int clip) {
   return synthesize(options);
 }
 
-struct Scene {
-  ScratchFolder folder;
-  std::vector<std::filesystem::path> training, tests;
-  Modalities modalities;
-
-  Scene() : modalities(modalities_of({walk(1, 1), walk(2, 1)}, {})) {
-    training = {write("walk_s01_01.bvh", walk(1, 1)), write("walk_s02_01.bvh", walk(2, 1))};
-    tests = {write("walk_s03_01.bvh", walk(3, 1)), write("walk_s04_01.bvh", walk(4, 1))};
-  }
-  std::filesystem::path write(const std::string& name, const Motion& motion) const {
-    write_bvh(folder / name, motion);
-    return folder / name;
-  }
-  Model model(Device& device) const {
-    Model model{random_network(device, modalities), modalities, {}, {}};
-    for (const auto& file : training) model.training_clips.push_back(identify_clip(file));
-    return model;
-  }
+struct Scene : ClipFiles {
+  Scene()
+      : ClipFiles({{"walk_s01_01.bvh", walk(1, 1)}, {"walk_s02_01.bvh", walk(2, 1)}},
+                  {{"walk_s03_01.bvh", walk(3, 1)}, {"walk_s04_01.bvh", walk(4, 1)}}, {}) {}
   TestRunOptions options() const {
     TestRunOptions options;
     options.baselines.clear();
