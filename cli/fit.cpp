@@ -12,6 +12,7 @@
 #include "learning/metrics_log.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/learning/machine_fit.hpp"
+#include "mcdbn/motion_model/settings_record.hpp"
 #include "modality_options.hpp"
 #include "setting_flags.hpp"
 
@@ -37,6 +38,7 @@ constexpr std::array kKinds{
 };
 
 constexpr const char* kMrbm = "mrbm";
+constexpr int kMostLayers = 64;  // as `layers` of MachineSettings
 
 std::vector<std::string> kind_names() {
   std::vector<std::string> names{kMrbm};
@@ -52,7 +54,10 @@ struct FitOptions {
   std::string machine;
   bool standardize = false;
   MachineSettings settings;
-  const CLI::Option *order = nullptr, *layers = nullptr;  ///< whether they were said
+  std::vector<std::size_t> widths, orders;  ///< of each layer, where they differ
+  /// Whether they were said.
+  const CLI::Option *order = nullptr, *layers = nullptr, *each_width = nullptr,
+                    *each_order = nullptr;
 
   const MachineKind& kind() const {
     return *std::find_if(kKinds.begin(), kKinds.end(),
@@ -70,8 +75,15 @@ void check_flags(const FitOptions& options) {
       throw ConfigError(
           fmt::format("{}: --machine {} has no {}", flag->get_name(), options.machine, what));
   };
-  if (is_mrbm || !options.kind().has_history) refuse(options.order, "history");
-  if (is_mrbm || !options.kind().is_stack) refuse(options.layers, "layers but one");
+  if (is_mrbm || !options.kind().has_history) {
+    refuse(options.order, "history");
+    refuse(options.each_order, "history");
+  }
+  if (is_mrbm || !options.kind().is_stack) {
+    refuse(options.layers, "layers but one");
+    refuse(options.each_width, "layers but one");
+    refuse(options.each_order, "layers but one");
+  }
   if (is_mrbm != options.data.files.empty() || is_mrbm == options.modalities.empty())
     throw ConfigError(
         "data: --machine mrbm wants --modality NAME=FILE for each modality, every other machine "
@@ -131,6 +143,8 @@ void fit_and_save(const CommandContext& context, const FitOptions& options, Fit&
   });
   saved.config = settings_record(options.settings);
   saved.config["machine"] = options.machine;
+  if (!options.widths.empty()) saved.config["widths"] = options.widths;
+  if (!options.orders.empty()) saved.config["orders"] = options.orders;
   save_machine(options.output, saved);
   spdlog::info("{}: fitted in {:.1f} s", options.output.string(), progress.elapsed_s());
 }
@@ -159,27 +173,82 @@ void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
   });
 }
 
+/// The layers from below, by --widths and --orders where they are said.
+std::vector<LayerSize> layer_sizes(const FitOptions& options) {
+  const MachineKind& kind = options.kind();
+  const auto &widths = options.widths, &orders = options.orders;
+  const std::size_t layers = !widths.empty()   ? widths.size()
+                             : !orders.empty() ? orders.size()
+                             : kind.is_stack   ? options.settings.layers
+                                               : 1;
+  if (!orders.empty() && orders.size() != layers)
+    throw ConfigError(
+        fmt::format("--orders: {} numbers, but --widths has {}", orders.size(), widths.size()));
+  std::vector<LayerSize> sizes;
+  for (std::size_t i = 0; i < layers; ++i)
+    sizes.push_back({widths.empty() ? options.settings.hidden : widths[i],
+                     !kind.has_history ? 0
+                     : orders.empty()  ? options.settings.order
+                                       : orders[i]});
+  return sizes;
+}
+
 void run_fit(const CommandContext& context, const FitOptions& options) {
   check_flags(options);
   options.settings.validate();
   if (options.machine == kMrbm) return run_fit_mrbm(context, options);
   const MachineKind& kind = options.kind();
-  const std::size_t order = kind.has_history ? options.settings.order : 0,
-                    layers = kind.is_stack ? options.settings.layers : 1;
+  const std::vector<LayerSize> layers = layer_sizes(options);
+  std::size_t history = 0;
+  for (const LayerSize& layer : layers) history += layer.order;
   std::vector<MatrixF> data = options.data.read();
   const ColumnScale scale = prepare(data, options.data, kind.visible, options.standardize);
-  check_lengths(data, order * layers, options.data.files.front());
+  check_lengths(data, history, options.data.files.front());
   fit_and_save(context, options, [&](Device& device, const EpochObserver& observer) {
     const Sequences sequences = Sequences::from_host(device, data);
     spdlog::info("{} files, {} rows of {} values on {}", data.size(), sequences.values.rows(),
                  sequences.values.columns(), device.info().name);
     const Cdbn stack =
-        fit_stack(device, sequences, kind.visible, order, layers, options.settings, observer);
+        fit_stack(device, sequences, kind.visible, layers, options.settings, observer);
     SavedMachine saved{stack};
     if (!kind.is_stack) saved.machine = stack.layers.front();
     if (options.standardize) saved.scales.push_back(scale);
     return saved;
   });
+}
+
+/// Before the flags of the settings: options are taken in the order in which they were added, so
+/// that flags have the last word.
+void add_config_option(CLI::App& command, MachineSettings& settings) {
+  command
+      .add_option_function<std::filesystem::path>(
+          "--config",
+          [&settings](const std::filesystem::path& file) {
+            for (const SaidSetting& said : read_settings_file(file)) assign_setting(settings, said);
+          },
+          "TOML file of settings; flags override it")
+      ->type_name("FILE");
+}
+
+/// A width and an order for each layer of a stack.
+void add_layer_options(CLI::App& command, FitOptions& options) {
+  const auto add = [&](const char* flag, std::vector<std::size_t>& values, const char* help,
+                       const CLI::Validator& range, const char* unit) {
+    return command.add_option(flag, values, help)
+        ->delimiter(',')
+        ->expected(1, kMostLayers)
+        ->check(range)
+        ->type_name(unit)
+        ->excludes(command.get_option("--layers"));
+  };
+  options.each_width =
+      add("--widths", options.widths, "Hidden units of each layer of a stack, from below: 300,150",
+          CLI::PositiveNumber, "UNITS,…")
+          ->excludes(command.get_option("--hidden"));
+  options.each_order =
+      add("--orders", options.orders, "History of each layer of a stack, from below: 5,3",
+          CLI::NonNegativeNumber, "FRAMES,…")
+          ->excludes(command.get_option("--order"));
 }
 
 }  // namespace
@@ -212,7 +281,9 @@ void add_fit_command(CLI::App& app, CommandContext& context) {
   command->add_flag("--standardize", options->standardize,
                     "Scale each column to mean 0 and deviation 1, which Gaussian units want; kept "
                     "in the file, and undone on output");
+  add_config_option(*command, options->settings);
   add_setting_flags(*command, options->settings);
+  add_layer_options(*command, *options);
   options->order = command->get_option("--order");
   options->layers = command->get_option("--layers");
   add_device_options(*command, context);

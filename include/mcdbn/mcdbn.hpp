@@ -6,6 +6,7 @@
 #include "mcdbn/base/matrices.hpp"
 #include "mcdbn/base/matrix_file.hpp"
 #include "mcdbn/base/random.hpp"
+#include "mcdbn/base/said_setting.hpp"
 #include "mcdbn/base/settings.hpp"
 #include "mcdbn/camera/assumed_view.hpp"
 #include "mcdbn/camera/camera.hpp"

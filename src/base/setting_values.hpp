@@ -1,9 +1,13 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/base/said_setting.hpp"
 #include "mcdbn/base/settings.hpp"
 
 namespace mcdbn {
@@ -17,6 +21,23 @@ void assign_value(const std::string& who, const Setting& setting, const nlohmann
                   std::size_t& member);
 void assign_value(const std::string& who, const Setting& setting, const nlohmann::json& value,
                   double& member);
+
+enum class RangeCheck { on, off };  ///< off: other versions of the program had other ranges
+
+/// Sets the one that is said.
+/// @throws ConfigError for a setting that does not exist, a value of another kind or out of range
+template <typename Settings>
+void assign_setting(Settings& settings, const SaidSetting& said,
+                    RangeCheck check = RangeCheck::on) {
+  bool found = false;
+  visit_settings(settings, [&](Setting setting, auto& member) {
+    if (setting.name != said.name) return;
+    found = true;
+    if (check == RangeCheck::off) setting.range = any_number();
+    assign_value(said.who, setting, said.value, member);
+  });
+  if (!found) throw ConfigError(fmt::format("{} is no setting", said.who));
+}
 
 /// The number that a text is, the whole of it; a text that is none, as it is.
 nlohmann::json number_in(const std::string& text);

@@ -23,13 +23,16 @@ LearningSettings learning_of(const MachineSettings& settings) {
 
 }  // namespace
 
-Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind, std::size_t order,
-               std::size_t layers, const MachineSettings& settings, const EpochObserver& observer) {
-  LearningSettings learning = learning_of(settings);
-  learning.order = order;
-  learning.layers = layers;
-  return train_cdbn(device, data, layer_shapes(data.values.columns(), learning, kind), learning,
-                    random_streams::layers_of(0), observer, "layer")
+Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind,
+               const std::vector<LayerSize>& layers, const MachineSettings& settings,
+               const EpochObserver& observer) {
+  if (layers.empty()) throw ShapeError("a stack without layers");
+  std::vector<CrbmShape> shapes;
+  for (const LayerSize& layer : layers)
+    shapes.push_back({shapes.empty() ? data.values.columns() : shapes.back().hidden, layer.hidden,
+                      layer.order, shapes.empty() ? kind : VisibleKind::binary});
+  return train_cdbn(device, data, shapes, learning_of(settings), random_streams::layers_of(0),
+                    observer, "layer")
       .cdbn;
 }
 

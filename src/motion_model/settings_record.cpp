@@ -1,30 +1,31 @@
 #include "mcdbn/motion_model/settings_record.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "base/setting_values.hpp"
-#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
 
-void assign(TrainingConfig& config, const SaidSetting& said, bool check_range) {
-  bool found = false;
-  visit_settings(config, [&](Setting setting, auto& member) {
-    if (setting.name != said.name && former_name(setting.name) != said.name) return;
-    found = true;
-    if (!check_range) setting.range = any_number();
-    assign_value(said.who, setting, said.value, member);
+/// Today's name of a setting that is said by the one that it had before.
+std::string name_today(const std::string& said) {
+  std::string name = said;
+  const TrainingConfig usual;
+  visit_settings(usual, [&](const Setting& setting, const auto&) {
+    if (former_name(setting.name) == said) name = setting.name;
   });
-  if (!found) throw ConfigError(fmt::format("{} is no setting", said.who));
+  return name;
+}
+
+void assign(TrainingConfig& config, SaidSetting said, RangeCheck check) {
+  said.name = name_today(said.name);
+  assign_setting(config, said, check);
 }
 
 }  // namespace
 
 void assign_settings(TrainingConfig& config, const std::vector<SaidSetting>& said) {
-  for (const SaidSetting& setting : said) assign(config, setting, true);
+  for (const SaidSetting& setting : said) assign(config, setting, RangeCheck::on);
 }
 
 nlohmann::json settings_json(const TrainingConfig& config) {
@@ -39,7 +40,7 @@ TrainingConfig settings_from_json(const nlohmann::json& record) {
   for (const auto& [pointer, value] : flat.items()) {
     std::string name = pointer.substr(1);
     std::replace(name.begin(), name.end(), '/', '.');
-    assign(config, {name, value, "the model's settings: " + name}, false);
+    assign(config, {name, value, "the model's settings: " + name}, RangeCheck::off);
   }
   return config;
 }

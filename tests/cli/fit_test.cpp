@@ -146,6 +146,7 @@ TEST_CASE("fit: every option changes what its help says") {
   rows.push_back({"--output",
                   [&] { check_refused("fit a.npy --machine rbm -o b.npy", 2, "--output b.npy"); }});
   // What these do has a test case of its own.
+  for (const char* flag : {"--config", "--widths", "--orders"}) rows.push_back({flag, [] {}});
   rows.push_back({"--modality", [] {}});
   rows.push_back({"--gaussian", [] {}});
   rows.push_back({"--standardize", [&] {
@@ -218,6 +219,56 @@ TEST_CASE("fit: an MRBM of three modalities, and one of them inferred from the o
   check_refused(infer + " --modality a=" + path("a.npy") + " --infer a", 2, "it is given");
   check_refused(infer + " --modality a=" + path("a.npy"), 2, "--modality: of --infer");
   check_refused(infer + " " + machines.bits(), 3, "an MRBM; its data are said by --modality");
+}
+
+TEST_CASE("fit: a settings file, over which flags have the last word") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  const auto path = [&](const char* name) { return (folder / name).string(); };
+  folder.write("fit.toml", "hidden = 4\nseed = 9\n\n[gaussian]\nrate = 0.002\nepochs = 2\n");
+  const std::string fit = "fit " + FittedMachines::instance().values() +
+                          " --machine gaussian-rbm --quiet -o " + path("m.safetensors");
+  const auto fitted = [&](const std::string& options) {
+    output_of(fit + options);
+    return mcdbn::read_text_file(folder / "m.safetensors");
+  };
+  const std::string said = fitted(" --seed 3 --config " + path("fit.toml"));
+  const json config = mcdbn::describe_machine(path("m.safetensors")).at("config");
+  CHECK(config.at("hidden") == 4);
+  CHECK(config.at("seed") == 3);
+  CHECK(config.at("gaussian").at("rate") == 0.002);
+  CHECK(said == fitted(" --hidden 4 --seed 3 --gaussian-rate 0.002 --gaussian-epochs 2"));
+  folder.write("fit.toml", "hidden = 4\nhiden = 9\n");
+  check_refused(fit + " --config " + path("fit.toml"), 2, "fit.toml:2: hiden is no setting");
+  folder.write("fit.toml", "\n[gaussian]\nrate = -1\n");
+  check_refused(fit + " --config " + path("fit.toml"), 2, "fit.toml:3: gaussian.rate must be");
+}
+
+TEST_CASE("fit: a width and an order for each layer of a stack") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  const std::string file = (folder / "m.safetensors").string();
+  const std::string fit = "fit " + FittedMachines::instance().values() +
+                          " --batch 20 --gaussian-epochs 2 --binary-epochs 2 --quiet -o " + file +
+                          " --machine ";
+  const auto layers_of = [&](const std::string& options) {
+    output_of(fit + options);
+    std::vector<std::pair<int, int>> layers;
+    const json about = mcdbn::describe_machine(file);
+    for (const json& layer : about.at("layers"))
+      layers.emplace_back(layer.at("hidden"), layer.at("order"));
+    return layers;
+  };
+  using Layers = std::vector<std::pair<int, int>>;
+  CHECK(layers_of("cdbn --widths 7,4,3 --orders 1,0,2") == Layers{{7, 1}, {4, 0}, {3, 2}});
+  CHECK(mcdbn::describe_machine(file).at("config").at("orders") == json({1, 0, 2}));
+  CHECK(layers_of("cdbn --widths 7,4,3 --order 1") == Layers{{7, 1}, {4, 1}, {3, 1}});
+  CHECK(layers_of("gaussian-dbn --widths 6") == Layers{{6, 0}});
+  check_refused(fit + "cdbn --widths 7,4 --orders 1", 2, "--orders: 1 numbers, but --widths has 2");
+  check_refused(fit + "cdbn --widths 7,0", 2, "--widths");
+  check_refused(fit + "cdbn --widths 7,4 --layers 2", 2, "--layers");
+  check_refused(fit + "gaussian-dbn --orders 1,1", 2, "--orders: --machine gaussian-dbn has no");
+  check_refused(fit + "crbm --widths 4", 2, "--widths: --machine crbm has no layers but one");
 }
 
 TEST_CASE("fit: data and flags that do not fit are refused") {

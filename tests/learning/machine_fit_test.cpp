@@ -41,7 +41,7 @@ TEST_CASE("each layer of a stack is trained on the code beneath, with numbers of
   on_every_device([](Device& device) {
     const MachineSettings settings = small_settings();
     const Sequences data = clips(device, 3);
-    const Cdbn stack = fit_stack(device, data, kGaussian, 2, 2, settings);
+    const Cdbn stack = fit_stack(device, data, kGaussian, {{4, 2}, {4, 2}}, settings);
     REQUIRE(stack.layers.size() == 2);
     LearningSettings learning;
     learning.seed = 5;
@@ -81,8 +81,8 @@ TEST_CASE("fitting an RBM raises its exact likelihood, and progress ends at one"
       progress.push_back(report.overall_progress);
       stages.push_back(report.stage);
     };
-    const Cdbn rbm =
-        fit_stack(device, Sequences::from_host(device, {rows}), kBinary, 0, 1, settings, observer);
+    const Cdbn rbm = fit_stack(device, Sequences::from_host(device, {rows}), kBinary, {{4, 0}},
+                               settings, observer);
     CHECK(progress.size() == 60);
     CHECK(progress.back() == 1.0);
     CHECK(stages.front() == "layer.0");
@@ -92,7 +92,7 @@ TEST_CASE("fitting an RBM raises its exact likelihood, and progress ends at one"
     CHECK(fitted < -0.69);  // no model of two patterns does better than log ½
     MachineSettings two = small_settings();
     progress.clear();
-    fit_stack(device, clips(device, 3), kGaussian, 1, 2, two, observer);
+    fit_stack(device, clips(device, 3), kGaussian, {{4, 1}, {4, 1}}, two, observer);
     CHECK(progress.size() == 5);
     CHECK(std::is_sorted(progress.begin(), progress.end()));
     CHECK(progress.back() == 1.0);
@@ -146,9 +146,9 @@ TEST_CASE("an MRBM is fitted to three modalities, one of them Gaussian, in any o
 TEST_CASE("fit: too short data and settings out of range are refused") {
   on_every_device([](Device& device) {
     const Sequences data = clips(device, 3);
-    CHECK_THROWS_AS(fit_stack(device, data, kGaussian, 30, 1, small_settings()), ShapeError);
+    CHECK_THROWS_AS(fit_stack(device, data, kGaussian, {{4, 30}}, small_settings()), ShapeError);
     MachineSettings settings = small_settings();
     settings.binary.rate = 0;
-    CHECK_THROWS_AS(fit_stack(device, data, kBinary, 0, 1, settings), ConfigError);
+    CHECK_THROWS_AS(fit_stack(device, data, kBinary, {{4, 0}}, settings), ConfigError);
   });
 }

@@ -45,13 +45,21 @@ struct MachineSettings {
   }
 };
 
+/// The size of one layer of a stack.
+struct LayerSize {
+  std::size_t hidden = 0;
+  std::size_t order = 0;  ///< frames of history; 0 makes it an RBM
+};
+
 /// A stack, fitted layer by layer by contrastive divergence (train_cdbn); one layer is an RBM or a
-/// CRBM, an order of 0 makes it a DBN. Stages are called layer.0, layer.1 …
+/// CRBM, orders of 0 make it a DBN. Stages are called layer.0, layer.1 …
 /// @param kind of the lowest layer's visible units; those above see the code, which is binary
+/// @param layers from below; they stand in place of the settings' order, hidden and layers
 /// @param observer hears of each epoch; may throw to stop
-/// @throws DivergenceError saying what to lower; ShapeError if no row has a history
-Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind, std::size_t order,
-               std::size_t layers, const MachineSettings& settings,
+/// @throws DivergenceError saying what to lower; ShapeError if no row has a history, or there is
+/// no layer
+Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind,
+               const std::vector<LayerSize>& layers, const MachineSettings& settings,
                const EpochObserver& observer = {});
 
 /// An MRBM, fitted by the rule that the settings say on rows that belong together.

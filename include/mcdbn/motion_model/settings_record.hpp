@@ -5,16 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "mcdbn/base/said_setting.hpp"
 #include "mcdbn/motion_model/training_config.hpp"
 
 namespace mcdbn {
-
-/// A value that somebody said for a setting.
-struct SaidSetting {
-  std::string name;      ///< "gaussian.rate", or the name that it had before
-  nlohmann::json value;  ///< a number, true or false
-  std::string who;       ///< stands before "must be" in errors: "run.toml:3: gaussian.rate"
-};
 
 /// Sets them in their order.
 /// @throws ConfigError for a setting that does not exist, a value of another kind or out of range
