@@ -153,7 +153,9 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
       ->add_option("--trace", options->trace,
                    "Writes one run's launches of each step, for chrome://tracing or Perfetto")
       ->type_name("FILE.json");
-  command->add_option("--seconds", options->seconds, "Time for each measurement")
+  command
+      ->add_option("--seconds", options->seconds,
+                   "Time for each measurement; 0: one try, to see that it runs")
       ->check(CLI::Range(0.0, kLongest_s))
       ->capture_default_str();
   add_device_options(*command, context);

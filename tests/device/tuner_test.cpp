@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "base/scratch_folder.hpp"
 #include "device/every_device.hpp"
 #include "device/median_time.hpp"
@@ -89,11 +92,23 @@ TEST_CASE("tuner: what was found is set on the device and stored for the next ti
 
 TEST_CASE("median time: that of a run, however long its samples are") {
   on_every_device([](Device& device) {
-    int runs = 0;
     const double time_s = median_time_s(
-        device, [&] { ++runs; }, 0.0);
+        device, [] {}, 1e-9);
     CHECK(time_s >= 0);
     CHECK(time_s < 1e-3);  // of a run, not of a sample of many
-    CHECK(runs >= 6);      // one to see how long it is, then five samples at least
+    const auto runs_in = [&](double seconds) {
+      int runs = 0;
+      median_time_s(
+          device,
+          [&] {
+            ++runs;
+            std::this_thread::sleep_for(std::chrono::milliseconds(12));
+          },
+          seconds);
+      return runs;
+    };
+    // One to see how long it is, longer than a sample here, then the samples.
+    CHECK(runs_in(1e-9) == 6);
+    CHECK(runs_in(0) == 2);
   });
 }
