@@ -139,11 +139,11 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
       ->add_option(
           "--only", options->layers,
           "Layers to measure (default: all but epoch): gaussian_crbm, binary_crbm, "
-          "persistent_gaussian_crbm, persistent_binary_crbm, mrbm, joint_likelihood, "
+          "persistent_gaussian_crbm, persistent_binary_crbm, mrbm, joint_likelihood, fine_tuning, "
           "mrbm_chain, gemm, regeneration, generation, epoch (a thousand to a million frames)")
       ->check(CLI::IsMember({"gaussian_crbm", "binary_crbm", "persistent_gaussian_crbm",
-                             "persistent_binary_crbm", "mrbm", "joint_likelihood", "mrbm_chain",
-                             "gemm", "regeneration", "generation", "epoch"}))
+                             "persistent_binary_crbm", "mrbm", "joint_likelihood", "fine_tuning",
+                             "mrbm_chain", "gemm", "regeneration", "generation", "epoch"}))
       ->type_name("LAYER");
   command->add_flag("--tune", options->tune,
                     "First find what suits the device best and keep it in the user's cache folder");

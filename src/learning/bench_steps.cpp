@@ -342,6 +342,7 @@ std::vector<BenchStepMaker> bench_steps() {
                                   {1024, 300, 1500}})
       makers.emplace_back(
           [=, m = m, n = n, k = k](Device& device) { return gemm_step(device, m, n, k, backend); });
+  for (BenchStepMaker& make : fine_tuning_steps()) makers.push_back(std::move(make));
   for (const double temperature : {0.0, 1.0})
     makers.emplace_back([=](Device& device) { return regeneration_step(device, temperature); });
   for (const std::size_t gibbs_steps : {1U, 30U})

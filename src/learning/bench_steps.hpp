@@ -24,9 +24,13 @@ using BenchStepMaker = std::function<BenchStep(Device&)>;
 std::vector<BenchStepMaker> crbm_minibatch_steps(std::size_t batch);
 
 /// The mini-batch step of every kind of layer at batch 100 and 1024, the MRBM's inference, the
-/// products of the model's sizes by both back ends, and the regeneration and free generation of ten
-/// samples of 1,000 frames.
+/// products of the model's sizes by both back ends, fine_tuning_steps, and the regeneration and
+/// free generation of ten samples of 1,000 frames.
 std::vector<BenchStepMaker> bench_steps();
+
+/// A mini-batch of fine-tuning with the default settings, of one direction and of both, and with
+/// squared errors alone (bench_fine_tuning.cpp).
+std::vector<BenchStepMaker> fine_tuning_steps();
 
 /// An epoch of a CRBM over a thousand to a million frames: whether the cost is that of the data.
 std::vector<BenchStepMaker> epoch_steps();

@@ -63,6 +63,32 @@ std::vector<KernelWork> joint_likelihood_work(std::size_t modalities, std::size_
           {"joint_likelihood_update", 2.0 * product, kFloat * (units + 7.0 * wide_v * wide_h)}};
 }
 
+double unrolled_flops(const Mcdbn& network, std::size_t absent, const SequenceWindows& windows,
+                      const FineTuningSettings& settings) {
+  const double rows = static_cast<double>(windows.count * (windows.frames - windows.first));
+  const double shared = static_cast<double>(network.mrbm.hidden());
+  const double t = static_cast<double>(settings.mean_field_steps);
+  double multiply_adds = 0;
+  for (std::size_t m = 0; m < network.modality_count(); ++m) {
+    const auto& layers = network.cdbns[m].layers;
+    for (const Crbm& layer : layers) {
+      const CrbmShape& shape = layer.shape();
+      const auto v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
+      const double order_a = static_cast<double>(shape.order_A()),
+                   order_b = static_cast<double>(shape.order_B());
+      // Values, gradients and, where something lies before it, errors.
+      if (m == absent)
+        multiply_adds += 3.0 * (v * h + order_a * v * v);
+      else
+        multiply_adds += (&layer == &layers.front() ? 2.0 : 3.0) * (1.0 + order_b) * v * h;
+    }
+    const double product = static_cast<double>(network.mrbm.visible(m)) * shared;
+    // T products down and T − 1 up, as the first starts from zeros; as many errors and gradients.
+    multiply_adds += product * (m == absent ? 3.0 * (2.0 * t - 1.0) : 3.0);
+  }
+  return 2.0 * multiply_adds * rows;
+}
+
 double flops_of(const std::vector<KernelWork>& work) {
   double flops = 0;
   for (const KernelWork& kernel : work) flops += kernel.flops;

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "device/kernel_rates.hpp"
-#include "mcdbn/machines/crbm.hpp"
+#include "mcdbn/learning/sequence_loss.hpp"
+#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/machines/mcdbn.hpp"
 
 namespace mcdbn {
 
@@ -23,6 +25,12 @@ std::vector<KernelWork> multi_prediction_work(std::size_t modalities, std::size_
 std::vector<KernelWork> joint_likelihood_work(std::size_t modalities, std::size_t visible,
                                               std::size_t hidden, std::size_t batch,
                                               std::size_t gibbs_steps);
+
+/// Arithmetic of one direction of fine-tuning and its back-propagation (unrolled_pass.hpp), of the
+/// frames from SequenceWindows::first on. What does not depend on the data, the mean field's start,
+/// does not count.
+double unrolled_flops(const Mcdbn& network, std::size_t absent, const SequenceWindows& windows,
+                      const FineTuningSettings& settings);
 
 /// Of all kernels together.
 double flops_of(const std::vector<KernelWork>& work);

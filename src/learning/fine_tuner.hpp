@@ -1,0 +1,81 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "learning/unrolled_pass.hpp"
+#include "learning/window_sampler.hpp"
+
+namespace mcdbn {
+
+/// Windows of a mini-batch as fine-tuning takes them: the history that the network needs, then
+/// frames that settle, then those that are judged.
+SequenceWindows sequence_windows(const Mcdbn& network, const FineTuningSettings& settings);
+
+/// All modalities' clips on the device, and the rows of a mini-batch's windows in them.
+class ClipWindows {
+ public:
+  /// @param rows of a mini-batch, SequenceWindows::rows
+  ClipWindows(Device& device, const SynchronizedClips& clips, std::size_t rows);
+  /// @param index WindowSampler::rows; the first modality's frames are those look_ahead later
+  std::vector<Rows> rows(const IndexBuffer& index) const;
+  std::size_t dimension(std::size_t modality) const {
+    return sequences_[modality].values.columns();
+  }
+  /// What was seen, like the modality's values; empty where everything was.
+  const Matrix& seen(std::size_t modality) const { return sequences_[modality].seen; }
+
+ private:
+  std::size_t rows_;
+  std::vector<Sequences> sequences_;
+};
+
+/// Fine-tuning's mini-batches: all directions, the optimizer, the moving average of the parameters.
+class FineTuner {
+ public:
+  /// The other directions take part in every so many mini-batches, with as many times their weight.
+  static constexpr std::size_t kReverseEvery = 4;
+
+  /// @param settings must live on  @param make_loss of the last modality
+  FineTuner(Device& device, const Mcdbn& start, const SynchronizedClips& clips,
+            const SequenceWindows& windows, const LearningSettings& settings,
+            const SequenceLossMaker& make_loss);
+
+  /// Mini-batch `step` of settings.fine_tuning.steps, counted from 0. Enqueues and returns.
+  void step(std::size_t step);
+  /// The weighted loss of the last modality since the last call.
+  double read_loss() { return directions_.front().loss->read_and_reset(); }
+  /// The last modality from the others.
+  UnrolledPass& forward() { return directions_.front().pass; }
+  /// The moving average of the parameters in their place, to be judged; again: back.
+  void exchange_averages() { network_.exchange_averages(); }
+  /// The network that the moving average makes.
+  Mcdbn result() { return network_.averaged(); }
+
+ private:
+  /// A modality predicted from all others, and its loss.
+  struct Direction {
+    std::size_t modality;
+    UnrolledPass pass;
+    Matrix target;
+    std::unique_ptr<Matrix> seen;  ///< like target, if some of it was not and the loss asks
+    std::unique_ptr<SequenceLoss> loss;
+
+    /// @param all_seen ClipWindows::seen of the modality
+    void learn(std::span<const Rows> rows, const Matrix& all_seen, float kept,
+               const RandomKey& key);
+  };
+  void add_direction(const SequenceWindows& windows, std::size_t modality,
+                     std::unique_ptr<SequenceLoss> loss, std::unique_ptr<Matrix> seen = nullptr);
+
+  const FineTuningSettings& settings_;
+  std::uint64_t seed_;
+  UnrolledNetwork network_;
+  ClipWindows windows_;
+  WindowSampler sampler_;
+  std::vector<Direction> directions_;  ///< of the last modality, then of those before it
+  IndexBuffer index_;
+};
+
+}  // namespace mcdbn
