@@ -39,7 +39,16 @@ kernel void gather_rows(global const float* frames, int ld, global const int* ro
          out);
 }
 
-// The same of two frame matrices in one launch, rows of out_ld_0 and out_ld_1 floats from the floats
+// The inverse: frames[rows[first + r] + shift, :] = in[r, :]
+kernel void scatter_rows(global const float* in, int in_ld, global float* frames, int ld,
+                         global const int* rows, int first, int shift, int columns) {
+  const int column = get_global_id(0) * VEC;
+  const int row = get_global_id(1);
+  if (column >= columns) return;
+  storeN(loadN(row * in_ld + column, in), (rows[first + row] + shift) * ld + column, frames);
+}
+
+// gather_rows of two frame matrices in one launch, rows of out_ld_0 and out_ld_1 floats from the floats
 // out_0 and out_1 of `out` on. global: (vectors of the wider, 2 · count)
 kernel void gather_two(global const float* frames_0, int ld_0, global const int* rows_0, int first_0,
                        int shift_0, global const float* frames_1, int ld_1,

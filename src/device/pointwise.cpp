@@ -41,6 +41,15 @@ void gather(const Rows& rows, const Rows& out) {
          to_int(rows.columns), out.matrix->buffer(), out.offset(), out.stride());
 }
 
+void scatter(const Matrix& in, const Rows& out) {
+  require(out.index != nullptr && same_shape(in, out),
+          "scatter: wants an index, and an input of its shape");
+  Device& device = in.device();
+  launch(device, units_kernel(device, "scatter_rows"), pointwise_size(in), in.buffer(),
+         Rows(in).stride(), out.matrix->buffer(), out.stride(), out.index->buffer(),
+         to_int(out.index_first), out.shift, to_int(out.columns));
+}
+
 void gather_two(const Rows& x, const Rows& y, const Matrix& buffer, std::size_t first,
                 std::size_t second) {
   const std::size_t x_stride = padded(x.columns), y_stride = padded(y.columns);

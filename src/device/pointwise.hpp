@@ -10,6 +10,9 @@ void apply_epilogue(const Rows& c, const GemmOptions& options);
 /// Copies indexed rows (history windows too) into consecutive ones. @param out [rows.count x
 /// rows.columns]
 void gather(const Rows& rows, const Rows& out);
+/// The inverse: rows of `in` to the rows of a matrix that an index names.
+void scatter(const Matrix& in, const Rows& out);
+
 /// The rows of two matrices into `buffer` [1 x floats] in one launch, each row padded: those of x
 /// from its float `first` on, those of y behind them from float `second` on. @throws ShapeError
 void gather_two(const Rows& x, const Rows& y, const Matrix& buffer, std::size_t first,

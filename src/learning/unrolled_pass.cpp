@@ -36,6 +36,15 @@ GemmOptions added() {
   return options;
 }
 
+/// Rows of the windows' frames from `first` on, among those of all frames.
+IndexBuffer coded_index(Device& device, const SequenceWindows& windows) {
+  std::vector<std::int32_t> rows;
+  for (std::size_t window = 0; window < windows.count; ++window)
+    for (std::size_t frame = windows.first; frame < windows.frames; ++frame)
+      rows.push_back(static_cast<std::int32_t>(window * windows.frames + frame));
+  return {device, rows};
+}
+
 /// What turns a layer's visible units' input into them, in the form of unrolled_network.hpp.
 Activation visible_activation(VisibleKind kind, bool is_lowest) {
   if (kind == VisibleKind::gaussian) return Activation::none;
@@ -69,6 +78,9 @@ UnrolledPass::UnrolledPass(UnrolledNetwork& network, std::size_t absent,
       windows_(windows),
       rows_(windows.rows()),
       steps_(network.mean_field_steps()),
+      coded_frames_(windows.frames - windows.first),
+      code_rows_(windows.count * coded_frames_),
+      coded_index_(coded_index(network.device(), windows)),
       down_layers_(network.layers(absent)) {
   std::size_t least = longest_order(down_layers_);
   for (std::size_t m = 0; m < network.modality_count(); ++m) {
@@ -81,32 +93,41 @@ UnrolledPass::UnrolledPass(UnrolledNetwork& network, std::size_t absent,
   Device& device = network.device();
   const std::size_t absent_code = down_layers_.back().crbm.shape().hidden,
                     shared = network.mrbm().hidden();
-  drive_ = Matrix(device, rows_, shared);
-  drive_error_ = Matrix(device, rows_, shared);
-  // Block 0 is the start of the mean field, zeros, which is −½ about zero.
-  values_ =
-      Matrix::from_host(device, MatrixF::Constant(static_cast<Eigen::Index>((steps_ + 1) * rows_),
-                                                  static_cast<Eigen::Index>(absent_code), -0.5F));
-  value_errors_ = Matrix(device, steps_ * rows_, absent_code);
-  hidden_ = Matrix(device, steps_ * rows_, shared);
-  hidden_errors_ = Matrix(device, steps_ * rows_, shared);
+  // The mean field starts from zeros, which are −½ about zero.
+  start_ = Matrix::from_host(device,
+                             MatrixF::Constant(1, static_cast<Eigen::Index>(absent_code), -0.5F));
+  start_drive_ = Matrix(device, 1, shared);
+  start_error_ = Matrix(device, 1, shared);
+  drive_ = Matrix(device, code_rows_, shared);
+  drive_error_ = Matrix(device, code_rows_, shared);
+  values_ = Matrix(device, steps_ * code_rows_, absent_code);
+  value_errors_ = Matrix(device, steps_ * code_rows_, absent_code);
+  hidden_ = Matrix(device, steps_ * code_rows_, shared);
+  hidden_errors_ = Matrix(device, steps_ * code_rows_, shared);
   for (const auto& layer : down_layers_) {
     states_.push_back(Matrix::filled_with_row(layer.crbm.visible_mean, rows_));
     state_errors_.emplace_back(device, rows_ + layer.crbm.shape().order,
                                layer.crbm.shape().visible);
+    down_errors_.emplace_back(device, code_rows_, layer.crbm.shape().visible);
   }
 }
 
 UnrolledPass::UpPass UnrolledPass::make_up_pass(std::size_t modality) {
   Device& device = network_.device();
   Layers& layers = network_.layers(modality);
-  UpPass up{modality, layers, Matrix(device, rows_, layers.front().crbm.shape().visible), {}, {}};
+  UpPass up{modality, layers, Matrix(device, rows_, layers.front().crbm.shape().visible),
+            {},       {},     {}};
+  const std::size_t code = layers.back().crbm.shape().hidden;
   for (const auto& layer : layers) {
-    up.units.emplace_back(device, rows_, layer.crbm.shape().hidden);
-    // Rows past the end stay zero: no error comes from behind a window.
-    up.errors.emplace_back(device, rows_ + layer.crbm.shape().order, layer.crbm.shape().hidden);
+    const bool is_last = &layer == &layers.back();
+    const std::size_t hidden = layer.crbm.shape().hidden;
+    up.units.emplace_back(device, is_last ? code_rows_ : rows_, hidden);
+    // Rows past the end stay zero, as do those before `first`: no error comes from behind a window.
+    up.errors.push_back(layers.size() > 1 ? Matrix(device, rows_ + layer.crbm.shape().order, hidden)
+                                          : Matrix());
   }
-  if (layers.back().crbm.shape().hidden != network_.mrbm().visible(modality))
+  up.code_error = Matrix(device, code_rows_, code);
+  if (code != network_.mrbm().visible(modality))
     throw ShapeError("unrolled pass: the MRBM does not fit the CDBN's code");
   return up;
 }
@@ -131,20 +152,22 @@ void UnrolledPass::up_pass(UpPass& up) {
   const Matrix* below = &up.input;
   for (std::size_t i = 0; i < up.layers.size(); ++i) {
     const Crbm& layer = up.layers[i].crbm;
+    const bool is_last = i + 1 == up.layers.size();
     const std::size_t order = layer.shape().order;
     ++drop_out_key_.phase;
-    const Rows units = from(up.units[i], order);
+    const Rows units = is_last ? Rows(up.units[i]) : from(up.units[i], order);
+    const Rows frames = is_last ? coded(*below) : from(*below, order);
     GemmOptions options;
     options.bias = &layer.b;
     const bool has_history = layer.shape().order_B() > 0;
     options.activation = has_history ? Activation::none : Activation::centered_sigmoid;
-    gemm(from(*below, order), layer.W, units, options);
+    gemm(frames, layer.W, units, options);
     if (has_history) {
       options = added();
       options.activation = Activation::centered_sigmoid;
-      gemm(layer.history_for_B(from(*below, order)), layer.B, units, options);
+      gemm(layer.history_for_B(frames), layer.B, units, options);
     }
-    drop_out(Rows(up.units[i], 0, rows_), windows_.frames);
+    drop_out(up.units[i], is_last ? coded_frames_ : windows_.frames);
     below = &up.units[i];
   }
 }
@@ -163,11 +186,26 @@ void UnrolledPass::mean_field() {
   drive_of(mrbm, present, units, drive_);
   ++drop_out_key_.phase;
   for (std::size_t t = 1; t <= steps_; ++t) {
-    units[q] = value(t - 1);
-    shared_units(mrbm, std::span(&q, 1), units, drive_, centered, hidden(t));
-    drop_out(hidden(t), windows_.frames);  // the same units in every step
-    absent_units(mrbm, q, hidden(t), centered, value(t));
+    const Rows hidden = step_of(hidden_, t);
+    if (t == 1) {
+      shared_from_start(hidden);
+    } else {
+      units[q] = step_of(values_, t - 1);
+      shared_units(mrbm, std::span(&q, 1), units, drive_, centered, hidden);
+    }
+    drop_out(hidden, coded_frames_);  // the same units in every step
+    absent_units(mrbm, q, hidden, centered, step_of(values_, t));
   }
+}
+
+/// The absent units start alike in every row, and so does what they give.
+void UnrolledPass::shared_from_start(const Rows& hidden) {
+  gemm(start_, network_.mrbm().W[absent_], start_drive_);
+  hidden_.copy_rows_from(drive_, 0, code_rows_, hidden.first);
+  GemmOptions options;
+  options.bias = &start_drive_;
+  options.activation = Activation::centered_sigmoid;
+  apply_epilogue(hidden, options);
 }
 
 void UnrolledPass::down_pass() {
@@ -180,7 +218,8 @@ void UnrolledPass::down_pass() {
     for (std::size_t frame = windows_.first; frame < windows_.frames; ++frame) {
       const Rows state = at(states_[i], frame);
       const Rows above =
-          is_top ? Rows::strided(values_, steps_ * rows_ + frame, windows_.count, windows_.frames)
+          is_top ? Rows::strided(values_, (steps_ - 1) * code_rows_ + frame - windows_.first,
+                                 windows_.count, coded_frames_)
                  : at(states_[i + 1], frame);
       GemmOptions options;
       options.bias = &layer.a;
@@ -219,63 +258,80 @@ void UnrolledPass::down_pass_backward() {
       else if (options.activation != Activation::none)
         apply_epilogue(error, options);
     }
-    const Rows error = Rows(errors, first, rows_ - first);
-    const bool is_top = i + 1 == down_layers_.size();
-    const Rows above =
-        is_top ? Rows(values_, steps_ * rows_ + first, rows_ - first) : from(states_[i + 1], first);
-    gemm_transposed_a(error, above, layer.gradient.W, 1.0F, 1.0F);
-    if (order > 0)
-      gemm_transposed_a(layer.crbm.history_for_A(from(states_[i], first)), error, layer.gradient.A,
-                        1.0F, 1.0F);
-    column_sum(error, 1.0F, 1.0F, layer.gradient.a);
-    if (is_top)
-      gemm(error, layer.crbm.W, Rows(value_errors_, (steps_ - 1) * rows_ + first, rows_ - first),
-           through_units(&above));
-    else
-      gemm(error, layer.crbm.W, Rows(state_errors_[i + 1], first, rows_ - first));
+    add_down_gradients(i);
   }
+}
+
+void UnrolledPass::add_down_gradients(std::size_t i) {
+  UnrolledNetwork::Layer& layer = down_layers_[i];
+  const CrbmShape& shape = layer.crbm.shape();
+  const bool is_top = i + 1 == down_layers_.size();
+  gather(coded(state_errors_[i]), down_errors_[i]);
+  const Rows error(down_errors_[i]);
+  if (is_top) {
+    const Rows code = step_of(values_, steps_);
+    gemm_transposed_a(error, code, layer.gradient.W, 1.0F, 1.0F);
+    gemm(error, layer.crbm.W, step_of(value_errors_, steps_), through_units(&code));
+  } else {
+    const std::size_t first = windows_.first;
+    const Rows all_errors(state_errors_[i], first, rows_ - first);
+    gemm_transposed_a(all_errors, from(states_[i + 1], first), layer.gradient.W, 1.0F, 1.0F);
+    gemm(all_errors, layer.crbm.W, Rows(state_errors_[i + 1], first, rows_ - first));
+  }
+  if (shape.order_A() > 0)
+    gemm_transposed_a(layer.crbm.history_for_A(coded(states_[i])), error, layer.gradient.A, 1.0F,
+                      1.0F);
+  column_sum(error, 1.0F, 1.0F, layer.gradient.a);
 }
 
 void UnrolledPass::mean_field_backward() {
   Mrbm& mrbm = network_.mrbm();
   const std::size_t q = absent_;
-  const auto value_error = [&](std::size_t t) {
-    return Rows(value_errors_, (t - 1) * rows_, rows_);
-  };
-  const auto hidden_error = [&](std::size_t t) {
-    return Rows(hidden_errors_, (t - 1) * rows_, rows_);
-  };
   for (std::size_t t = steps_; t >= 1; --t) {
-    const Rows h = hidden(t), v = value(t - 1);
-    gemm(value_error(t), mrbm.W[q], hidden_error(t), through_units(&h, kept_share_));
-    if (t > 1) gemm(hidden_error(t), mrbm.W_transposed[q], value_error(t - 1), through_units(&v));
+    const Rows h = step_of(hidden_, t), hidden_error = step_of(hidden_errors_, t);
+    gemm(step_of(value_errors_, t), mrbm.W[q], hidden_error, through_units(&h, kept_share_));
+    if (t == 1) break;
+    const Rows v = step_of(values_, t - 1);
+    gemm(hidden_error, mrbm.W_transposed[q], step_of(value_errors_, t - 1), through_units(&v));
   }
   block_sum(hidden_errors_, drive_error_);
-  MrbmMatrices& gradient = network_.mrbm_gradient();
-  gemm_transposed_a(value_errors_, hidden_, gradient.W[q], 1.0F, 1.0F);
-  gemm_transposed_a(Rows(values_, 0, steps_ * rows_), hidden_errors_, gradient.W[q], 1.0F, 1.0F);
-  column_sum(value_errors_, 1.0F, 1.0F, gradient.a[q]);
-  column_sum(drive_error_, 1.0F, 1.0F, gradient.b);
+  add_mean_field_gradients();
   for (UpPass& up : up_) {
     const Rows code(up.units.back());
-    gemm_transposed_a(code, drive_error_, gradient.W[up.modality], 1.0F, 1.0F);
-    gemm(drive_error_, mrbm.W_transposed[up.modality], Rows(up.errors.back(), 0, rows_),
+    gemm(drive_error_, mrbm.W_transposed[up.modality], up.code_error,
          through_units(&code, kept_share_));
   }
+}
+
+void UnrolledPass::add_mean_field_gradients() {
+  MrbmMatrices& gradient = network_.mrbm_gradient();
+  const std::size_t q = absent_, later = (steps_ - 1) * code_rows_;
+  gemm_transposed_a(value_errors_, hidden_, gradient.W[q], 1.0F, 1.0F);
+  if (later > 0)
+    gemm_transposed_a(Rows(values_, 0, later), Rows(hidden_errors_, code_rows_, later),
+                      gradient.W[q], 1.0F, 1.0F);
+  column_sum(step_of(hidden_errors_, 1), 1.0F, 0.0F, start_error_);
+  gemm_transposed_a(start_, start_error_, gradient.W[q], 1.0F, 1.0F);
+  column_sum(value_errors_, 1.0F, 1.0F, gradient.a[q]);
+  column_sum(drive_error_, 1.0F, 1.0F, gradient.b);
+  for (const UpPass& up : up_)
+    gemm_transposed_a(up.units.back(), drive_error_, gradient.W[up.modality], 1.0F, 1.0F);
 }
 
 void UnrolledPass::up_pass_backward(UpPass& up) {
   for (std::size_t i = up.layers.size(); i-- > 0;) {
     UnrolledNetwork::Layer& layer = up.layers[i];
     const std::size_t order = layer.crbm.shape().order, order_B = layer.crbm.shape().order_B();
+    const bool is_last = i + 1 == up.layers.size();
     const Matrix& below = i > 0 ? up.units[i - 1] : up.input;
-    const Rows error(up.errors[i], order, rows_ - order);
-    gemm_transposed_a(from(below, order), error, layer.gradient.W, 1.0F, 1.0F);
+    const Rows error = is_last ? Rows(up.code_error) : Rows(up.errors[i], order, rows_ - order);
+    const Rows frames = is_last ? coded(below) : from(below, order);
+    gemm_transposed_a(frames, error, layer.gradient.W, 1.0F, 1.0F);
     if (order_B > 0)
-      gemm_transposed_a(layer.crbm.history_for_B(from(below, order)), error, layer.gradient.B, 1.0F,
-                        1.0F);
+      gemm_transposed_a(layer.crbm.history_for_B(frames), error, layer.gradient.B, 1.0F, 1.0F);
     column_sum(error, 1.0F, 1.0F, layer.gradient.b);
     if (i == 0) break;
+    if (is_last) scatter(up.code_error, coded(up.errors[i]));
     const Rows units(below), error_below(up.errors[i - 1], 0, rows_);
     GemmOptions options = through_units(&units, kept_share_);
     if (order_B == 0) {

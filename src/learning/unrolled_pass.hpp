@@ -35,8 +35,14 @@ class UnrolledPass {
   Rows at(const Matrix& matrix, std::size_t frame) const {
     return Rows::strided(matrix, frame, windows_.count, windows_.frames);
   }
-  Rows value(std::size_t step) const { return {values_, step * rows_, rows_}; }
-  Rows hidden(std::size_t step) const { return {hidden_, (step - 1) * rows_, rows_}; }
+  /// Those of `matrix`, of all frames of the windows, that have a code.
+  Rows coded(const Matrix& matrix) const {
+    return Rows::indexed(matrix, coded_index_, 0, code_rows_);
+  }
+  /// The mean field's units after step 1, 2 …
+  Rows step_of(const Matrix& steps, std::size_t step) const {
+    return {steps, (step - 1) * code_rows_, code_rows_};
+  }
   /// Rows of all frames that have a history of `skipped` frames, in the first window at least.
   Rows from(const Matrix& matrix, std::size_t skipped) const {
     return {matrix, skipped, rows_ - skipped};
@@ -48,28 +54,41 @@ class UnrolledPass {
     std::size_t modality;
     Layers& layers;
     Matrix input;
-    std::vector<Matrix> units, errors;  ///< hidden units of the layers
+    /// Hidden units of the layers, of all frames; of the last layer, the code, of those from
+    /// `first` on.
+    std::vector<Matrix> units;
+    std::vector<Matrix> errors;  ///< of all frames; of the last layer only if it is not the first
+    Matrix code_error;
   };
   UpPass make_up_pass(std::size_t modality);
   void up_pass(UpPass& up);
   void mean_field();
+  void shared_from_start(const Rows& hidden);
   void down_pass();
   void down_pass_backward();
+  void add_down_gradients(std::size_t layer);
   void mean_field_backward();
+  void add_mean_field_gradients();
   void up_pass_backward(UpPass& up);
 
   UnrolledNetwork& network_;
   std::size_t absent_;
   SequenceWindows windows_;
   std::size_t rows_, steps_;
+  std::size_t coded_frames_, code_rows_;  ///< from `first` on: of a window, of all
+  IndexBuffer coded_index_;               ///< their rows among those of all frames
   std::vector<UpPass> up_;
   Layers& down_layers_;
   float kept_share_ = 1.0F;
   RandomKey drop_out_key_;
-  Matrix drive_, drive_error_;                 ///< [rows x MRBM hidden]
-  Matrix values_, value_errors_;               ///< steps + 1 and steps blocks of rows
-  Matrix hidden_, hidden_errors_;              ///< steps blocks of rows
-  std::vector<Matrix> states_, state_errors_;  ///< visible units of the absent layers
+  Matrix start_, start_drive_;     ///< the absent units' start, what it gives the shared ones
+  Matrix start_error_;             ///< [1 x MRBM hidden] summed up over the rows
+  Matrix drive_, drive_error_;     ///< [code rows x MRBM hidden]
+  Matrix values_, value_errors_;   ///< of each step, [code rows x code]
+  Matrix hidden_, hidden_errors_;  ///< the same, [code rows x MRBM hidden]
+  std::vector<Matrix> states_,
+      state_errors_;                 ///< visible units of the absent layers, of all frames
+  std::vector<Matrix> down_errors_;  ///< the same errors, [code rows x visible]
 };
 
 }  // namespace mcdbn
