@@ -126,22 +126,32 @@ kernel void dropout(global float* c, int c_offset, int ldc, int columns, int ali
 }
 #endif
 
-// out[c, r] = in[r, c]; global: (columns, rows)
-kernel void transpose(global const float* in, int ld, global float* out, int out_ld) {
+// VEC entries of a column from `row` on, 0 from `rows` on.
+static inline floatN column_of(global const float* in, int ld, int column, int row, int rows) {
+  float lanes[VEC];
+#pragma unroll
+  for (int lane = 0; lane < VEC; ++lane)
+    lanes[lane] = row + lane < rows ? in[(row + lane) * ld + column] : 0.0f;
+  return loadN(0, lanes);
+}
+
+// out[c, r] = in[r, c]; global: (columns, ceil(rows / VEC))
+kernel void transpose(global const float* in, int ld, int rows, global float* out, int out_ld) {
   const int column = get_global_id(0);
-  const int row = get_global_id(1);
-  out[column * out_ld + row] = in[row * ld + column];
+  const int row = get_global_id(1) * VEC;
+  storeN(column_of(in, ld, column, row, rows), column * out_ld + row, out);
 }
 
 // Weights of a history with the lags turned round: block j of `out` is block lags − 1 − j of `in`,
 // transposed, so that the frames after one stand in the order of its history. Blocks of ld_rows rows,
-// padding included; global: (columns, lags · ld_rows)
+// a multiple of VEC, padding included; global: (columns, lags · ld_rows / VEC)
 kernel void transpose_lags(global const float* in, int ld_rows, int ld, global float* out,
                            int out_ld_rows, int out_ld, int lags) {
-  const int column = get_global_id(0), row = get_global_id(1) % ld_rows,
-            lag = get_global_id(1) / ld_rows;
-  out[((lags - 1 - lag) * out_ld_rows + column) * out_ld + row] =
-      in[(lag * ld_rows + row) * ld + column];
+  const int column = get_global_id(0);
+  const int vectors = ld_rows / VEC;
+  const int row = get_global_id(1) % vectors * VEC, lag = get_global_id(1) / vectors;
+  storeN(column_of(in + lag * ld_rows * ld, ld, column, row, ld_rows),
+         ((lags - 1 - lag) * out_ld_rows + column) * out_ld + row, out);
 }
 
 // out[0, c] = beta · out[0, c] + scale · sum over rows of in[r, c], rows in ascending order;

@@ -113,8 +113,9 @@ void dropout(const Rows& c, float kept_share, const RandomKey& key, std::size_t 
 void transpose(const Matrix& in, Matrix& out) {
   require(in.rows() == out.columns() && in.columns() == out.rows(), "transpose: shapes differ");
   Device& device = out.device();
-  launch(device, units_kernel(device, "transpose"), {{in.columns(), in.rows()}}, in.buffer(),
-         to_int(in.stride()), out.buffer(), to_int(out.stride()));
+  const auto vec = static_cast<std::size_t>(vector_width(device));
+  launch(device, units_kernel(device, "transpose"), {{in.columns(), ceil_divide(in.rows(), vec)}},
+         in.buffer(), to_int(in.stride()), to_int(in.rows()), out.buffer(), to_int(out.stride()));
 }
 
 void transpose_lags(const Matrix& in, std::size_t lags, Matrix& out) {
@@ -122,9 +123,10 @@ void transpose_lags(const Matrix& in, std::size_t lags, Matrix& out) {
               padded(out.columns()) == in.rows() / lags,
           "transpose_lags: shapes differ");
   Device& device = out.device();
-  launch(device, units_kernel(device, "transpose_lags"), {{in.columns(), in.rows()}}, in.buffer(),
-         to_int(in.rows() / lags), to_int(in.stride()), out.buffer(), to_int(out.rows() / lags),
-         to_int(out.stride()), to_int(lags));
+  const auto vec = static_cast<std::size_t>(vector_width(device));
+  launch(device, units_kernel(device, "transpose_lags"), {{in.columns(), in.rows() / vec}},
+         in.buffer(), to_int(in.rows() / lags), to_int(in.stride()), out.buffer(),
+         to_int(out.rows() / lags), to_int(out.stride()), to_int(lags));
 }
 
 void column_sum(const Rows& in, float scale, float beta, Matrix& out) {

@@ -73,11 +73,13 @@ MrbmParameters uncentered(MrbmParameters mrbm) {
 }
 
 UnrolledNetwork::Layer::Layer(const Parameters& parameters, const Parameters& gradients,
-                              const CrbmShape& shape, const MatrixF& visible_mean)
+                              const CrbmShape& shape, const MatrixF& visible_mean, Below below)
     : crbm(parameters, shape, visible_mean),
       gradient(gradients),
-      A_following(parameters.device(), shape.order_A() * crbm.A.stride(), shape.visible),
-      B_following(parameters.device(), shape.order_B() * crbm.B.stride(), shape.visible) {}
+      A_following(parameters.device(), shape.order_A() * crbm.A.stride(), shape.visible) {
+  if (below == Below::code)
+    B_following = Matrix(parameters.device(), shape.order_B() * crbm.B.stride(), shape.visible);
+}
 
 UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t mean_field_steps)
     : look_ahead_(start.look_ahead),
@@ -97,7 +99,7 @@ UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t
       const CrbmParameters own = centered(layer.to_host(), below_of(layers_[m].size()));
       own.write(parameters_.part(prefix));
       layers_[m].emplace_back(parameters_.part(prefix), gradients.part(prefix), own.shape,
-                              own.visible_mean);
+                              own.visible_mean, below_of(layers_[m].size()));
     }
   centered(start.mrbm.to_host()).write(mrbm_.parameters());
   averages_.copy_from(parameters_.all());
@@ -118,7 +120,8 @@ void UnrolledNetwork::refresh_copies() {
       layer.crbm.refresh_transposed();
       const CrbmShape& shape = layer.crbm.shape();
       if (shape.order_A() > 0) transpose_lags(layer.crbm.A, shape.order_A(), layer.A_following);
-      if (shape.order_B() > 0) transpose_lags(layer.crbm.B, shape.order_B(), layer.B_following);
+      if (!layer.B_following.empty())
+        transpose_lags(layer.crbm.B, shape.order_B(), layer.B_following);
     }
   mrbm_.refresh_transposed();
 }

@@ -29,12 +29,13 @@ class UnrolledNetwork {
 
   struct Layer {
     Layer(const Parameters& parameters, const Parameters& gradients, const CrbmShape& shape,
-          const MatrixF& visible_mean);
+          const MatrixF& visible_mean, Below below);
     Layer(const Layer&) = delete;
     Layer& operator=(const Layer&) = delete;
     Crbm crbm;  ///< centered
     CrbmMatrices gradient;
-    Matrix A_following, B_following;  ///< transpose_lags of A and B
+    Matrix A_following;  ///< transpose_lags of A
+    Matrix B_following;  ///< of B, where a layer lies below
   };
   std::deque<Layer>& layers(std::size_t modality) { return layers_[modality]; }
   std::size_t modality_count() const { return layers_.size(); }
