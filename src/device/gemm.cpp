@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
@@ -43,6 +44,31 @@ void require_operands(const Rows& a, const Rows& b, const Rows& c, const GemmOpt
           "gemm: an activation's gradient needs its values, and the other way round");
 }
 
+/// What a work-item makes that has its columns of B in local memory (PACKED in gemm.cl).
+struct PackedGroup {
+  std::size_t rows, columns;
+};
+
+/// Nothing where a work-item a tile does better: on a GPU, for few rows, where local memory is
+/// short.
+std::optional<PackedGroup> packed_group(const Device& device, const Rows& c, std::size_t k,
+                                        std::size_t tile_rows, std::size_t width) {
+  // Columns that leave room in a core's second cache; work for every unit, several times over.
+  constexpr std::size_t kPackedBytes = 384 << 10, kLeastTiles = 16, kGroupsOfUnit = 8;
+  const std::size_t row_tiles = ceil_divide(c.count, tile_rows);
+  const std::size_t tile_bytes = k * width * sizeof(float);
+  if (device.tuning().group != 1 || row_tiles < kLeastTiles || k == 0 ||
+      tile_bytes > device.info().local_memory_bytes)
+    return std::nullopt;
+  const std::size_t units = std::max(1U, device.info().compute_units);
+  const std::size_t bytes = std::min<std::size_t>(kPackedBytes, device.info().local_memory_bytes);
+  const std::size_t most = std::max<std::size_t>(1, bytes / tile_bytes);
+  const std::size_t panels = ceil_divide(ceil_divide(c.columns, width), most);
+  const std::size_t columns = ceil_divide(ceil_divide(c.columns, width), panels) * width;
+  const std::size_t groups = ceil_divide(units * kGroupsOfUnit, panels);
+  return PackedGroup{std::max(kLeastTiles, ceil_divide(row_tiles, groups)) * tile_rows, columns};
+}
+
 void gemm_own(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& options) {
   Device& device = c.matrix->device();
   const int vec = vector_width(device);
@@ -53,19 +79,31 @@ void gemm_own(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& op
   const int columns = device.tuning().product_columns;
   defines["COLUMNS"] = columns;
   defines["A_ROWS"] = a.index ? 1 : 0;
+  const auto group = packed_group(device, c, b.count, static_cast<std::size_t>(tile_rows),
+                                  static_cast<std::size_t>(columns * vec));
+  defines["PACKED"] = group ? 1 : 0;
   cl::Kernel& kernel = device.programs().kernel("gemm.cl", "gemm", defines);
   // Arguments that this variant does not read still need a buffer: C's own.
   const Matrix& bias = options.bias ? *options.bias : *c.matrix;
   const Rows& factor = options.factor ? *options.factor : c;
   const Rows& sample = options.sample ? *options.sample : c;
-  launch(device, kernel, tiles_of(c, columns * vec, tile_rows), a.matrix->buffer(), a.offset(),
-         a.stride(), a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first),
-         a.shift, b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(),
-         c.stride(), to_int(c.count), to_int(c.columns), to_int(b.count), options.alpha,
-         options.beta, bias.buffer(), to_int(options.bias_first * bias.stride()),
-         to_int(bias.stride()), factor.matrix->buffer(), factor.offset(), factor.stride(),
-         sample.matrix->buffer(), sample.offset(), sample.stride(), options.temperature,
-         options.kept_share, random_argument(options.random));
+  const auto launch_with = [&](const LaunchSize& size, const auto&... more) {
+    launch(device, kernel, size, a.matrix->buffer(), a.offset(), a.stride(),
+           a.index ? a.index->buffer() : c.matrix->buffer(), to_int(a.index_first), a.shift,
+           b.matrix->buffer(), b.offset(), b.stride(), c.matrix->buffer(), c.offset(), c.stride(),
+           to_int(c.count), to_int(c.columns), to_int(b.count), options.alpha, options.beta,
+           bias.buffer(), to_int(options.bias_first * bias.stride()), to_int(bias.stride()),
+           factor.matrix->buffer(), factor.offset(), factor.stride(), sample.matrix->buffer(),
+           sample.offset(), sample.stride(), options.temperature, options.kept_share,
+           random_argument(options.random), more...);
+  };
+  if (!group) {
+    launch_with(tiles_of(c, columns * vec, tile_rows));
+    return;
+  }
+  launch_with({{ceil_divide(c.count, group->rows), ceil_divide(c.columns, group->columns)}, {1, 1}},
+              to_int(group->rows), to_int(group->columns),
+              cl::Local(b.count * group->columns * sizeof(float)));
 }
 
 /// Row-major product by CLBlast, which reads no index: indexed rows are gathered first.

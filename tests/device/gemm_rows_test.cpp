@@ -172,6 +172,20 @@ TEST_CASE("small: results go to rows a step apart and leave those between alone"
   });
 }
 
+TEST_CASE("small: scatter puts rows where an index says and leaves the others alone") {
+  on_every_device([](Device& device) {
+    const MatrixF rows = random_matrix(3, 17, 9), before = random_matrix(7, 17, 10);
+    const Matrix out = Matrix::from_host(device, before);
+    const IndexBuffer index(device, {9, 4, 0, 2});
+    scatter(Matrix::from_host(device, rows), Rows::indexed(out, index, 1, 3, 1));
+    MatrixF want = before;
+    want.row(5) = rows.row(0);
+    want.row(1) = rows.row(1);
+    want.row(3) = rows.row(2);
+    CHECK(out.to_host() == want);
+  });
+}
+
 TEST_CASE("small: rows past the end of a matrix or an index are refused") {
   on_every_device([](Device& device) {
     const Matrix frames(device, 10, 3);
