@@ -7,6 +7,7 @@
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 GAUSSIAN=0,1 GROUP=1,64 SAMPLE=
+//   VEC=1,16 GAUSSIAN=0 CENTERED=0,1 GROUP=1,64
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8
 //   VISIBLE=1,97 HIDDEN=1,97 ORDER_A=1,5 ORDER_B=0,5 GAUSSIAN=0,1
 
@@ -14,22 +15,32 @@
 #define SAMPLE 1
 #include "frame_ring.clh"
 
-// `state` holds a + (layer above) · Wᵀ (the drive) and becomes the visible means.
+#ifndef CENTERED
+#define CENTERED 0
+#endif
+
+// `drive` is a + (layer above) · Wᵀ, sequence i's frame t in row i · drive_frames + t − drive_first; it may
+// be `state` itself, which becomes the visible means. CENTERED=1: binary units are about zero.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_means(
-    global float* state, int sequences, int frames, int first, int last,
-    global const float* weights_a) {
+    global float* state, global const float* drive, int drive_frames, int drive_first,
+    int sequences, int frames, int first, int last, global const float* weights_a) {
   local float ring[ORDER * ROWS * V_LD];
   const int row0 = get_group_id(0) * ROWS;
-  int start[ROWS];
-  for (int r = 0; r < ROWS; ++r) start[r] = min(row0 + r, sequences - 1) * frames;
+  int start[ROWS], drive_start[ROWS];
+  for (int r = 0; r < ROWS; ++r) {
+    start[r] = min(row0 + r, sequences - 1) * frames;
+    drive_start[r] = min(row0 + r, sequences - 1) * drive_frames - drive_first;
+  }
   for (int frame = first - ORDER; frame < first; ++frame)
     remember_frame(ring, state, start, frame);
   floatN sum[ROWS][COLUMNS];
   for (int frame = first; frame < last; ++frame) {
     FOR_TILES(V_LD, {
-      load_frame(sum, count, state, start, frame, column);
+      load_frame(sum, count, drive, drive_start, frame, column);
       add_history(sum, count, ring, frame, ORDER_A, weights_a, V_LD, column);
-#if !GAUSSIAN
+#if CENTERED
+      apply_centered_sigmoid(sum, count, column, VISIBLE);
+#elif !GAUSSIAN
       apply_sigmoid(sum, count, column, VISIBLE);
 #endif
       store_frame(sum, count, state, start, sequences - row0, frame, column);

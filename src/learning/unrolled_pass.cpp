@@ -72,7 +72,7 @@ GemmOptions through_visible(VisibleKind kind, bool is_lowest, const Rows* units,
 }  // namespace
 
 UnrolledPass::UnrolledPass(UnrolledNetwork& network, std::size_t absent,
-                           const SequenceWindows& windows)
+                           const SequenceWindows& windows, bool fused)
     : network_(network),
       absent_(absent),
       windows_(windows),
@@ -109,6 +109,10 @@ UnrolledPass::UnrolledPass(UnrolledNetwork& network, std::size_t absent,
     state_errors_.emplace_back(device, rows_ + layer.crbm.shape().order,
                                layer.crbm.shape().visible);
     down_errors_.emplace_back(device, code_rows_, layer.crbm.shape().visible);
+    const Below below = &layer == &down_layers_.front() ? Below::data : Below::code;
+    fused_.push_back(fused ? FusedDownPass::of(layer, below, windows) : std::nullopt);
+    down_drives_.push_back(fused_.back() ? Matrix(device, code_rows_, layer.crbm.shape().visible)
+                                         : Matrix());
   }
 }
 
@@ -210,28 +214,43 @@ void UnrolledPass::shared_from_start(const Rows& hidden) {
 
 void UnrolledPass::down_pass() {
   for (std::size_t i = down_layers_.size(); i-- > 0;) {
+    ++drop_out_key_.phase;
+    // Drop-out comes between the frames of what is not the lowest layer.
+    if (!fused_[i] || (i > 0 && kept_share_ < 1.0F)) {
+      down_pass_by_frames(i);
+      continue;
+    }
     const Crbm& layer = down_layers_[i].crbm;
     const bool is_top = i + 1 == down_layers_.size();
-    const Activation activation = visible_activation(layer.shape().kind, i == 0);
-    const std::size_t order = layer.shape().order_A();
-    ++drop_out_key_.phase;
-    for (std::size_t frame = windows_.first; frame < windows_.frames; ++frame) {
-      const Rows state = at(states_[i], frame);
-      const Rows above =
-          is_top ? Rows::strided(values_, (steps_ - 1) * code_rows_ + frame - windows_.first,
-                                 windows_.count, coded_frames_)
-                 : at(states_[i + 1], frame);
-      GemmOptions options;
-      options.bias = &layer.a;
-      if (order == 0) options.activation = activation;
-      gemm(above, layer.W_transposed, state, options);
-      if (order > 0) {
-        options = added();
-        options.activation = activation;
-        gemm(layer.history_for_A(state), layer.A, state, options);
-      }
-      if (i > 0) drop_out(state, 1);  // the same units in every frame
+    GemmOptions options;
+    options.bias = &layer.a;
+    gemm(is_top ? step_of(values_, steps_) : coded(states_[i + 1]), layer.W_transposed,
+         down_drives_[i], options);
+    fused_[i]->forward(down_drives_[i], states_[i]);
+  }
+}
+
+void UnrolledPass::down_pass_by_frames(std::size_t i) {
+  const Crbm& layer = down_layers_[i].crbm;
+  const bool is_top = i + 1 == down_layers_.size();
+  const Activation activation = visible_activation(layer.shape().kind, i == 0);
+  const std::size_t order = layer.shape().order_A();
+  for (std::size_t frame = windows_.first; frame < windows_.frames; ++frame) {
+    const Rows state = at(states_[i], frame);
+    const Rows above =
+        is_top ? Rows::strided(values_, (steps_ - 1) * code_rows_ + frame - windows_.first,
+                               windows_.count, coded_frames_)
+               : at(states_[i + 1], frame);
+    GemmOptions options;
+    options.bias = &layer.a;
+    if (order == 0) options.activation = activation;
+    gemm(above, layer.W_transposed, state, options);
+    if (order > 0) {
+      options = added();
+      options.activation = activation;
+      gemm(layer.history_for_A(state), layer.A, state, options);
     }
+    if (i > 0) drop_out(state, 1);  // the same units in every frame
   }
 }
 
@@ -242,23 +261,28 @@ void UnrolledPass::backward() {
 }
 
 void UnrolledPass::down_pass_backward() {
-  const std::size_t first = windows_.first;
   for (std::size_t i = 0; i < down_layers_.size(); ++i) {
-    UnrolledNetwork::Layer& layer = down_layers_[i];
-    const std::size_t order = layer.crbm.shape().order_A();
-    Matrix& errors = state_errors_[i];
-    // Through time: what a frame did to those that had it as history.
-    for (std::size_t frame = windows_.frames; frame-- > first;) {
-      const Rows state = at(states_[i], frame), error = at(errors, frame);
-      GemmOptions options = through_visible(layer.crbm.shape().kind, i == 0, &state, kept_share_);
-      options.beta = 1.0F;
-      if (order > 0)
-        gemm(following(errors, frame, windows_.count, windows_.frames, order), layer.A_following,
-             error, options);
-      else if (options.activation != Activation::none)
-        apply_epilogue(error, options);
-    }
+    if (fused_[i])
+      fused_[i]->backward(states_[i], state_errors_[i], kept_share_);
+    else
+      down_backward_by_frames(i);
     add_down_gradients(i);
+  }
+}
+
+/// Through time: what a frame did to those that had it as history.
+void UnrolledPass::down_backward_by_frames(std::size_t i) {
+  UnrolledNetwork::Layer& layer = down_layers_[i];
+  const std::size_t order = layer.crbm.shape().order_A();
+  for (std::size_t frame = windows_.frames; frame-- > windows_.first;) {
+    const Rows state = at(states_[i], frame), error = at(state_errors_[i], frame);
+    GemmOptions options = through_visible(layer.crbm.shape().kind, i == 0, &state, kept_share_);
+    options.beta = 1.0F;
+    if (order > 0)
+      gemm(following(state_errors_[i], frame, windows_.count, windows_.frames, order),
+           layer.A_following, error, options);
+    else if (options.activation != Activation::none)
+      apply_epilogue(error, options);
   }
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "learning/unrolled_network.hpp"
+#include "learning/fused_down_pass.hpp"
 #include "mcdbn/learning/sequence_loss.hpp"
 
 namespace mcdbn {
@@ -15,7 +15,9 @@ class UnrolledPass {
  public:
   /// @throws ShapeError if `first` leaves less history than the layers need
   /// @param absent the one modality that is predicted from all others
-  UnrolledPass(UnrolledNetwork& network, std::size_t absent, const SequenceWindows& windows);
+  /// @param fused one launch a layer of the down-pass where it can be; else one or two a frame
+  UnrolledPass(UnrolledNetwork& network, std::size_t absent, const SequenceWindows& windows,
+               bool fused = true);
 
   /// @param modalities standardized rows of the windows, [windows.rows() x visible], indexed, of
   ///        each modality; those of the absent one are not read
@@ -65,7 +67,9 @@ class UnrolledPass {
   void mean_field();
   void shared_from_start(const Rows& hidden);
   void down_pass();
+  void down_pass_by_frames(std::size_t layer);
   void down_pass_backward();
+  void down_backward_by_frames(std::size_t layer);
   void add_down_gradients(std::size_t layer);
   void mean_field_backward();
   void add_mean_field_gradients();
@@ -89,6 +93,8 @@ class UnrolledPass {
   std::vector<Matrix> states_,
       state_errors_;                 ///< visible units of the absent layers, of all frames
   std::vector<Matrix> down_errors_;  ///< the same errors, [code rows x visible]
+  std::vector<std::optional<FusedDownPass>> fused_;  ///< of the absent layers
+  std::vector<Matrix> down_drives_;                  ///< of those that are fused
 };
 
 }  // namespace mcdbn

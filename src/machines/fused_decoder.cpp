@@ -64,8 +64,8 @@ void CdbnDecoder::fused_means(std::size_t layer, std::size_t first, std::size_t 
   drive_layer(layer, first, last);
   const Crbm& crbm = cdbn_.layers[layer];
   launch(crbm.device(), decoder_kernel(crbm, "decode_means", 0, tile), size_for(sequences_, tile),
-         states_[layer].buffer(), to_int(sequences_), to_int(frames_), to_int(first), to_int(last),
-         crbm.A.buffer());
+         states_[layer].buffer(), states_[layer].buffer(), to_int(frames_), 0, to_int(sequences_),
+         to_int(frames_), to_int(first), to_int(last), crbm.A.buffer());
 }
 
 void CdbnDecoder::fused_samples(std::size_t first, std::size_t last,

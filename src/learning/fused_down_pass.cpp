@@ -1,0 +1,56 @@
+#include "learning/fused_down_pass.hpp"
+
+#include <fmt/format.h>
+
+#include "device/kernel_arguments.hpp"
+#include "machines/crbm_defines.hpp"
+
+namespace mcdbn {
+
+std::optional<FusedDownPass> FusedDownPass::of(const UnrolledNetwork::Layer& layer, Below below,
+                                               const SequenceWindows& windows) {
+  const CrbmShape& shape = layer.crbm.shape();
+  if (shape.order_A() == 0) return std::nullopt;
+  const auto tile = choose_row_tile(
+      layer.crbm.device(), shape.order_A() * padded(shape.visible), windows.count,
+      fmt::format("down-pass of {} units, order {}", shape.visible, shape.order_A()));
+  if (!tile) return std::nullopt;
+  return FusedDownPass(layer, below, windows, *tile);
+}
+
+FusedDownPass::FusedDownPass(const UnrolledNetwork::Layer& layer, Below below,
+                             const SequenceWindows& windows, const RowTile& tile)
+    : layer_(&layer), below_(below), windows_(windows), tile_(tile) {}
+
+LaunchSize FusedDownPass::size() const {
+  const auto group = static_cast<std::size_t>(tile_.group);
+  return {{ceil_divide(windows_.count, static_cast<std::size_t>(tile_.rows)) * group, 1},
+          {group, 1}};
+}
+
+void FusedDownPass::forward(const Matrix& drive, const Matrix& states) const {
+  const Crbm& crbm = layer_->crbm;
+  Defines defines = crbm_row_defines(crbm.shape(), tile_);
+  defines["ORDER_B"] = 0;
+  defines["CENTERED"] = below_ == Below::code ? 1 : 0;
+  launch(crbm.device(), crbm.device().programs().kernel("cdbn_decoder.cl", "decode_means", defines),
+         size(), states.buffer(), drive.buffer(), to_int(windows_.frames - windows_.first),
+         to_int(windows_.first), to_int(windows_.count), to_int(windows_.frames),
+         to_int(windows_.first), to_int(windows_.frames), crbm.A.buffer());
+}
+
+void FusedDownPass::backward(const Matrix& states, const Matrix& errors, float kept_share) const {
+  const Crbm& crbm = layer_->crbm;
+  Defines defines = crbm_row_defines(crbm.shape(), tile_);
+  defines["ORDER_B"] = 0;
+  const bool is_gaussian = crbm.shape().kind == VisibleKind::gaussian;
+  defines["THROUGH"] = below_ == Below::code ? "centered_sigmoid"
+                       : is_gaussian         ? "none"
+                                             : "sigmoid";
+  launch(crbm.device(),
+         crbm.device().programs().kernel("unrolled_decoder.cl", "decoder_errors", defines), size(),
+         errors.buffer(), states.buffer(), to_int(windows_.count), to_int(windows_.frames),
+         to_int(windows_.first), to_int(windows_.frames), layer_->A_following.buffer(), kept_share);
+}
+
+}  // namespace mcdbn
