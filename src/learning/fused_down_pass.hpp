@@ -17,6 +17,8 @@ class FusedDownPass {
   /// Nothing where the kernels do not fit the device, or no history is seen.
   static std::optional<FusedDownPass> of(const UnrolledNetwork::Layer& layer, Below below,
                                          const SequenceWindows& windows);
+  FusedDownPass(const UnrolledNetwork::Layer& layer, Below below, const SequenceWindows& windows,
+                const RowTile& tile);
 
   /// @param drive a and what the layer above gives, of the frames from `first` on
   ///        [count · (frames − first) x visible]
@@ -27,8 +29,6 @@ class FusedDownPass {
   void backward(const Matrix& states, const Matrix& errors, float kept_share) const;
 
  private:
-  FusedDownPass(const UnrolledNetwork::Layer& layer, Below below, const SequenceWindows& windows,
-                const RowTile& tile);
   LaunchSize size() const;
 
   const UnrolledNetwork::Layer* layer_;

@@ -152,11 +152,12 @@ struct Windows {
 struct Variant {
   std::size_t present;
   float kept_share;
+  bool fused;  ///< the down-pass in one launch a layer
 };
-constexpr Variant kVariants[] = {{modality::track, 1.0F},
-                                 {modality::pose, 1.0F},
-                                 {modality::track, 0.75F},
-                                 {modality::pose, 0.75F}};
+constexpr Variant kVariants[] = {{modality::track, 1.0F, true},   {modality::pose, 1.0F, true},
+                                 {modality::track, 0.75F, true},  {modality::pose, 0.75F, true},
+                                 {modality::track, 1.0F, false},  {modality::pose, 1.0F, false},
+                                 {modality::track, 0.75F, false}, {modality::pose, 0.75F, false}};
 constexpr RandomKey kKey{77, 3, 9, 0};
 
 /// What the pass draws for window `i`, from the host's own Philox: layers in the order of the pass,
@@ -206,10 +207,11 @@ TEST_CASE("the unrolled pass predicts what the reference does, frame by frame") 
   on_every_device([&](Device& device) {
     UnrolledNetwork network(device, small.on(device), kSteps);
     const IndexBuffer index(device, windows.rows);
-    for (const auto& [present, kept] : kVariants) {
+    for (const auto& [present, kept, fused] : kVariants) {
+      CAPTURE(fused);
       const MatrixF& frames = present == modality::track ? windows.track : windows.pose;
       const Matrix values = Matrix::from_host(device, frames);
-      UnrolledPass pass(network, other(present), kWindows);
+      UnrolledPass pass(network, other(present), kWindows, fused);
       const Rows rows = Rows::indexed(values, index, 0, kWindows.rows());
       pass.forward(std::vector<Rows>{rows, rows}, kept, kKey);
       const MatrixD got = pass.prediction().to_host().cast<double>();
@@ -242,8 +244,9 @@ TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
            .array() > 0)
           .count();
   REQUIRE((planted > 0 && planted + 1 < static_cast<int>(kWindows.frames - kWindows.lead)));
-  for (const auto& [present, kept] : kVariants) {
+  for (const auto& [present, kept, fused] : kVariants) {
     CAPTURE(kept);
+    CAPTURE(fused);
     const auto p = static_cast<int>(present);
     CAPTURE(p);
     const MatrixF& inputs = present == modality::track ? windows.track : windows.pose;
@@ -265,14 +268,14 @@ TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
       for (reference::Crbm& own : stack) move_to_center(own);
     move_to_center(want.mrbm);
 
-    on_every_device([&](Device& device) {
+    on_every_device([&, is_fused = fused](Device& device) {
       UnrolledNetwork network(device, small.on(device), kSteps);
       const IndexBuffer index(device, windows.rows);
       const Matrix input = Matrix::from_host(device, inputs),
                    all = Matrix::from_host(device, targets);
       Matrix target(device, kWindows.rows(), all.columns());
       gather(Rows::indexed(all, index, 0, kWindows.rows()), target);
-      UnrolledPass pass(network, other(present), kWindows);
+      UnrolledPass pass(network, other(present), kWindows, is_fused);
       PoseLoss pose_loss(device, figure.modalities(), kWindows, weights);
       SquaredLoss track_loss(device, kWindows, weights.features);
       for (int round = 0; round < 2; ++round) {  // the second shows that nothing is left behind
