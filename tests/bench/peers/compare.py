@@ -14,6 +14,7 @@ STEPS = {
     "gaussian_crbm": ("gaussian_crbm", {}),
     "binary_crbm": ("binary_crbm", {}),
     "mrbm": ("mrbm", {"modalities": 2}),
+    "fine_tuning": ("fine_tuning", {"directions": 2}),
     "regeneration": ("regeneration", {"temperature": 1.0}),
     "persistent_gaussian_crbm": ("persistent_gaussian_crbm", {}),
     "joint_likelihood": ("joint_likelihood", {}),
@@ -23,11 +24,13 @@ STEPS = {
 }
 WITH_ALL_PEERS = ("gaussian_crbm", "binary_crbm", "mrbm")
 SAMPLES = 10  # of a regeneration or generation
+WINDOWS = 48  # of fine-tuning
 
 
 def cases(names):
     for name in names:
-        for batch in (SAMPLES,) if "generation" in name else (100, 1024):
+        own = {"fine_tuning": (WINDOWS,)}
+        for batch in (SAMPLES,) if "generation" in name else own.get(name, (100, 1024)):
             yield name, batch
 
 
@@ -52,7 +55,7 @@ def ours(name, batch, seconds):
     report = run_json(BUILD / "cli/mcdbn-cl", "bench", "--json", "--only", layer, "--seconds",
                       str(seconds))
     for step in report["steps"]:
-        if step.get("batch", SAMPLES) == batch and which.items() <= step.items():
+        if step.get("batch", step.get("windows", SAMPLES)) == batch and which.items() <= step.items():
             return step, report["peak_gflops"]
     raise LookupError(name)
 

@@ -3,7 +3,7 @@
     python jax_peer.py LAYER BATCH SECONDS
 
 prints {"jax": median_us}. Layers are those of pytorch_peer.py; BATCH is the number of samples of a
-generation or regeneration.
+generation or regeneration, of windows of fine_tuning.
 """
 
 import functools
@@ -229,6 +229,68 @@ def regeneration(samples, frames=1000, track=43, pose=96, gibbs_steps=3, ahead=5
     return lambda state: run(p, clip, state[0]), (jax.random.PRNGKey(4), None)
 
 
+def fine_tuning(windows, track=43, pose=154, order=10, hidden=768, shared=512, settle=4, judged=20):
+    """A mini-batch of fine-tuning in both directions: up-pass, two mean-field steps from zeros, down-pass
+    on its own output, squared errors, autodiff; Adam with weight decay, a limit of the gradient's
+    length, a moving average of the parameters. Frames without a history have no code to compute."""
+    first, steps = order, settle + judged
+    frames = first + steps
+    sizes = (track, pose)
+    data = [jax.random.normal(jax.random.PRNGKey(8 + m), (windows, frames, size))
+            for m, size in enumerate(sizes)]
+    shapes = {"b": (shared,)}
+    for m, size in enumerate(sizes):
+        shapes |= {f"W{m}": (size, hidden), f"A{m}": (order * size, size),
+                   f"B{m}": (order * size, hidden), f"a{m}": (size,), f"b{m}": (hidden,),
+                   f"M{m}": (hidden, shared), f"c{m}": (hidden,)}
+    window = first + jnp.arange(steps)[:, None] + jnp.arange(-order, 0)
+
+    def predicted(p, x, present, absent):
+        history = x[:, window].reshape(windows, steps, -1)
+        code = sigmoid(p[f"b{present}"] + x[:, first:] @ p[f"W{present}"]
+                       + history @ p[f"B{present}"])
+        drive = p["b"] + code @ p[f"M{present}"]
+        v = sigmoid(sigmoid(drive) @ p[f"M{absent}"].T + p[f"c{absent}"])
+        h = sigmoid(drive + v @ p[f"M{absent}"])
+        v = sigmoid(h @ p[f"M{absent}"].T + p[f"c{absent}"])
+        above = v @ p[f"W{absent}"].T + p[f"a{absent}"]
+
+        def next_frame(past, above):
+            frame = above + past @ p[f"A{absent}"]
+            return jnp.concatenate([past[:, sizes[absent]:], frame], 1), frame
+
+        past = jnp.zeros((windows, order * sizes[absent]))
+        return jax.lax.scan(next_frame, past, jnp.swapaxes(above, 0, 1), unroll=4)[1][settle:]
+
+    def loss_of(p, data):
+        total = 0.0
+        for present, absent, weight in ((0, 1, 1.0), (1, 0, 0.4)):
+            target = jnp.swapaxes(data[absent][:, first + settle:], 0, 1)
+            total += weight * jnp.square(predicted(p, data[present], present, absent) - target).mean()
+        return total
+
+    @functools.partial(jax.jit, donate_argnums=0)
+    def step(state, data):
+        p, mean, square, average, count, total = state
+        loss, gradients = jax.value_and_grad(loss_of)(p, data)
+        length = jnp.sqrt(sum(jnp.square(g).sum() for g in gradients.values()))
+        count += 1
+        for name, gradient in gradients.items():
+            gradient = gradient * jnp.minimum(1.0, 1.0 / length)
+            mean[name] = 0.9 * mean[name] + 0.1 * gradient
+            square[name] = 0.99 * square[name] + 0.01 * jnp.square(gradient)
+            change = mean[name] / (1 - 0.9**count) / (
+                jnp.sqrt(square[name] / (1 - 0.99**count)) + 1e-8)
+            decay = 1.0 if name[0] in "WABM" else 0.0
+            p[name] = p[name] - 1e-3 * (change + decay * p[name])
+            average[name] = 0.995 * average[name] + 0.005 * p[name]
+        return p, mean, square, average, count, total + loss
+
+    zeros = functools.partial(normals, 3, shapes, 0.0)
+    return (lambda state: step(state, data)), (normals(2, shapes), zeros(), zeros(), zeros(),
+                                               jnp.zeros(()), jnp.zeros(()))
+
+
 def step_of(layer, batch):
     """(state -> state, the first state)"""
     if layer.startswith("mrbm"):
@@ -237,6 +299,8 @@ def step_of(layer, batch):
         return joint_likelihood(batch)
     if layer == "regeneration":
         return regeneration(batch)
+    if layer == "fine_tuning":
+        return fine_tuning(batch)
     if layer.startswith("generation"):
         return generation(batch, int(layer.rsplit("_", 1)[1]))
     binary = layer == "binary_crbm"

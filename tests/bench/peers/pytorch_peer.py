@@ -5,8 +5,8 @@
 prints {"variant": median_us, ...} for eager and compiled, torch.bernoulli and rand < p. The variants
 take turns, so that whatever else the machine does slows all of them. Layers: gaussian_crbm,
 binary_crbm, persistent_gaussian_crbm, joint_likelihood, mrbm (of two modalities), mrbm_3 (of three),
-and regeneration, generation_1 and generation_30 (BATCH is then the number of samples, the number that
-of drawn steps a frame).
+fine_tuning (BATCH is then the number of windows), and regeneration, generation_1 and generation_30
+(BATCH is then the number of samples, the number that of drawn steps a frame).
 """
 
 import json
@@ -154,6 +154,65 @@ class JointLikelihoodStep:
         self.optimizer.step()
 
 
+class FineTuningStep:
+    """A mini-batch of fine-tuning in both directions: up-pass, two mean-field steps from zeros, down-pass
+    on its own output, squared errors, autograd; Adam with weight decay, a limit of the gradient's
+    length, a moving average of the parameters. Frames without a history have no code to compute."""
+
+    SIZES, ORDER, HIDDEN, SHARED, SETTLE, JUDGED = (43, 154), 10, 768, 512, 4, 20
+
+    def __init__(self, windows, fused):
+        self.frames = self.ORDER + self.SETTLE + self.JUDGED
+        self.data = [torch.randn(windows, self.frames, size) for size in self.SIZES]
+        weights, biases = {}, {"b": torch.zeros(self.SHARED)}
+        for m, size in enumerate(self.SIZES):
+            weights |= {f"W{m}": normal(size, self.HIDDEN), f"A{m}": normal(self.ORDER * size, size),
+                        f"B{m}": normal(self.ORDER * size, self.HIDDEN),
+                        f"M{m}": normal(self.HIDDEN, self.SHARED)}
+            biases |= {f"a{m}": torch.zeros(size), f"b{m}": torch.zeros(self.HIDDEN),
+                       f"c{m}": torch.zeros(self.HIDDEN)}
+        self.p = {name: p.requires_grad_() for name, p in (weights | biases).items()}
+        self.optimizer = torch.optim.AdamW(
+            [{"params": list(weights.values()), "weight_decay": 1.0},
+             {"params": list(biases.values()), "weight_decay": 0.0}],
+            lr=1e-3, betas=(0.9, 0.99), fused=fused)
+        self.averages = [p.detach().clone() for p in self.p.values()]
+        self.total = torch.zeros(())
+
+    def predicted(self, present, absent):
+        p, x, first = self.p, self.data[present], self.ORDER
+        history = x.unfold(1, self.ORDER, 1)[:, :-1].transpose(2, 3).flatten(2)
+        code = torch.sigmoid(x[:, first:] @ p[f"W{present}"] + history @ p[f"B{present}"]
+                             + p[f"b{present}"])
+        drive = code @ p[f"M{present}"] + p["b"]
+        v = torch.sigmoid(torch.sigmoid(drive) @ p[f"M{absent}"].t() + p[f"c{absent}"])
+        h = torch.sigmoid(drive + v @ p[f"M{absent}"])
+        v = torch.sigmoid(h @ p[f"M{absent}"].t() + p[f"c{absent}"])
+        above = v @ p[f"W{absent}"].t() + p[f"a{absent}"]
+        past = torch.zeros(len(x), self.ORDER * self.SIZES[absent])
+        frames = []
+        for t in range(above.shape[1]):
+            frames.append(torch.addmm(above[:, t], past, p[f"A{absent}"]))
+            past = torch.cat([past[:, self.SIZES[absent]:], frames[-1]], 1)
+        return torch.stack(frames[self.SETTLE:], 1)
+
+    def loss(self):
+        judged = self.ORDER + self.SETTLE
+        return sum(weight * torch.nn.functional.mse_loss(self.predicted(present, absent),
+                                                         self.data[absent][:, judged:])
+                   for present, absent, weight in ((0, 1, 1.0), (1, 0, 0.4)))
+
+    def __call__(self):
+        self.optimizer.zero_grad(set_to_none=True)
+        loss = self.loss()
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(self.p.values(), 1.0)
+        self.optimizer.step()
+        with torch.no_grad():
+            torch._foreach_lerp_(self.averages, list(self.p.values()), 0.005)
+            self.total += loss
+
+
 class Generation:
     """1,000 frames of a Gaussian CRBM on its own output, `samples` of them (Algorithm 4)."""
 
@@ -245,6 +304,9 @@ def makers(layer, batch):
         modalities = 3 if layer == "mrbm_3" else 2
         return [(name, lambda fused=fused: MrbmStep(batch, modalities, fused), "loss")
                 for name, fused in (("", False), (", fused Adam", True))]
+    if layer == "fine_tuning":
+        return [(name, lambda fused=fused: FineTuningStep(batch, fused), "loss")
+                for name, fused in (("", False), (", fused Adam", True))]
     result = []
     for name, draw in DRAWS.items():
         if layer == "regeneration":  # a loop over frames: nothing to compile as a whole
@@ -293,7 +355,7 @@ def main():
     layer, batch, seconds = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
     torch.set_num_threads(2)
     torch.manual_seed(1)
-    if not layer.startswith("mrbm"):
+    if not layer.startswith(("mrbm", "fine_tuning")):
         torch.set_grad_enabled(False)
     steps = variants(layer, batch)
     runs, times = {}, {name: [] for name in steps}
