@@ -16,7 +16,8 @@ namespace {
 
 struct CountedSets {
   std::size_t joints;
-  std::vector<std::string> sets;  ///< candidates, the usual one first
+  std::vector<std::string> sets;     ///< candidates, the usual one first
+  const char* whole_body = nullptr;  ///< what it is with face and hands, which follow the body
 };
 
 const std::vector<CountedSets>& counted_sets() {
@@ -27,9 +28,9 @@ const std::vector<CountedSets>& counted_sets() {
       {25, {"BODY_25", "BODY_25B"}},
       {26, {"HALPE_26"}},
       {33, {"MEDIAPIPE_33"}},
-      {133, {"COCO_23"}},   // COCO-WholeBody
-      {135, {"BODY_25B"}},  // OpenPose's BODY_135
-      {136, {"HALPE_26"}},  // Halpe-136
+      {133, {"COCO_23"}, "COCO-WholeBody"},
+      {135, {"BODY_25B"}, "OpenPose's BODY_135"},
+      {136, {"HALPE_26"}, "Halpe-136"},
   };
   return sets;
 }
@@ -75,6 +76,19 @@ double mean_bone(const SeenPeople& people, const JointSet& set) {
   return bones > 0 ? sum / bones : std::numeric_limits<double>::infinity();
 }
 
+/// {"x": […], "y": […], "visible": […]}
+SeenPerson person_of_lists(const JsonPlace& keypoints) {
+  SeenPerson person;
+  person.x_px = keypoints["x"].numbers();
+  person.y_px = keypoints["y"].numbers();
+  person.confidence = keypoints.has("visible") ? keypoints["visible"].numbers()
+                                               : std::vector<double>(person.x_px.size(), 1.0);
+  if (person.y_px.size() != person.x_px.size() || person.confidence.size() != person.x_px.size())
+    keypoints.fail("lists of different lengths");
+  mark_missing(person);
+  return person;
+}
+
 void set_length(SeenPeople& people, std::size_t joints) {
   for (auto& [number, frame] : people.frames)
     for (SeenPerson& person : frame)
@@ -102,11 +116,12 @@ void name_joints_by_count(SeenPeople& people, const std::string& file,
   const std::size_t count = joint_count(people, file);
   if (count == 0)
     throw InputError(fmt::format("{}: nobody in any frame, so its joints are not known", file));
-  if (names.size() == count) {
+  const auto counted = std::ranges::find(counted_sets(), count, &CountedSets::joints);
+  const bool more_than_body = counted != counted_sets().end() && counted->whole_body;
+  if (names.size() == count && !more_than_body) {
     name_joints(people, names);
     return;
   }
-  const auto counted = std::ranges::find(counted_sets(), count, &CountedSets::joints);
   if (counted == counted_sets().end()) {
     people.notices.push_back(fmt::format("{} joints: no joint set of that count is known", count));
     for (std::size_t joint = 0; joint < count; ++joint)
@@ -124,6 +139,11 @@ void name_joints_by_count(SeenPeople& people, const std::string& file,
   SeenPeople named = people_of_set(likeliest);
   people.joint_names = std::move(named.joint_names);
   people.keypoints = std::move(named.keypoints);
+  if (more_than_body)
+    people.notices.push_back(
+        fmt::format("{} joints: {}, of which the {} of the body are taken ({}); face and hands are "
+                    "left out",
+                    count, counted->whole_body, people.joint_names.size(), likeliest));
   set_length(people, people.joint_names.size());
 }
 
@@ -133,6 +153,7 @@ void name_joints(SeenPeople& people, std::vector<std::string> names) {
 }
 
 SeenPerson person_in_json(const JsonPlace& keypoints) {
+  if (keypoints.is_object()) return person_of_lists(keypoints);
   if (keypoints.size() > 0 && keypoints.at(0).is_list()) {
     SeenPerson person;
     for (const JsonPlace& joint : keypoints.list()) {

@@ -11,8 +11,9 @@ namespace mcdbn {
 
 /// Says what the joints are. Where the file gives as many names as joints, those; else the joint
 /// set of that count, of several the one that makes the shortest limbs (BODY_25 and BODY_25B have
-/// the same count). Faces and hands behind a body's joints (133, 135, 136) are left out. Other
-/// counts become joint_0, joint_1 … without roles, with a notice.
+/// the same count). Faces and hands behind a body's joints (133, 135, 136) are left out, with a
+/// notice, also where the file names them. Other counts become joint_0, joint_1 … without roles,
+/// with a notice.
 /// @throws InputError if the counts differ
 void name_joints_by_count(SeenPeople& people, const std::string& file,
                           const std::vector<std::string>& names = {});
@@ -20,8 +21,9 @@ void name_joints_by_count(SeenPeople& people, const std::string& file,
 /// Names, in the file's order.
 void name_joints(SeenPeople& people, std::vector<std::string> names);
 
-/// One body of a JSON list of numbers, x, y, confidence of each joint; or of lists of 2 or 3
-/// numbers, with confidences beside them. @throws InputError
+/// One body of a JSON list of numbers, x, y, confidence of each joint; of lists of 2 or 3 numbers;
+/// of an object with the lists x, y and, where there, visible; with confidences beside them.
+/// @throws InputError
 SeenPerson person_in_json(const JsonPlace& keypoints);
 SeenPerson person_in_json(const JsonPlace& keypoints, const JsonPlace& scores);
 

@@ -48,6 +48,43 @@ std::string without_nan(std::string_view text) {
   return result;
 }
 
+/// @param lines_before of the file, for messages
+json parse_value(std::string_view text, const std::string& file, long lines_before) {
+  try {
+    return json::parse(text);
+  } catch (const json::parse_error& error) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
+    const auto line = 1 + lines_before + std::count(text.begin(), end, '\n');
+    throw InputError(fmt::format("{}:{}: no readable JSON from here on", file, line));
+  } catch (const json::exception&) {
+    throw InputError(fmt::format("{}: a number in it is too large to be read", file));
+  }
+}
+
+bool is_blank(std::string_view text) {
+  return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
+}
+
+/// The first line is a list or an object by itself, and more than blanks follow.
+bool are_json_lines(std::string_view text) {
+  const auto end = std::min(text.find('\n'), text.size());
+  const std::string_view line = text.substr(0, end);
+  const auto first = line.find_first_not_of(" \t");
+  if (first == std::string_view::npos || (line[first] != '{' && line[first] != '[')) return false;
+  return !is_blank(text.substr(end)) && json::accept(line);
+}
+
+json parse_lines(std::string_view text, const std::string& file) {
+  json values = json::array();
+  for (long before = 0; !text.empty(); ++before) {
+    const auto end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!is_blank(line)) values.push_back(parse_value(line, file, before));
+  }
+  return values;
+}
+
 }  // namespace
 
 void JsonPlace::fail(const std::string& what) const {
@@ -115,15 +152,7 @@ json parse_json(std::string_view text, const std::string& file) {
   std::string readable;
   if (text.find("NaN") != std::string_view::npos || text.find("Infinity") != std::string_view::npos)
     text = readable = without_nan(text);
-  try {
-    return json::parse(text);
-  } catch (const json::parse_error& error) {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-    const auto line = 1 + std::count(text.begin(), end, '\n');
-    throw InputError(fmt::format("{}:{}: no readable JSON from here on", file, line));
-  } catch (const json::exception&) {
-    throw InputError(fmt::format("{}: a number in it is too large to be read", file));
-  }
+  return are_json_lines(text) ? parse_lines(text, file) : parse_value(text, file, 0);
 }
 
 }  // namespace mcdbn

@@ -45,7 +45,8 @@ class JsonPlace {
   std::string file_, path_;
 };
 
-/// Python's NaN and Infinity are read, too, as null. @throws InputError `file:line: what`
+/// Python's NaN and Infinity are read, too, as null. JSON lines, a value in each line, are a list
+/// of them. @throws InputError `file:line: what`
 nlohmann::json parse_json(std::string_view text, const std::string& file);
 
 }  // namespace mcdbn

@@ -8,7 +8,6 @@
 #include <map>
 
 #include "formats/csv_table.hpp"
-#include "formats/joint_naming.hpp"
 #include "formats/landmarks.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -77,8 +76,7 @@ class ColumnsReader {
   SeenPeople read() {
     read_header();
     for (std::size_t i = 1; i < table_.lines().size(); ++i) read_frame(table_.lines()[i]);
-    name_joints_by_count(people_, file_,
-                         are_only_numbered(names_) ? std::vector<std::string>{} : names_);
+    name_landmarks(people_, file_, names_);
     return std::move(people_);
   }
 
@@ -148,17 +146,6 @@ class ColumnsReader {
 };
 
 }  // namespace
-
-bool are_only_numbered(const std::vector<std::string>& names) {
-  return std::ranges::all_of(names, [](const std::string& name) {
-    const auto digit = name.find_first_of("0123456789");
-    if (digit == std::string::npos) return false;
-    const std::string word = lower(name.substr(0, digit));
-    return word.size() <= 1 || word.starts_with("landmark") || word.starts_with("joint") ||
-           word.starts_with("kp") || word.starts_with("keypoint") || word.starts_with("lm") ||
-           word.starts_with("pose") || word.starts_with("point");
-  });
-}
 
 bool are_landmark_columns(std::string_view text) {
   const CsvTable table(text, {}, 1);

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 
 #include "formats/frame_numbers.hpp"
-#include "formats/joint_naming.hpp"
 #include "formats/landmarks.hpp"
 
 namespace mcdbn {
@@ -45,6 +45,18 @@ bool is_body(const JsonPlace& place) {
          });
 }
 
+/// Keys with a number each ("0" to "32", "landmark_0") in the order of these, not of their letters.
+std::vector<std::string> keys_by_number(std::vector<std::string> keys) {
+  const auto numbers = frame_numbers(keys);
+  std::map<long long, std::string> ordered;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (numbers[i]) ordered.emplace(*numbers[i], keys[i]);
+  if (ordered.size() < keys.size()) return keys;
+  keys.clear();
+  for (auto& [number, key] : ordered) keys.push_back(std::move(key));
+  return keys;
+}
+
 class LandmarkReader {
  public:
   explicit LandmarkReader(const std::string& file) : file_(file) {}
@@ -55,8 +67,7 @@ class LandmarkReader {
     judge_third_numbers();
     for (auto& [number, frame] : people_.frames)
       for (SeenPerson& person : frame) mark_missing(person);
-    if (!names_.empty() && are_only_numbered(names_)) names_.clear();
-    name_joints_by_count(people_, file_, names_);
+    name_landmarks(people_, file_, names_);
     return std::move(people_);
   }
 
@@ -94,8 +105,10 @@ class LandmarkReader {
       return;
     }
     if (any_of_keys(content, kBodyKeys)) return add_frame(content, 0);
-    for (const std::string& key : content.keys())  // by the numbers of frames
-      if (const auto number = frame_numbers({key}).front()) add_frame(content[key], *number);
+    const std::vector<std::string> keys = content.keys();  // with the numbers of frames
+    const auto numbers = frame_numbers(keys);
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      if (numbers[i]) add_frame(content[keys[i]], *numbers[i]);
   }
 
   void add_frame(const JsonPlace& frame, long long number) {
@@ -125,7 +138,7 @@ class LandmarkReader {
     if (body.is_list())
       for (const JsonPlace& landmark : body.list()) add_landmark(landmark, person, names);
     else
-      for (const std::string& key : body.keys()) {
+      for (const std::string& key : keys_by_number(body.keys())) {
         add_landmark(body[key], person, names);
         names.push_back(key);
       }

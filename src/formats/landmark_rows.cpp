@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "formats/csv_table.hpp"
 #include "formats/csv_text.hpp"
-#include "formats/joint_naming.hpp"
 #include "formats/landmarks.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -18,7 +18,7 @@ namespace mcdbn {
 namespace {
 
 struct Header {
-  std::optional<std::size_t> frame, landmark, x, y, z, confidence, person, model;
+  std::optional<std::size_t> frame, landmark, x, y, z, confidence, person, model, id;
 };
 
 /// In lower case without separators.
@@ -48,9 +48,11 @@ Header header_of(const CsvTable::Line& line) {
     if (is({"z"})) take(header.z);
     if (is({"visibility", "confidence", "score", "likelihood", "presence"}))
       take(header.confidence);
-    if (is({"person", "personid", "poseid", "trackid", "track", "id"})) take(header.person);
+    if (is({"person", "personid", "poseid", "trackid", "track"})) take(header.person);
     if (is({"model"})) take(header.model);
+    if (is({"id"})) take(header.id);
   }
+  if (!header.landmark) header.landmark = header.id;
   return header;
 }
 
@@ -69,6 +71,7 @@ class RowsReader {
   SeenPeople read() {
     for (std::size_t i = 1; i < table_.lines().size(); ++i) find_name(table_.lines()[i]);
     sort_numbers();
+    if (!header_.person && header_.id && landmarks_come_again()) header_.person = header_.id;
     for (std::size_t i = 1; i < table_.lines().size(); ++i) read_row(table_.lines()[i]);
     SeenPeople people;
     for (auto& [frame, bodies] : frames_) {
@@ -79,7 +82,7 @@ class RowsReader {
         list.push_back(std::move(body));
       }
     }
-    name_joints_by_count(people, file_, numbered_ ? std::vector<std::string>{} : names_);
+    name_landmarks(people, file_, numbered_ ? std::vector<std::string>{} : names_);
     return people;
   }
 
@@ -108,6 +111,16 @@ class RowsReader {
     for (std::size_t i = 0; i < names_.size(); ++i)
       columns_[names_[i]] = static_cast<std::size_t>(numbers[i]) - (from_one ? 1 : 0);
     joints_ = static_cast<std::size_t>(*std::ranges::max_element(numbers)) + (from_one ? 0 : 1);
+  }
+
+  /// Whether a frame has a landmark twice: `id` is then the person's number, else the landmark's.
+  bool landmarks_come_again() const {
+    std::set<std::pair<std::string_view, std::string_view>> known;
+    for (std::size_t i = 1; i < table_.lines().size(); ++i) {
+      const auto& cells = table_.lines()[i].cells;
+      if (!known.emplace(cells[*header_.frame], cells[*header_.landmark]).second) return true;
+    }
+    return false;
   }
 
   long long whole(const CsvTable::Line& line, std::size_t column) const {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/text_file.hpp"
-#include "formats/frame_numbers.hpp"
+#include "formats/image_numbers.hpp"
 #include "formats/joint_naming.hpp"
 #include "formats/track_formats.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -40,30 +40,23 @@ std::optional<long long> track_number(JsonPlace idx) {
   return idx.whole_number();
 }
 
-long long image_number(const JsonPlace& id, const std::string& name) {
-  const auto number = frame_numbers({name.substr(0, name.rfind('.'))}).front();
-  if (!number) id.fail(fmt::format("no number of a frame in '{}'", name));
-  return *number;
-}
-
 SeenPeople read_list(const JsonPlace& content) {
+  const ImageNumbers images(content, "image_id");
   SeenPeople people;
   for (const JsonPlace& entry : content.list()) {
-    const JsonPlace id = entry["image_id"];
     SeenPerson person = person_in_json(entry["keypoints"]);
     if (entry.has("idx")) person.id = track_number(entry["idx"]);
-    const long long number =
-        id.value().is_string() ? image_number(id, id.text()) : id.whole_number();
-    people.frames[number].push_back(std::move(person));
+    people.frames[images.of(entry["image_id"])].push_back(std::move(person));
   }
   return people;
 }
 
 SeenPeople read_images(const JsonPlace& content) {
+  const ImageNumbers images(content.keys());
   SeenPeople people;
   for (const std::string& name : content.keys()) {
     const JsonPlace image = content[name];
-    auto& frame = people.frames[image_number(image, name)];
+    auto& frame = people.frames[images.of(image, name)];
     const bool bodies = image.has("bodies");
     for (const JsonPlace& body : image[bodies ? "bodies" : "people"].list())
       frame.push_back(person_in_json(body[bodies ? "joints" : "pose_keypoints_2d"]));

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/text_file.hpp"
-#include "formats/frame_numbers.hpp"
+#include "formats/image_numbers.hpp"
 #include "formats/joint_naming.hpp"
 #include "formats/track_formats.hpp"
 
@@ -52,25 +52,18 @@ bool are_flags(const SeenPeople& people) {
   return most == 2;
 }
 
-long long image_number(const JsonPlace& id) {
-  if (!id.value().is_string()) return id.whole_number();
-  const auto number = frame_numbers({id.text()}).front();
-  if (!number) id.fail("no number in this name");
-  return *number;
-}
-
-void add_person(SeenPeople& people, const JsonPlace& entry) {
-  auto& frame = people.frames[image_number(entry["image_id"])];
+void add_person(SeenPeople& people, const ImageNumbers& images, const JsonPlace& entry) {
+  auto& frame = people.frames[images.of(entry["image_id"])];
   SeenPerson person = person_in_json(entry["keypoints"]);
   if (entry.has("track_id") && entry["track_id"].value().is_number())
     person.id = entry["track_id"].whole_number();
   frame.push_back(std::move(person));
 }
 
-void add_images(SeenPeople& people, const JsonPlace& images) {
+void add_images(SeenPeople& people, const ImageNumbers& numbers, const JsonPlace& images) {
   ImageSize least{1 << 30, 1 << 30}, most;
   for (const JsonPlace& image : images.list()) {
-    people.frames[image_number(image["id"])];
+    people.frames[numbers.of(image["id"])];
     if (!image.has("width") || !image.has("height")) continue;
     const auto side = [](const JsonPlace& place) {
       const long long value = place.whole_number();
@@ -90,11 +83,12 @@ void add_images(SeenPeople& people, const JsonPlace& images) {
 }
 
 SeenPeople read_annotations(const JsonPlace& content) {
+  const ImageNumbers images(content["images"], "id");
   SeenPeople people;
-  add_images(people, content["images"]);
+  add_images(people, images, content["images"]);
   for (const JsonPlace& annotation : content["annotations"].list())
     if (annotation.has("keypoints") && annotation["keypoints"].size() > 0)
-      add_person(people, annotation);
+      add_person(people, images, annotation);
   return people;
 }
 
@@ -112,7 +106,8 @@ SeenPeople read(const TrackSource& source) {
   const JsonPlace content = source.json();
   SeenPeople people;
   if (content.is_list()) {
-    for (const JsonPlace& entry : content.list()) add_person(people, entry);
+    const ImageNumbers images(content, "image_id");
+    for (const JsonPlace& entry : content.list()) add_person(people, images, entry);
   } else {
     people = read_annotations(content);
   }

@@ -38,8 +38,10 @@ class DeepLabCutReader {
   SeenPeople read() {
     read_headers();
     people_.in_pixels = true;
+    const auto numbers = numbers_of_rows();
     for (std::size_t i = headers_; i < table_.lines().size(); ++i)
-      read_frame(table_.lines()[i], static_cast<long long>(i - headers_));
+      read_frame(table_.lines()[i],
+                 numbers[i - headers_].value_or(static_cast<long long>(i - headers_)));
     name_joints(people_, parts_);
     return std::move(people_);
   }
@@ -91,17 +93,26 @@ class DeepLabCutReader {
     if (individuals_.empty()) individuals_.emplace_back();
   }
 
-  /// The index of a video's frame, or the number in the name of a labelled image.
-  long long frame_of(const CsvTable::Line& line, long long row) const {
-    const std::size_t names = columns_.front().column;
-    const auto number = frame_numbers({std::string(line.cells[names - 1])}).front();
-    return number && !people_.frames.contains(*number) ? *number : row;
+  /// Indices of a video's frames, or the numbers in the names of labelled images; none if they are
+  /// not different ones.
+  std::vector<std::optional<long long>> numbers_of_rows() const {
+    const std::size_t named = columns_.front().column - 1;
+    std::vector<std::string> names;
+    for (std::size_t i = headers_; i < table_.lines().size(); ++i) {
+      const CsvTable::Line& line = table_.lines()[i];
+      // Tools leave out the empty cells at the end of a line.
+      if (line.cells.size() > width_ || line.cells.size() <= named)
+        table_.require_cells(line, width_);
+      names.emplace_back(line.cells[named]);
+    }
+    auto numbers = frame_numbers(names);
+    const std::set<std::optional<long long>> different(numbers.begin(), numbers.end());
+    if (different.size() < numbers.size() || different.contains(std::nullopt))
+      numbers.assign(numbers.size(), std::nullopt);
+    return numbers;
   }
 
-  void read_frame(const CsvTable::Line& line, long long row) {
-    // Tools leave out the empty cells at the end of a line.
-    if (line.cells.size() > width_ || line.cells.size() < columns_.front().column)
-      table_.require_cells(line, width_);
+  void read_frame(const CsvTable::Line& line, long long number) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     const std::vector<double> missing(parts_.size(), kNan), ones(parts_.size(), 1.0);
     std::vector<SeenPerson> frame;
@@ -115,7 +126,7 @@ class DeepLabCutReader {
       values[column.part] = table_.number_in(line, column.column);
     }
     for (SeenPerson& person : frame) mark_missing(person);
-    people_.frames.emplace(frame_of(line, row), std::move(frame));
+    people_.frames.emplace(number, std::move(frame));
   }
 
   CsvTable table_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "formats/other_files.hpp"
 #include "formats/track_formats.hpp"
 #include "formats/track_reading.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -32,6 +33,8 @@ const TrackFormat& format_to_read(const TrackSource& source, const std::string& 
   // JSON that cannot be parsed says where.
   if (source.is_folder()) source.json_of(source.json_files().front());
   if (const char first = source.first_letter(); first == '{' || first == '[') source.json();
+  if (const std::string what = what_else_it_is(source); !what.empty())
+    throw InputError(fmt::format("{}: {}", source.name(), what));
   throw InputError(
       fmt::format("{}: not a 2D track of a known format ({})", source.name(), names()));
 }

@@ -1,7 +1,9 @@
 // MMPose and RTMPose: predictions of its demos (`instance_info`), of MMPoseInferencer (a list of
 // frames with instances; of an image a list of instances; a folder of those), and lists of
-// keypoints with scores.
-// Facts: MMPose's demo/topdown_demo_with_mmdet.py and mmpose/structures/utils.py.
+// keypoints with scores: of one person, or of all as rtmlib answers. Ultralytics' YOLO has the
+// keypoints' x, y and visible as lists of their own.
+// Facts: MMPose's demo/topdown_demo_with_mmdet.py and mmpose/structures/utils.py; rtmlib's README;
+// Ultralytics' Results.summary().
 #include <fmt/format.h>
 
 #include "base/text_file.hpp"
@@ -25,7 +27,18 @@ const char* scores_key(const JsonPlace& instance) {
 }
 
 bool is_instance(const JsonPlace& place) {
-  return place.has("keypoints") && scores_key(place) != nullptr;
+  return place.has("keypoints") && (scores_key(place) != nullptr || place["keypoints"].has("x"));
+}
+
+/// rtmlib answers with all people of an image at once: people x joints x 2, people x joints.
+bool holds_people(const JsonPlace& instance) {
+  if (scores_key(instance) == nullptr) return false;
+  JsonPlace place = instance["keypoints"];
+  for (int depth = 0; depth < 2; ++depth) {
+    if (!place.is_list() || place.size() == 0) return false;
+    place = place.at(0);
+  }
+  return place.is_list();
 }
 
 bool is_frame(const JsonPlace& place) {
@@ -43,6 +56,13 @@ bool recognises(const TrackSource& source) {
          (first.is_list() && first.size() > 0 && is_instance(first.at(0)));
 }
 
+std::vector<SeenPerson> people_at_once(const JsonPlace& keypoints, const JsonPlace& scores) {
+  std::vector<SeenPerson> people;
+  for (std::size_t i = 0; i < keypoints.size(); ++i)
+    people.push_back(person_in_json(keypoints.at(i), scores.at(i)));
+  return people;
+}
+
 SeenPerson person_of_instance(const JsonPlace& instance) {
   const char* scores = scores_key(instance);
   SeenPerson person = scores == nullptr ? person_in_json(instance["keypoints"])
@@ -53,33 +73,60 @@ SeenPerson person_of_instance(const JsonPlace& instance) {
   return person;
 }
 
+std::vector<SeenPerson> people_of_instance(const JsonPlace& instance) {
+  if (instance["keypoints"].size() == 0) return {};
+  if (holds_people(instance))
+    return people_at_once(instance["keypoints"], instance[scores_key(instance)]);
+  return {person_of_instance(instance)};
+}
+
 std::vector<SeenPerson> people_of(const JsonPlace& instances) {
   std::vector<SeenPerson> people;
   for (const JsonPlace& instance : instances.list())
-    if (instance["keypoints"].size() > 0) people.push_back(person_of_instance(instance));
+    for (SeenPerson& person : people_of_instance(instance)) people.push_back(std::move(person));
   return people;
+}
+
+const char* frame_key(const JsonPlace& entry) {
+  for (const char* key : {"frame_id", "frame", "frame_idx", "frame_index"})
+    if (entry.has(key) && entry[key].value().is_number()) return key;
+  return nullptr;
 }
 
 /// Frames with instances, lists of instances, or the instances of one image.
 void add_list(SeenPeople& people, const JsonPlace& list) {
-  bool one_image = list.size() > 0;
+  bool one_image = true;
   for (const JsonPlace& entry : list.list())
-    one_image = one_image && is_instance(entry) && !entry.has("frame_id");
+    one_image = one_image && is_instance(entry) && !holds_people(entry) && !frame_key(entry);
   if (one_image) {
     people.frames.emplace(0, people_of(list));
     return;
   }
   long long next = 0;
   for (const JsonPlace& frame : list.list()) {
-    const long long number = frame.has("frame_id") ? frame["frame_id"].whole_number() : next;
+    const char* said = frame_key(frame);
+    const long long number = said == nullptr ? next : frame[said].whole_number();
     next = number + 1;
     if (is_instance(frame)) {
-      people.frames[number].push_back(person_of_instance(frame));
+      auto& seen = people.frames[number];
+      for (SeenPerson& person : people_of_instance(frame)) seen.push_back(std::move(person));
       continue;
     }
     if (!people.frames.emplace(number, people_of(frame.is_list() ? frame : frame["instances"]))
              .second)
       frame.fail(fmt::format("a second frame {}", number));
+  }
+}
+
+/// All frames at once, frames x joints x 2 or frames x people x joints x 2, with their scores.
+void add_film(SeenPeople& people, const JsonPlace& keypoints, const JsonPlace& scores) {
+  for (std::size_t i = 0; i < keypoints.size(); ++i) {
+    const JsonPlace frame = keypoints.at(i);
+    const bool several = frame.size() > 0 && frame.at(0).size() > 0 && frame.at(0).at(0).is_list();
+    people.frames.emplace(static_cast<long long>(i),
+                          several || frame.size() == 0
+                              ? people_at_once(frame, scores.at(i))
+                              : std::vector{person_in_json(frame, scores.at(i))});
   }
 }
 
@@ -100,8 +147,10 @@ void add_content(SeenPeople& people, const JsonPlace& content) {
     add_list(people, content["predictions"]);
   else if (is_frame(content))
     people.frames.emplace(0, people_of(content["instances"]));
+  else if (content.is_object() && holds_people(content))
+    add_film(people, content["keypoints"], content[scores_key(content)]);
   else if (content.is_object())
-    people.frames.emplace(0, std::vector{person_of_instance(content)});
+    people.frames.emplace(0, people_of_instance(content));
   else
     add_list(people, content);
 }

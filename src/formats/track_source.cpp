@@ -60,15 +60,17 @@ JsonPlace TrackSource::json() const {
 
 std::optional<JsonPlace> TrackSource::first_json_if_any() const {
   if (!is_folder_) return json_if_any();
-  if (json_files_.empty()) return {};
-  if (!first_json_) {
-    try {
-      first_json_ = json_of(json_files_.front());
-    } catch (const InputError&) {
-      return {};
+  if (first_json_) return JsonPlace(*first_json_, name());
+  try {
+    for (const fs::path& file : json_files_) {
+      first_json_ = json_of(file);
+      if (!first_json_->empty()) return JsonPlace(*first_json_, name());
     }
+  } catch (const InputError&) {
+    first_json_.reset();
+    return {};
   }
-  return JsonPlace(*first_json_, json_files_.front().string());
+  return first_json_ ? std::optional(JsonPlace(*first_json_, name())) : std::nullopt;
 }
 
 nlohmann::json TrackSource::json_of(const fs::path& file) const {

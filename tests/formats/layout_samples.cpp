@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "formats/figure_track.hpp"
@@ -12,21 +13,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFrames = 4;
-
-/// The figure of a joint set, with nothing missing.
-Track2d figure(const std::string& set) {
-  Track2d track = figure_track({.name = {},
-                                .about = {},
-                                .joint_sets = {set},
-                                .recognises = nullptr,
-                                .read = nullptr,
-                                .write = nullptr},
-                               kFrames);
-  track.x_px(1, 1) = track.x_px(0, 1) + 3;
-  track.y_px(1, 1) = track.y_px(0, 1);
-  track.confidence(1, 1) = 0.75;
-  return track;
-}
 
 /// x, y, confidence of each joint; `right_px` further right.
 json flat(const Track2d& track, int frame, double right_px = 0, double scale = 1) {
@@ -58,7 +44,7 @@ json landmarks(const Track2d& track, int frame) {
 }
 
 LayoutSample old_openpose() {
-  const Track2d track = figure("COCO_18");
+  const Track2d track = sample_figure("COCO_18");
   const json person{{"pose_keypoints", flat(track, 0)}, {"face_keypoints", json::array()}};
   return {"person_whole.json",
           "openpose",
@@ -70,7 +56,7 @@ LayoutSample old_openpose() {
 
 /// OpenPose's 25 body joints with an id that is a number.
 LayoutSample body_25b() {
-  const Track2d track = figure("BODY_25B");
+  const Track2d track = sample_figure("BODY_25B");
   const json person{{"person_id", 1}, {"pose_keypoints_2d", flat(track, 0)}};
   return {"frame_0007_keypoints.json",
           "openpose",
@@ -81,7 +67,7 @@ LayoutSample body_25b() {
 }
 
 LayoutSample alphapose(const std::string& name, const json& idx, double scale) {
-  const Track2d track = figure("COCO_17");
+  const Track2d track = sample_figure("COCO_17");
   json list = json::array();
   for (int frame = 0; frame < kFrames; ++frame)
     list.push_back({{"image_id", fmt::format("{:05}.jpg", frame + 1)},
@@ -95,7 +81,7 @@ LayoutSample alphapose(const std::string& name, const json& idx, double scale) {
 
 /// Two people of 136 joints, of which face and hands are left out.
 LayoutSample alphapose_136() {
-  const Track2d track = figure("HALPE_26");
+  const Track2d track = sample_figure("HALPE_26");
   json list = json::array();
   for (int frame = 0; frame < kFrames; ++frame)
     for (const double right_px : {0.0, 500.0}) {
@@ -110,7 +96,7 @@ LayoutSample alphapose_136() {
 }
 
 LayoutSample alphapose_cmu() {
-  const Track2d track = figure("COCO_18");
+  const Track2d track = sample_figure("COCO_18");
   json images = json::object();
   for (int frame = 0; frame < kFrames; ++frame)
     images[fmt::format("{:04}.jpg", frame)] = {{"version", "AlphaPose v0.3"},
@@ -126,7 +112,7 @@ json instance(const Track2d& track, int frame) {
 }
 
 LayoutSample mmpose_video() {
-  const Track2d track = figure("COCO_17");
+  const Track2d track = sample_figure("COCO_17");
   json frames = json::array();
   for (int frame = 0; frame < kFrames; ++frame)
     frames.push_back({{"frame_id", frame}, {"instances", {instance(track, frame)}}});
@@ -134,14 +120,106 @@ LayoutSample mmpose_video() {
 }
 
 LayoutSample mmpose_image() {
-  const Track2d track = figure("HALPE_26");
+  const Track2d track = sample_figure("HALPE_26");
   return {
       "mmpose_image.json", "mmpose", "HALPE_26", 1, 1, json::array({instance(track, 0)}).dump()};
 }
 
+/// JSON lines: a frame in each.
+LayoutSample mmpose_lines() {
+  const Track2d track = sample_figure("COCO_17");
+  std::string text;
+  for (int frame = 0; frame < kFrames; ++frame)
+    text += json{{"frame_id", frame}, {"instances", {instance(track, frame)}}}.dump() + "\r\n\n";
+  return {"mmpose_lines.jsonl", "mmpose", "COCO_17", kFrames, 1, text};
+}
+
+/// COCO-WholeBody with its names: six joints of the feet, 68 of the face, 42 of hands.
+LayoutSample mmpose_whole_body() {
+  const Track2d track = sample_figure("COCO_23");
+  json frames = json::array(), names = json::object();
+  for (int joint = 0; joint < 133; ++joint)
+    names[std::to_string(joint)] = joint < 23   ? track.joint_names[joint]
+                                   : joint < 91 ? fmt::format("face-{}", joint - 23)
+                                                : fmt::format("left_hand_{}", joint);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    json body = instance(track, frame);
+    for (int joint = 23; joint < 133; ++joint) {
+      body["keypoints"].push_back({400, 80});
+      body["keypoint_scores"].push_back(0.5);
+    }
+    frames.push_back({{"frame_id", frame + 1}, {"instances", {body}}});
+  }
+  return {"whole_body.json",
+          "mmpose",
+          "COCO_23",
+          kFrames,
+          1,
+          json{{"meta_info", {{"keypoint_id2name", names}}}, {"instance_info", frames}}.dump()};
+}
+
+/// rtmlib: all people of a frame at once.
+LayoutSample rtmlib_frames() {
+  const Track2d track = sample_figure("COCO_17");
+  json frames = json::array();
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const json scores(std::vector<double>(17, 0.8));
+    json right = points(track, frame);
+    for (json& point : right) point[0] = point[0].get<double>() + 500;
+    frames.push_back({{"frame", frame},
+                      {"keypoints", {points(track, frame), right}},
+                      {"scores", {scores, scores}}});
+  }
+  return {"rtmlib.json", "mmpose", "COCO_17", kFrames, 2, frames.dump()};
+}
+
+/// All frames at once, of one person each.
+LayoutSample rtmlib_film() {
+  const Track2d track = sample_figure("HALPE_26");
+  json keypoints = json::array(), scores = json::array();
+  for (int frame = 0; frame < kFrames; ++frame) {
+    keypoints.push_back(points(track, frame));
+    scores.emplace_back(std::vector<double>(26, 0.8));
+  }
+  return {"rtmlib_film.json",
+          "mmpose",
+          "HALPE_26",
+          kFrames,
+          1,
+          json{{"keypoints", keypoints}, {"scores", scores}}.dump()};
+}
+
+/// Ultralytics' YOLO: a list of objects for each frame.
+LayoutSample yolo() {
+  const Track2d track = sample_figure("COCO_17");
+  json frames = json::array();
+  for (int frame = 0; frame < kFrames; ++frame) {
+    json x = json::array(), y = json::array();
+    for (int joint = 0; joint < 17; ++joint) {
+      x.push_back(track.x_px(frame, joint));
+      y.push_back(track.y_px(frame, joint));
+    }
+    const json keypoints{{"x", x}, {"y", y}, {"visible", std::vector<double>(17, 0.9)}};
+    frames.push_back(json::array({{{"name", "person"}, {"class", 0}, {"keypoints", keypoints}}}));
+  }
+  return {"yolo.json", "mmpose", "COCO_17", kFrames, 1, frames.dump()};
+}
+
+/// Results whose images are names with a number behind the frame's, not in order.
+LayoutSample coco_names() {
+  const Track2d track = sample_figure("COCO_17");
+  json list = json::array();
+  for (const int frame : {2, 0, 3, 1})
+    list.push_back({{"image_id", fmt::format("vid3/img_{:04}_cam2.jpg", frame)},
+                    {"category_id", 1},
+                    {"keypoints", flat(track, frame)},
+                    {"score", 0.9}});
+  return {"coco_names.json", "alphapose", "COCO_17", kFrames, 1, list.dump()};
+}
+
 /// Annotations with flags, of images without size.
 LayoutSample coco_annotations() {
-  const Track2d track = figure("COCO_17");
+  const Track2d track = sample_figure("COCO_17");
   json images = json::array(), annotations = json::array();
   for (int frame = 0; frame < kFrames; ++frame) {
     images.push_back({{"id", frame + 1}, {"width", 1280}, {"height", 720}});
@@ -159,7 +237,7 @@ LayoutSample coco_annotations() {
 
 /// MediaPipe's own names of JSON, with a frame in which nobody was found.
 LayoutSample mediapipe_json() {
-  const Track2d track = figure("MEDIAPIPE_33");
+  const Track2d track = sample_figure("MEDIAPIPE_33");
   json frames = json::array();
   for (int frame = 0; frame < kFrames; ++frame)
     frames.push_back(
@@ -167,8 +245,50 @@ LayoutSample mediapipe_json() {
   return {"mediapipe.json", "mediapipe", "MEDIAPIPE_33", kFrames, 1, frames.dump()};
 }
 
+/// Landmarks by their numbers or names, whose order a JSON object does not keep.
+LayoutSample mediapipe_objects(const std::string& name, bool numbered) {
+  const Track2d track = sample_figure("MEDIAPIPE_33");
+  json frames = json::array();
+  for (int frame = 0; frame < kFrames; ++frame) {
+    json body = json::object();
+    const json list = landmarks(track, frame);
+    for (std::size_t joint = 0; joint < list.size(); ++joint) {
+      std::string key = track.joint_names[joint];
+      for (char& letter : key) letter = static_cast<char>(std::toupper(letter));
+      body[numbered ? std::to_string(joint) : "PoseLandmark." + key] = list[joint];
+    }
+    frames.push_back(body);
+  }
+  return {name, "mediapipe", "MEDIAPIPE_33", kFrames, 1, frames.dump()};
+}
+
+/// Rows with `id` for the landmark, and a name beside it.
+LayoutSample mediapipe_rows_by_id(const std::string& name, bool named) {
+  const Track2d track = sample_figure("MEDIAPIPE_33");
+  std::string text = named ? "frame,id,name,x,y\n" : "frame,id,x,y\n";
+  for (int frame = 0; frame < kFrames; ++frame)
+    for (int joint = 0; joint < 33; ++joint)
+      text +=
+          fmt::format("{},{}{},{},{}\n", frame, joint, named ? "," + track.joint_names[joint] : "",
+                      track.x_px(frame, joint) / 1920, track.y_px(frame, joint) / 1080);
+  return {name, "mediapipe", "MEDIAPIPE_33", kFrames, 1, text};
+}
+
+/// Rows with `id` for the person.
+LayoutSample mediapipe_rows_of_people() {
+  const Track2d track = sample_figure("MEDIAPIPE_33");
+  std::string text = "frame,id,landmark,x,y\n";
+  for (int frame = 0; frame < kFrames; ++frame)
+    for (const int person : {0, 1})
+      for (int joint = 0; joint < 33; ++joint)
+        text += fmt::format("{},{},{},{},{}\n", frame, person, joint,
+                            (track.x_px(frame, joint) + 500 * person) / 1920,
+                            track.y_px(frame, joint) / 1080);
+  return {"rows_of_people.csv", "mediapipe", "MEDIAPIPE_33", kFrames, 2, text};
+}
+
 LayoutSample mediapipe_columns() {
-  const Track2d track = figure("MEDIAPIPE_33");
+  const Track2d track = sample_figure("MEDIAPIPE_33");
   std::string text = "frame";
   for (int joint = 0; joint < 33; ++joint)
     text += fmt::format(",L{0}_x,L{0}_y,L{0}_z,L{0}_visibility", joint);
@@ -183,7 +303,7 @@ LayoutSample mediapipe_columns() {
 
 /// The rows of frame 2 are missing: nobody was found.
 LayoutSample mediapipe_rows() {
-  const Track2d track = figure("MEDIAPIPE_33");
+  const Track2d track = sample_figure("MEDIAPIPE_33");
   std::string text = "Frame,LandmarkID,X,Y\n";
   for (const int frame : {0, 1, 3})
     for (int joint = 0; joint < 33; ++joint)
@@ -194,7 +314,7 @@ LayoutSample mediapipe_rows() {
 
 /// TensorFlow.js: named keypoints with scores.
 LayoutSample movenet() {
-  const Track2d track = figure("COCO_17");
+  const Track2d track = sample_figure("COCO_17");
   json frames = json::array();
   for (int frame = 0; frame < kFrames; ++frame) {
     json keypoints = json::array();
@@ -229,6 +349,20 @@ LayoutSample sleap_two() {
 
 }  // namespace
 
+Track2d sample_figure(const std::string& set) {
+  Track2d track = figure_track({.name = {},
+                                .about = {},
+                                .joint_sets = {set},
+                                .recognises = nullptr,
+                                .read = nullptr,
+                                .write = nullptr},
+                               kFrames);
+  track.x_px(1, 1) = track.x_px(0, 1) + 3;
+  track.y_px(1, 1) = track.y_px(0, 1);
+  track.confidence(1, 1) = 0.75;
+  return track;
+}
+
 const std::vector<LayoutSample>& layout_samples() {
   static const std::vector<LayoutSample> samples{
       old_openpose(),
@@ -240,8 +374,19 @@ const std::vector<LayoutSample>& layout_samples() {
       alphapose_cmu(),
       mmpose_video(),
       mmpose_image(),
+      mmpose_lines(),
+      mmpose_whole_body(),
+      rtmlib_frames(),
+      rtmlib_film(),
+      yolo(),
       coco_annotations(),
+      coco_names(),
       mediapipe_json(),
+      mediapipe_objects("by_number.json", true),
+      mediapipe_objects("by_name.json", false),
+      mediapipe_rows_by_id("rows_by_id.csv", false),
+      mediapipe_rows_by_id("rows_by_name.csv", true),
+      mediapipe_rows_of_people(),
       mediapipe_columns(),
       mediapipe_rows(),
       movenet(),

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "mcdbn/camera/track.hpp"
+
 namespace mcdbn::test {
 
 /// A small file as some tool lays it out, of a figure that walks.
@@ -15,5 +17,8 @@ struct LayoutSample {
 };
 
 const std::vector<LayoutSample>& layout_samples();
+
+/// The figure of a joint set, 4 frames with nothing missing, that the samples show.
+Track2d sample_figure(const std::string& joint_set);
 
 }  // namespace mcdbn::test

@@ -45,7 +45,7 @@ const std::vector<RealTrack>& real_tracks() {
       {"formats/alphapose_halpe26/alphapose-results_multi_60frames.json", "alphapose", "HALPE_26",
        26, 60, 3},
       {"formats/blazepose_json/pose_squats.full.json", "mediapipe", "MEDIAPIPE_33", 33, 65, 1},
-      {"formats/movenet_json/pose_1.json", "mediapipe", "", 17, 120, 1},
+      {"formats/movenet_json/pose_1.json", "mediapipe", "COCO_17", 17, 120, 1},
       {"formats/deeplabcut/mouse_single.csv", "deeplabcut", "", 8, 11, 1},
       {"formats/deeplabcut/wasp_single.csv", "deeplabcut", "", 2, 11, 1},
       {"formats/deeplabcut/mouse_multi.csv", "deeplabcut", "", 12, 27, 2},

@@ -1,7 +1,10 @@
 // The layouts of tools, and what is wrong with files that are nearly of one.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "base/scratch_folder.hpp"
@@ -11,6 +14,23 @@
 
 using namespace mcdbn;
 using namespace mcdbn::test;
+
+namespace {
+
+/// Every joint stands where the figure has it, from the nose.
+void check_joints(const Track2d& track, const std::string& joint_set, int nose) {
+  const Track2d figure = sample_figure(joint_set);
+  REQUIRE(track.joint_names == figure.joint_names);
+  for (int joint = 0; joint < track.joint_count(); ++joint) {
+    if (!(track.confidence(0, joint) > 0)) continue;
+    CAPTURE(track.joint_names[joint]);
+    CHECK(track.x_px(0, joint) - track.x_px(0, nose) ==
+          doctest::Approx(figure.x_px(0, joint) - figure.x_px(0, nose)));
+    CHECK(track.y_px(0, joint) == doctest::Approx(figure.y_px(0, joint)));
+  }
+}
+
+}  // namespace
 
 TEST_CASE("layouts: each is recognised, and is the figure that was written") {
   const ScratchFolder folder;
@@ -30,6 +50,7 @@ TEST_CASE("layouts: each is recognised, and is the figure that was written") {
     CHECK(track.confidence.maxCoeff() <= 1);
     const int nose = std::max(track.find("nose"), track.find("Nose"));
     if (nose < 0) continue;
+    check_joints(track, sample.joint_set, nose);
     // A head above the middle, that walks 3 px a frame.
     for (int frame = 0; frame < track.frames(); ++frame) {
       if (std::isnan(track.x_px(frame, nose))) continue;
@@ -85,6 +106,8 @@ TEST_CASE("layouts: what is wrong is told by its place") {
                 "a.json: [0].image_id: no number of a frame"},
            Case{"a.json", R"({"instance_info": [{"frame_id": 1, "instances": [{}]}]})",
                 "a.json: instance_info[0].instances[0]: no key 'keypoints'"},
+           Case{"a.json", "{\"people\": []}\n{\"people\": [}\n", "a.json:2: no readable JSON"},
+           Case{"a.json", R"({"keypoints": {"x": [1, 2], "y": [1]}})", "keypoints: lists of diff"},
            Case{"a.csv", "bodyparts,a,a\ncoords,x,q\n0,1,2\n", "a.csv:2: coords 'q'"},
            Case{"a.csv", "bodyparts,a,a\ncoords,x,y\n0,1,two\n", "a.csv:3: 'two' in column 3"},
            Case{"a.csv", "frame_idx,a.x\n0,1\n", "a.csv:1: node a has no columns"},
@@ -95,6 +118,62 @@ TEST_CASE("layouts: what is wrong is told by its place") {
     CAPTURE(wrong.text);
     CHECK_THROWS_WITH_AS(read_track(folder.write(wrong.name, wrong.text)),
                          doctest::Contains(wrong.message.c_str()), InputError);
+  }
+}
+
+TEST_CASE("layouts: a folder of images in the first of which nobody was found") {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "images");
+  for (const LayoutSample& sample : layout_samples())
+    if (sample.name == "mmpose_image.json")
+      for (const int frame : {1, 2, 4})
+        std::ofstream(folder / "images" / ("f" + std::to_string(frame) + ".json")) << sample.text;
+  for (const int frame : {0, 3})
+    std::ofstream(folder / "images" / ("f" + std::to_string(frame) + ".json")) << "[]";
+  const TrackReading reading = read_tracks(folder / "images");
+  CHECK(reading.format == "mmpose");
+  REQUIRE(reading.people.front().frames() == 5);
+  CHECK((reading.people.front().confidence.row(0).array() == 0).all());
+  CHECK((reading.people.front().confidence.row(1).array() > 0).all());
+  CHECK((reading.people.front().confidence.row(3).array() == 0).all());
+}
+
+TEST_CASE("layouts: faces and hands that are left out are told") {
+  const ScratchFolder folder;
+  for (const LayoutSample& sample : layout_samples()) {
+    if (sample.name != "whole_body.json" && sample.name != "halpe136.json") continue;
+    CAPTURE(sample.name);
+    std::vector<std::string> notices;
+    read_track(folder.write(sample.name, sample.text), {}, &notices);
+    CHECK(std::ranges::any_of(notices, [](const std::string& notice) {
+      return notice.find("face and hands are left out") != std::string::npos;
+    }));
+  }
+}
+
+TEST_CASE("layouts: files of other kinds are told what they are") {
+  const ScratchFolder folder;
+  using namespace std::string_literals;
+  struct Case {
+    std::string name, text, message;
+  };
+  for (const Case& other : {
+           Case{"dlc.h5", "\x89HDF\r\n\x1a\n\0"s, "dlc.h5: HDF5"},
+           Case{"data.npz", "PK\x03\x04\0"s, "data.npz: an archive"},
+           Case{"film.mp4",
+                "\0\0\0\x20"
+                "ftypisom"s,
+                "film.mp4: a film"},
+           Case{"a.pkl", "\x80\x04\x95"s, "a.pkl: Python's pickle"},
+           Case{"a.c3d", "\x02P"s + std::string(600, '\0'), "a.c3d: C3D"},
+           Case{"a.trc", "PathFileType\t4\t(X/Y/Z)\ta.trc\n", "a.trc: TRC"},
+           Case{"a.mot", "Coordinates\nnRows=1\nendheader\n", "a.mot: a table of OpenSim"},
+           Case{"a.bvh", "HIERARCHY\nROOT a\n", "a.bvh: BVH"},
+           Case{"a.txt", "words", "a.txt: not a 2D track of a known format"},
+       }) {
+    CAPTURE(other.name);
+    CHECK_THROWS_WITH_AS(read_track(folder.write(other.name, other.text)),
+                         doctest::Contains(other.message.c_str()), InputError);
   }
 }
 

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "formats/track_source.hpp"
+
+namespace mcdbn {
+
+/// What a file is that holds no 2D track in a format that is read, and what to do about it, for
+/// files that people have beside their tracks: HDF5, archives, films, markers in space. Empty: not
+/// known.
+std::string what_else_it_is(const TrackSource& source);
+
+}  // namespace mcdbn
