@@ -10,19 +10,29 @@
 #include "motion/mirror.hpp"
 
 namespace mcdbn {
+namespace {
+
+void scale_positions(Motion& motion, int joint, double factor) {
+  const std::vector<Channel>& channels = motion.skeleton.joints[joint].channels;
+  for (std::size_t k = 0; k < channels.size(); ++k)
+    if (!is_rotation(channels[k]))
+      motion.channels.col(motion.skeleton.first_channel(joint) + static_cast<int>(k)) *= factor;
+}
+
+}  // namespace
 
 void scale_bones(Motion& motion, const std::function<double(int joint)>& factor) {
   Skeleton& skeleton = motion.skeleton;
   const double size = body_height(skeleton);
   const std::vector<int> opposite = opposite_joints(skeleton);
-  for (int j = 0; j < skeleton.joint_count(); ++j)
-    skeleton.joints[j].offset *= factor(opposite.empty() ? j : std::min(j, opposite[j]));
   const int root = moving_root({&motion});
-  const Joint& joint = skeleton.joints[root];
-  for (std::size_t k = 0; k < joint.channels.size(); ++k)
-    if (!is_rotation(joint.channels[k]))
-      motion.channels.col(skeleton.first_channel(root) + static_cast<int>(k)) *=
-          body_height(skeleton) / size;
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const double longer = factor(opposite.empty() ? j : std::min(j, opposite[j]));
+    skeleton.joints[j].offset *= longer;
+    // Positions stand for offsets.
+    if (j > root) scale_positions(motion, j, longer);
+  }
+  scale_positions(motion, root, body_height(skeleton) / size);
 }
 
 Motion with_other_body(Motion motion, const OtherBody& deviations, std::uint64_t seed) {
