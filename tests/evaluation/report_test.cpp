@@ -124,6 +124,22 @@ TEST_CASE("a report says what was done to the tracks and to the answers") {
         ordered_json{{"noise_px", 5.0}, {"missing_share", 0.2}, {"hidden_s", 1.0}});
 }
 
+TEST_CASE("a report says whose tracks they are, and whether the camera was known") {
+  using Kind = Verdict::Kind;
+  EvaluationReport report = small_report();
+  CHECK(summary_json(report).at("tracks") == "exact");
+  CHECK(summary_json(report).at("camera_known") == true);
+  CHECK(!says(verdicts(report), Kind::note, "as a detector's"));
+  report.tracks = "mediapipe";
+  CHECK(summary_json(report).at("tracks") == "mediapipe");
+  CHECK(says(verdicts(report), Kind::note,
+             "as a detector's (mediapipe), of other people than the clips' and through cameras "
+             "drawn around them; every method saw the same, and knew the camera."));
+  report.camera_known = false;
+  CHECK(summary_json(report).at("camera_known") == false);
+  CHECK(says(verdicts(report), Kind::note, "every method saw the same, no camera known."));
+}
+
 TEST_CASE("verdicts say in words who wins") {
   using Kind = Verdict::Kind;
   EvaluationReport report = small_report();
