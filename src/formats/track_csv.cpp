@@ -243,11 +243,7 @@ SeenPeople read(const TrackSource& source) {
   }
   if (reader.says_fps()) people.fps = track.fps;
   people.image_size = ImageSize{track.width_px, track.height_px};
-  if (!reader.says_size())
-    people.notices.push_back(
-        fmt::format("the file does not say the image's size: {} x {} px are "
-                    "taken; say it by `image-size`",
-                    track.width_px, track.height_px));
+  people.image_size_is_said = reader.says_size();
   return people;
 }
 

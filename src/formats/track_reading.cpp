@@ -111,6 +111,10 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
                         const std::string& file, std::vector<std::string>& notices) {
   const Extent extent = extent_of(frames);
   const std::optional<ImageSize> known = options.image_size ? options.image_size : seen.image_size;
+  if (!options.image_size && seen.image_size && !seen.image_size_is_said)
+    notices.push_back(fmt::format(
+        "the file does not say the image's size: {} x {} px are taken; say it by `image-size`",
+        known->width_px, known->height_px));
   if (extent.most_x < extent.least_x) return known.value_or(kUsualImage);  // nothing was seen
   const double farthest =
       std::max({-extent.least_x, -extent.least_y, extent.most_x, extent.most_y});

@@ -230,6 +230,36 @@ TEST_CASE("layouts: 33 landmarks numbered from 1 are those numbered from 0") {
   CHECK(zero.x_px(0, 32) == doctest::Approx(1920 * 0.74));
 }
 
+TEST_CASE("layouts: an image's size that is said holds for pixels and for shares of it") {
+  const ScratchFolder folder;
+  Track2d track = sample_figure("MEDIAPIPE_33");
+  track.width_px = 640;
+  track.height_px = 480;
+  track_format("mediapipe").write(folder / "shares.csv", track);
+  std::string text = "nose_x_px,nose_y_px\n";
+  for (int frame = 0; frame < track.frames(); ++frame)
+    text +=
+        std::to_string(track.x_px(frame, 0)) + "," + std::to_string(track.y_px(frame, 0)) + "\n";
+  folder.write("pixels.csv", text);
+  for (const int times : {1, 2}) {
+    CAPTURE(times);
+    const TrackReadOptions options{.image_size = ImageSize{640 * times, 480 * times}};
+    const Track2d shares = read_track(folder / "shares.csv", options);
+    CHECK(shares.width_px == 640 * times);
+    CHECK(shares.x_px.isApprox(times * track.x_px, 1e-9));
+    CHECK(shares.y_px.isApprox(times * track.y_px, 1e-9));
+    std::vector<std::string> notices;
+    const Track2d pixels = read_track(folder / "pixels.csv", options, &notices);
+    CHECK(pixels.width_px == 640 * times);
+    CHECK(pixels.height_px == 480 * times);
+    CHECK(pixels.x_px.col(0).isApprox(track.x_px.col(0), 1e-6));
+    for (const std::string& notice : notices) CHECK(notice.find("size") == std::string::npos);
+  }
+  std::vector<std::string> notices;
+  CHECK(read_track(folder / "pixels.csv", {}, &notices).width_px == 1920);
+  CHECK(notices.front().find("1920 x 1080 px are taken") != std::string::npos);
+}
+
 TEST_CASE("layouts: shares of an image whose size nobody says are told as such") {
   const ScratchFolder folder;
   for (const LayoutSample& sample : layout_samples()) {
