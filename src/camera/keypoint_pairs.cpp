@@ -5,32 +5,27 @@
 namespace mcdbn {
 namespace {
 
-/// The column on the body's other side: of the opposite role, where this one's mirror image lies.
-int opposite(const std::vector<Keypoint>& keypoints, const Keypoint& keypoint) {
-  const Eigen::Vector3d mirrored(-keypoint.offset.x(), keypoint.offset.y(), keypoint.offset.z());
-  int nearest = -1;
-  double least = 0;
-  for (std::size_t i = 0; i < keypoints.size(); ++i) {
-    if (keypoints[i].role != other_side(*keypoint.role)) continue;
-    const double distance = (keypoints[i].offset - mirrored).norm();
-    if (nearest >= 0 && distance >= least) continue;
-    nearest = static_cast<int>(i);
-    least = distance;
-  }
-  return nearest;
+/// Of the opposite role, where the other's mirror image lies.
+bool are_mirrored(const Keypoint& left, const Keypoint& right) {
+  const Eigen::Vector3d mirror(-1, 1, 1);
+  return right.role == other_side(*left.role) &&
+         (left.offset.cwiseProduct(mirror) - right.offset).norm() < 1e-6;
 }
 
 LimbPairs pairs_of(const std::vector<Keypoint>& keypoints, const std::vector<JointRole>& left_roles,
                    const std::vector<JointRole>& telling) {
   LimbPairs pairs;
-  for (std::size_t i = 0; i < keypoints.size(); ++i) {
-    const Keypoint& keypoint = keypoints[i];
-    if (!keypoint.role || std::ranges::count(left_roles, *keypoint.role) == 0) continue;
-    const int right = opposite(keypoints, keypoint);
-    if (right < 0) continue;
-    pairs.columns.emplace_back(static_cast<int>(i), right);
-    if (std::ranges::count(telling, *keypoint.role) > 0)
-      pairs.telling.emplace_back(static_cast<int>(i), right);
+  std::vector<bool> taken(keypoints.size(), false);
+  for (std::size_t left = 0; left < keypoints.size(); ++left) {
+    const auto& role = keypoints[left].role;
+    if (!role || std::ranges::count(left_roles, *role) == 0) continue;
+    for (std::size_t right = 0; right < keypoints.size(); ++right) {
+      if (taken[right] || !are_mirrored(keypoints[left], keypoints[right])) continue;
+      taken[right] = true;
+      pairs.columns.emplace_back(static_cast<int>(left), static_cast<int>(right));
+      if (std::ranges::count(telling, *role) > 0) pairs.telling.push_back(pairs.columns.back());
+      break;
+    }
   }
   return pairs;
 }

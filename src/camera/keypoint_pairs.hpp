@@ -7,7 +7,8 @@
 
 namespace mcdbn {
 
-/// The columns of both legs, or of both arms, left before right.
+/// The columns of both legs, or of both arms, left before right: the same place on both sides, a
+/// column in one pair at most.
 struct LimbPairs {
   std::vector<std::pair<int, int>> columns;  ///< all that move when the limbs are exchanged
   std::vector<std::pair<int, int>> telling;  ///< of them those that are far from the trunk

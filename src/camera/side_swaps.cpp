@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/upper_median.hpp"
+#include "camera/keypoint_pairs.hpp"
 #include "camera/track_columns.hpp"
 
 namespace mcdbn {
@@ -25,19 +26,6 @@ struct PlacePair {
   int left = 0, right = 0;  ///< columns
   std::vector<std::array<Eigen::Vector2d, 2>> seen;
 };
-
-std::optional<LimbPair> limbs_of(JointRole role) {
-  using enum JointRole;
-  if (role >= left_shoulder && role <= left_hand) return LimbPair::arms;
-  if (role >= left_hip && role <= left_toe) return LimbPair::legs;
-  return {};
-}
-
-bool mirrored(const Keypoint& a, const Keypoint& b) {
-  const Eigen::Vector3d mirror(-1, 1, 1);
-  return a.role && b.role && *b.role == other_side(*a.role) &&
-         (a.offset.cwiseProduct(mirror) - b.offset).norm() < 1e-6;
-}
 
 /// A column's places in body heights; short gaps are bridged by straight lines.
 std::vector<Eigen::Vector2d> places(const Track2d& track, int column, double height_px,
@@ -61,26 +49,22 @@ std::vector<PlacePair> pairs_of(const Track2d& track, LimbPair limbs, double hei
                                 const SideSwapSettings& settings) {
   const auto longest_gap = static_cast<int>(settings.longest_gap_s * track.fps);
   std::vector<PlacePair> pairs;
-  const auto& keypoints = track.keypoints;
-  std::vector<bool> taken(keypoints.size(), false);
-  for (std::size_t l = 0; l < keypoints.size(); ++l) {
-    if (!keypoints[l].role || limbs_of(*keypoints[l].role) != limbs) continue;
-    for (std::size_t r = 0; r < keypoints.size(); ++r) {
-      if (taken[r] || !mirrored(keypoints[l], keypoints[r])) continue;
-      taken[r] = true;
-      PlacePair pair{static_cast<int>(l), static_cast<int>(r), {}};
-      const auto left = places(track, pair.left, height_px, longest_gap);
-      const auto right = places(track, pair.right, height_px, longest_gap);
-      for (std::size_t t = 0; t < left.size(); ++t) pair.seen.push_back({left[t], right[t]});
-      pairs.push_back(std::move(pair));
-      break;
-    }
+  const auto columns =
+      (limbs == LimbPair::legs ? leg_pairs(track.keypoints) : arm_pairs(track.keypoints)).columns;
+  for (const auto& [left_column, right_column] : columns) {
+    PlacePair pair{left_column, right_column, {}};
+    const auto left = places(track, left_column, height_px, longest_gap);
+    const auto right = places(track, right_column, height_px, longest_gap);
+    for (std::size_t t = 0; t < left.size(); ++t) pair.seen.push_back({left[t], right[t]});
+    pairs.push_back(std::move(pair));
   }
   return pairs;
 }
 
 /// The height of the body on the image, told from how far its joints are spread: on the image they
-/// reach over most of the body's height while it stands, so the usual frame counts.
+/// reach over most of the body's height while it stands, so the usual frame counts. Noise is
+/// measured by thighs and shanks (person_height_px), which is nearer to the body's height but needs
+/// legs; arms are to be put right where only they are seen.
 double body_height_px(const Track2d& track) {
   constexpr double kSpreadOfHeight = 0.27;  // RMS distance from their centre, people who walk
   std::vector<double> spreads;
