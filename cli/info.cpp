@@ -108,6 +108,7 @@ json describe_cameras(const fs::path& path, const CameraFormat& format) {
                        {"fx_px", camera.fx_px},
                        {"fy_px", camera.fy_px},
                        {"distortions", camera.distortion.size()},
+                       {"fisheye", camera.fisheye},
                        {"centre", {centre.x(), centre.y(), centre.z()}},
                        {"unit_m", camera.unit_m ? json(*camera.unit_m) : json()}});
   }

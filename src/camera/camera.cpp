@@ -7,9 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
 
+#include "camera/lens.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
 
@@ -114,23 +113,16 @@ MatrixD project_points(const Camera& camera, const MatrixD& points) {
   const Eigen::Index joints = points.cols() / 3;
   MatrixD pixels(points.rows(), 2 * joints);
   if (pixels.size() == 0) return pixels;
-  cv::Mat camera_from_world, rotation;
-  cv::eigen2cv(camera.camera_from_world, camera_from_world);
-  cv::Rodrigues(camera_from_world, rotation);
-  const cv::Vec3d translation(camera.translation.x(), camera.translation.y(),
-                              camera.translation.z());
-  const cv::Matx33d intrinsics(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0,
-                               1);
   // Row-major frames of x y z lie in memory as OpenCV wants its list of points; it only reads them.
   const cv::Mat world(static_cast<int>(points.rows() * joints), 1, CV_64FC3,
                       const_cast<double*>(points.data()));
   cv::Mat image(world.rows, 1, CV_64FC2, pixels.data());
-  cv::projectPoints(world, rotation, translation, intrinsics, camera.distortion, image);
+  project_through_lens(camera, world, image);
   for (Eigen::Index frame = 0; frame < points.rows(); ++frame) {
     for (Eigen::Index joint = 0; joint < joints; ++joint) {
       const Eigen::Vector3d point = points.row(frame).segment<3>(3 * joint);
-      const double depth = camera.camera_from_world.row(2) * point + camera.translation.z();
-      if (!(depth > 0)) pixels.row(frame).segment<2>(2 * joint).setConstant(kNan);
+      if (!is_before_lens(camera, camera.camera_from_world * point + camera.translation))
+        pixels.row(frame).segment<2>(2 * joint).setConstant(kNan);
     }
   }
   return pixels;

@@ -1,6 +1,6 @@
 #include "camera/track_rays.hpp"
 
-#include <opencv2/calib3d.hpp>
+#include "camera/lens.hpp"
 
 namespace mcdbn {
 namespace {
@@ -13,15 +13,7 @@ MatrixD undistorted(const Track2d& track, const std::vector<int>& columns, const
       pixels.emplace_back(track.x_px(frame, column), track.y_px(frame, column));
     }
   }
-  const cv::Matx33d intrinsics(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0,
-                               1);
-  std::vector<cv::Point2d> rays;
-  // More rounds than OpenCV's five, which leave tenths of a pixel at the edge of a wide lens.
-  const cv::TermCriteria rounds(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 40, 1e-10);
-  if (!pixels.empty()) {
-    cv::undistortPoints(pixels, rays, intrinsics, camera.distortion, cv::noArray(), cv::noArray(),
-                        rounds);
-  }
+  const std::vector<cv::Point2d> rays = rays_of(camera, pixels);
   MatrixD result(track.frames(), 2 * static_cast<Eigen::Index>(columns.size()));
   for (std::size_t k = 0; k < rays.size(); ++k) {
     result.data()[2 * k] = rays[k].x;

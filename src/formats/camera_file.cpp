@@ -90,8 +90,8 @@ Camera read_camera(const std::filesystem::path& path, std::vector<std::string>* 
     throw InputError(fmt::format("{}: holds several cameras; choose one as {}:{} (there are: {})",
                                  file.string(), file.string(), rig.cameras.front().name,
                                  fmt::join(names_of(rig), ", ")));
-  const auto found = name ? std::ranges::find(rig.cameras, *name, &NamedCamera::name)
-                          : rig.cameras.begin();
+  const auto found =
+      name ? std::ranges::find(rig.cameras, *name, &NamedCamera::name) : rig.cameras.begin();
   if (found == rig.cameras.end())
     throw InputError(fmt::format("{}: has no camera {}; there are: {}", file.string(), *name,
                                  fmt::join(names_of(rig), ", ")));

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <opencv2/core/eigen.hpp>
 
@@ -28,8 +29,10 @@ CameraRig read(const CameraSource& source) {
   set_intrinsics(camera, storage.square("camera_matrix", "[fx 0 cx; 0 fy cy; 0 0 1]"),
                  storage.where("camera_matrix"));
   constexpr const char* kDistortion = "distortion_coefficients";
-  if (storage.has(kDistortion))
-    set_distortion(camera, storage.matrix(kDistortion).values, storage.where(kDistortion));
+  const bool fisheye = storage.has("fisheye") && storage.number("fisheye") != 0;
+  (fisheye ? set_fisheye : set_distortion)(
+      camera, storage.has(kDistortion) ? storage.matrix(kDistortion).values : std::vector<double>{},
+      storage.where(kDistortion));
   const std::string rotation = storage.has("rvec") ? "rvec" : "R";
   if (!storage.has(rotation))
     throw InputError(fmt::format("{}:1: neither rvec nor R is there; add the camera's rotation",
@@ -78,6 +81,7 @@ void write_camera(const std::filesystem::path& path, const Camera& camera) {
     if (!camera.distortion.empty()) {
       storage << "distortion_coefficients" << cv::Mat(camera.distortion);
     }
+    if (camera.fisheye) storage << "fisheye" << 1;
     storage << "R" << rotation << "tvec"
             << cv::Mat(cv::Vec3d(camera.translation.x(), camera.translation.y(),
                                  camera.translation.z()));

@@ -13,6 +13,16 @@
 
 namespace mcdbn {
 
+namespace {
+
+/// A control character: OpenCV's XML reader takes the program down with it.
+bool is_no_text(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return (byte < 0x20 && c != '\t' && c != '\n' && c != '\r' && c != '\f') || byte == 0x7F;
+}
+
+}  // namespace
+
 void check_camera_source(const CameraSource& source) {
   /// Parsers call themselves for what is nested: a file that only nests would bring them down.
   constexpr int kDeepest = 32, kWidestIndent = 64;
@@ -21,6 +31,8 @@ void check_camera_source(const CameraSource& source) {
   const std::string& text = source.text;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i], next = i + 1 < text.size() ? text[i + 1] : '\0';
+    if (is_no_text(c))
+      throw InputError(fmt::format("{}:{}: a byte that no text holds", source.path.string(), line));
     if (c == '[' || c == '{') ++brackets;
     if ((c == ']' || c == '}') && brackets > 0) --brackets;
     if (c == '<' && next == '/') tags -= tags > 0;
@@ -61,6 +73,13 @@ void set_distortion(Camera& camera, std::vector<double> values, const std::strin
   if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
     throw InputError(where + " holds a number that is not finite; correct it");
   camera.distortion = std::move(values);
+}
+
+void set_fisheye(Camera& camera, std::vector<double> values, const std::string& where) {
+  if (!values.empty() && values.size() != 4)
+    throw InputError(fmt::format("{} has {} numbers; a fisheye has 4", where, values.size()));
+  set_distortion(camera, std::move(values), where);
+  camera.fisheye = true;
 }
 
 int pixels_of(double value, const std::string& where) {

@@ -12,8 +12,9 @@ namespace mcdbn {
 /// What a calibration takes for up in its world.
 enum class WorldUp { y, z, minus_y };
 
-/// Refuses a text whose nesting would bring parsers down, which call themselves for it: brackets of
-/// JSON, YAML and TOML, tags of XML, and YAML's indentation, in which dashes nest, too.
+/// Refuses what would bring parsers down: control characters, and nesting, for which they call
+/// themselves: brackets of JSON, YAML and TOML, tags of XML, and YAML's indentation, in which dashes
+/// nest, too.
 /// @throws InputError
 void check_camera_source(const CameraSource& source);
 
@@ -28,6 +29,8 @@ void set_intrinsics(Camera& camera, const Eigen::Matrix3d& matrix, const std::st
 
 /// @param values k1 k2 p1 p2 …: 0, 4, 5, 8, 12 or 14 numbers
 void set_distortion(Camera& camera, std::vector<double> values, const std::string& where);
+/// @param values k1 k2 k3 k4, or none
+void set_fisheye(Camera& camera, std::vector<double> values, const std::string& where);
 
 /// @param values a whole number of pixels above 0, may be written as a float
 int pixels_of(double value, const std::string& where);

@@ -62,9 +62,6 @@ class Section {
 };
 
 TomlCamera camera_of(const Section& section) {
-  if (section.on("fisheye"))
-    throw InputError(section.where("fisheye") +
-                     " lenses are not read; give the pinhole calibration of the undistorted film");
   TomlCamera result;
   result.name = section.name();
   Camera& camera = result.camera;
@@ -75,8 +72,10 @@ TomlCamera camera_of(const Section& section) {
   set_intrinsics(camera,
                  Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix.data()),
                  section.where("matrix"));
-  if (section.has("distortions"))
-    set_distortion(camera, section.numbers("distortions"), section.where("distortions"));
+  const bool lens = section.has("distortions");
+  (section.on("fisheye") ? set_fisheye : set_distortion)(
+      camera, lens ? section.numbers("distortions") : std::vector<double>{},
+      section.where("distortions"));
   const std::vector<double> rotation = section.numbers("rotation");
   result.rotation_is_matrix = rotation.size() == 9;
   result.camera_from_world = rotation_of(rotation, section.where("rotation"));

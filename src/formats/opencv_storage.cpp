@@ -19,7 +19,7 @@ OpencvStorage::OpencvStorage(const CameraSource& source) : source_(source) {
   } catch (const cv::Exception&) {
     fail();
   }
-  if (!storage_.isOpened()) fail();
+  if (!storage_.isOpened() || !storage_.root().isMap()) fail();
 }
 
 bool OpencvStorage::has(const std::string& name) const {

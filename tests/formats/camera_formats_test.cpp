@@ -9,6 +9,7 @@
 
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
+#include "camera/odd_camera.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "shared_data.hpp"
@@ -230,6 +231,41 @@ TEST_CASE("camera formats: MHAD's cameras stand in clusters") {
                        doctest::Contains("d.json: clusters.L1.t_mm: has 2 numbers"), InputError);
 }
 
+TEST_CASE("camera formats: fisheye lenses, with four distortions or none") {
+  const ScratchFolder folder;
+  // Pose2Sim's, and Anipose's in millimetres.
+  for (const double unit : {1.0, 1000.0}) {
+    const Camera camera =
+        read_camera(folder.write("fish.toml", section("cam_01", unit, "fisheye = true")));
+    CHECK(camera.fisheye);
+    CHECK(camera.distortion == std::vector<double>{0.1, -0.02, 0.003, 0.004});
+    check_as_section(camera, 1 / unit);
+    std::string text = section("cam_01", unit, "fisheye = true", "");
+    text.replace(text.find("[ ,]"), 4, "[]");
+    const Camera plain = read_camera(folder.write("fish.toml", text));
+    CHECK(plain.fisheye);
+    CHECK(plain.distortion.empty());
+  }
+  CHECK_THROWS_WITH_AS(
+      read_cameras(folder.write("fish.toml", section("a", 1, "fisheye = true", "0, 0, 0, 0, 0"))),
+      doctest::Contains(":6: a: distortions has 5 numbers; a fisheye has 4"), InputError);
+  CHECK_FALSE(
+      read_camera(folder.write("fish.toml", section("cam_01", 1, "fisheye = false"))).fisheye);
+  for (const char* name : {"fish.yml", "fish.xml", "fish.json"}) {
+    CAPTURE(name);
+    Camera camera = test::odd_camera();
+    camera.distortion.resize(4);
+    camera.fisheye = true;
+    write_camera(folder / name, camera);
+    const Camera again = read_camera(folder / name);
+    CHECK(again.fisheye);
+    CHECK(again.distortion == camera.distortion);
+    camera.fisheye = false;
+    write_camera(folder / name, camera);
+    CHECK_FALSE(read_camera(folder / name).fisheye);
+  }
+}
+
 TEST_CASE("camera formats: what is wrong with a TOML is named with file, line and camera") {
   const ScratchFolder folder;
   const std::string good = section("cam_01", 1, "fisheye = false");
@@ -246,7 +282,6 @@ TEST_CASE("camera formats: what is wrong with a TOML is named with file, line an
         Case{"rotation = [ 1.57", "rotation = [ 1, 1.57", ":7: cam_01: rotation is not 3x3"},
         Case{"rotation", "turn", ":1: cam_01: rotation is missing"},
         Case{"3,]", "nan,]", ":8: cam_01: translation holds"},
-        Case{"fisheye = false", "fisheye = true", ":9: cam_01: fisheye lenses are not read"},
         Case{"1280.0, 720]", "1280.0, ", "bad.toml:"}}) {
     CAPTURE(c.to);
     std::string text = good;
@@ -273,6 +308,15 @@ TEST_CASE("camera formats: what only nests, or is larger than any calibration, i
     CHECK_THROWS_WITH_AS(read_cameras(folder.write("deep.yml", text)),
                          doctest::Contains("nested deeper"), InputError);
   }
+  // Found by fuzzing: these ended the program.
+  using namespace std::string_literals;
+  for (const std::string& text :
+       {"<?xml version=\0\0\0\0\"1.0\"?>\n<opencv_storage><a>3</a></opencv_storage>\n"s,
+        "<?xml version=\"1.0\"?>\n<camera_matrix a=\0\0\x04\x1e\"5\"></camera_matrix>\n"s})
+    CHECK_THROWS_WITH_AS(read_cameras(folder.write("bytes.xml", text)),
+                         doctest::Contains("a byte that no text holds"), InputError);
+  CHECK_THROWS_WITH_AS(read_cameras(folder.write("list.yml", "%YAML:1.0\n---\n- camera_matrix\n")),
+                       doctest::Contains("list.yml:1: not an OpenCV YAML"), InputError);
   CHECK_THROWS_WITH_AS(read_cameras(folder.write("big.yml", many("# 89 123456\n", 400'000))),
                        doctest::Contains("larger than any"), InputError);
   CHECK_THROWS_WITH_AS(read_cameras(folder.write("text.yml", "hello\n")),

@@ -14,12 +14,13 @@
 
 namespace mcdbn {
 
-/// A pinhole camera with OpenCV's distortion. Camera axes are OpenCV's: x right, y down, z forward.
+/// A pinhole camera with OpenCV's distortion, or with OpenCV's fisheye lens. Camera axes are OpenCV's: x right, y down, z forward.
 struct Camera {
   Eigen::Matrix3d camera_from_world = Eigen::Matrix3d::Identity();  ///< rotation
   Eigen::Vector3d translation{0, 0, 0};  ///< x_camera = R·x_world + translation
   double fx_px = 1000, fy_px = 1000, cx_px = 960, cy_px = 540;
-  std::vector<double> distortion;  ///< k1 k2 p1 p2 [k3 …], may be empty
+  std::vector<double> distortion;  ///< k1 k2 p1 p2 [k3 …], of a fisheye k1 k2 k3 k4; may be empty
+  bool fisheye = false;            ///< what is 84 degrees aside and more is not seen
   int width_px = 1920, height_px = 1080;
   /// How many metres the translation's unit is; unset: it is in file units of the motion seen.
   std::optional<double> unit_m;
@@ -68,8 +69,8 @@ Camera place_camera(const Motion& motion, const CameraPlacement& placement);
 /// The same for points. @param points [frames x 3·joints] world  @throws InputError if none
 Camera place_camera(const MatrixD& points, const CameraPlacement& placement);
 
-/// Projects world points through the camera by cv::projectPoints.
-/// @param points [frames x 3·joints]  @return [frames x 2·joints] pixels, NaN behind the camera
+/// Projects world points through the camera by cv::projectPoints or cv::fisheye::projectPoints.
+/// @param points [frames x 3·joints]  @return [frames x 2·joints] pixels, NaN where it sees none
 MatrixD project_points(const Camera& camera, const MatrixD& points);
 
 /// The 2D track of a clip's joints as the camera sees it; confidence 1, NaN and 0 where a joint is
