@@ -13,8 +13,8 @@ namespace mcdbn {
 enum class WorldUp { y, z, minus_y };
 
 /// Refuses what would bring parsers down: control characters, and nesting, for which they call
-/// themselves: brackets of JSON, YAML and TOML, tags of XML, and YAML's indentation, in which dashes
-/// nest, too.
+/// themselves: brackets of JSON, YAML and TOML, tags of XML, and YAML's indentation, in which
+/// dashes nest, too.
 /// @throws InputError
 void check_camera_source(const CameraSource& source);
 

@@ -26,7 +26,7 @@ struct SeenPeople {
   std::optional<double> fps;
   std::optional<ImageSize> image_size;
   bool image_size_is_said = true;  ///< else it is what its format takes where it is not
-  bool in_pixels = false;  ///< else coordinates that are all small are shares of the image
+  bool in_pixels = false;          ///< else coordinates that are all small are shares of the image
   std::vector<std::string> notices;
 };
 

@@ -177,8 +177,7 @@ void add_trunk(const Skeleton& skeleton, SkeletonRoles& roles) {
 void set_given(const Skeleton& skeleton, const JointMap& given, SkeletonRoles& roles) {
   std::map<int, JointRole> taken;
   for (const auto& [role, name] : given) {
-    const auto named = [&](const Joint& joint) { return joint.name == name; };
-    const auto count = std::ranges::count_if(skeleton.joints, named);
+    const auto count = std::ranges::count(skeleton.joints, name, &Joint::name);
     if (count != 1)
       throw InputError(fmt::format("{} is to be the joint {}, and the skeleton has {}",
                                    name_of(role), name,

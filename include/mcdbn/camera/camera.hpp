@@ -14,7 +14,8 @@
 
 namespace mcdbn {
 
-/// A pinhole camera with OpenCV's distortion, or with OpenCV's fisheye lens. Camera axes are OpenCV's: x right, y down, z forward.
+/// A pinhole camera with OpenCV's distortion, or with OpenCV's fisheye lens. Camera axes are
+/// OpenCV's: x right, y down, z forward.
 struct Camera {
   Eigen::Matrix3d camera_from_world = Eigen::Matrix3d::Identity();  ///< rotation
   Eigen::Vector3d translation{0, 0, 0};  ///< x_camera = R·x_world + translation
