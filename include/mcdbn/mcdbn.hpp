@@ -59,6 +59,8 @@
 #include "mcdbn/machines/regeneration.hpp"
 #include "mcdbn/machines/sampling.hpp"
 #include "mcdbn/machines/sequences.hpp"
+#include "mcdbn/motion/humanoid.hpp"
+#include "mcdbn/motion/humanoid_rig.hpp"
 #include "mcdbn/motion/joint_role.hpp"
 #include "mcdbn/motion/planted_foot.hpp"
 #include "mcdbn/motion/skeleton.hpp"

@@ -9,10 +9,8 @@ namespace mcdbn {
 Skeleton with_limbs_of(const Skeleton& skeleton, const SkeletonRoles& roles, const Skeleton& person,
                        const SkeletonRoles& person_roles);
 
-/// The motion on another skeleton, joined by roles, in the same file units: the pelvis follows the
-/// pelvis, and each bone between two roles points where it does in `motion`, whatever the rest
-/// poses are. Joints without a role, or whose role `motion` lacks, stay as they rest on their
-/// parent.
+/// The motion on another skeleton, in the same file units, by way of the humanoid (HumanoidRig).
+/// Joints without a role, or whose role `motion` lacks, stay as they rest on their parent.
 /// @throws InputError if one of them has no pelvis
 Motion retargeted(const Motion& motion, const SkeletonRoles& roles, const Skeleton& target,
                   const SkeletonRoles& target_roles);

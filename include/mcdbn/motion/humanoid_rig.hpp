@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "mcdbn/motion/humanoid.hpp"
+
+namespace mcdbn {
+
+/// How a skeleton and the canonical humanoid take each other's motion, from each role's joint to
+/// the other's. Orientations are kept in the world: the humanoid's upper arm is turned as the
+/// skeleton's, whatever pose either rests in. Where bones are split differently (several joints
+/// between spine and chest, or neck and head) the humanoid's one bone points where the whole chain
+/// does, and on the way back the joints between share the bend evenly. Joints without a role
+/// (fingers, twist bones) and roles without a joint stay as they rest on their parents.
+class HumanoidRig {
+ public:
+  /// @param motion tells how the joints are turned where the rest pose is nobody's
+  /// (docs/joints.md);
+  ///        one without frames has its rest pose alone
+  /// @throws InputError if nothing tells the pelvis
+  HumanoidRig(const Motion& motion, const SkeletonRoles& roles);
+  explicit HumanoidRig(const Motion& motion);
+
+  /// The humanoid with this person's bones, in the same file units: is_humanoid. What the skeleton
+  /// lacks is as long as in the canonical one of that height.
+  const Skeleton& body() const { return body_; }
+  const Skeleton& skeleton() const { return skeleton_; }
+  /// As given, but that the spine is the first joint of the trunk that turns.
+  const SkeletonRoles& roles() const { return roles_; }
+
+  /// The motion on body(), the pelvis where it is.
+  /// @param motion of skeleton()'s joints
+  Motion to_humanoid(const Motion& motion) const;
+  /// The humanoid's motion on skeleton(), the pelvis where the humanoid's is.
+  /// @param humanoid of any lengths, in this skeleton's units
+  Motion from_humanoid(const Motion& humanoid) const;
+
+  /// The joints whose motion the humanoid takes: those with a role and those between two.
+  std::vector<int> kept_joints() const;
+
+ private:
+  /// A bone of the humanoid that is several of the skeleton's. A trunk's share its bend; what
+  /// stands between wrist and knuckles goes with these.
+  struct Chain {
+    int lower = -1, upper = -1;
+    bool bends = true;
+    std::vector<int> between;
+    Eigen::Matrix3d upper_from_lower;  ///< at rest
+  };
+  const Chain* chain_above(int lower) const;
+  void add_chain(JointRole from, JointRole to, bool bends);
+  void measure(const std::vector<WorldPose>& poses);
+  std::vector<Eigen::Matrix3d> humanoid_turns(const WorldPose& pose) const;
+  void turn_chain(const Chain& chain, const Eigen::Vector3d& chord,
+                  std::vector<Eigen::Matrix3d>& wanted) const;
+  std::vector<Eigen::Matrix3d> wanted_turns(const WorldPose& humanoid) const;
+
+  Skeleton skeleton_, body_;
+  SkeletonRoles roles_;
+  /// By role; see RigAxes.
+  std::array<Eigen::Matrix3d, static_cast<std::size_t>(JointRole::right_toe) + 1> axes_;
+  std::vector<Chain> chains_;
+  // Of joints without a role, and where each joint is on its parent: at rest, or on average.
+  std::vector<Eigen::Matrix3d> parent_from_joint_;
+  std::vector<Eigen::Vector3d> local_;
+};
+
+/// @throws InputError naming the joints of a person that the skeleton has not: hips, knees, ankles,
+///         shoulders, elbows and wrists of both sides, neck or head
+void require_person(const HumanoidRig& rig);
+
+/// What is lost of a motion that goes to the humanoid and comes back.
+struct RetargetError {
+  struct OfJoint {
+    std::string name;
+    double mean_deg = 0, worst_deg = 0;  ///< of its orientation in the world
+    double mean_mm = 0, worst_mm = 0;    ///< of its place, on a body 1.7 m tall
+    double humanoid_mm = 0;              ///< mean, of a role's place on the humanoid, likewise
+  };
+  std::vector<OfJoint> joints;  ///< HumanoidRig::kept_joints
+  double mean_deg() const;
+  double mean_mm() const;
+  double humanoid_mm() const;  ///< over all
+  const OfJoint& worst_turned() const;
+  const OfJoint& worst_placed() const;
+};
+
+/// In at most 200 frames spread over the clip.
+RetargetError retarget_error(const HumanoidRig& rig, const Motion& motion);
+
+}  // namespace mcdbn
