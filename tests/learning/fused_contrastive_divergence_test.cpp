@@ -201,6 +201,19 @@ TEST_CASE("every tile of the fused kernels gives the same bits") {
   });
 }
 
+// On oclgrind's device too, which watches barriers: more rows than a panel takes at a time, more
+// columns than a panel has tiles, work-items that share both.
+TEST_CASE("small: work-items that share panels of gradients wait for each other") {
+  const Case test{{3, 9, 3, kGaussian}, 130, 1};
+  on_every_device([&](Device& device) {
+    const TrainedBits want = train_two(device, test, RowTile{16, 10, 1, 1, 8, 2});
+    for (const RowTile& tile : {RowTile{4, 10, 1, 4, 4, 1}, RowTile{1, 8, 1, 8, 4, 2}}) {
+      CAPTURE(tile.group);
+      CHECK(train_two(device, test, tile) == want);
+    }
+  });
+}
+
 TEST_CASE("every candidate of the tuner gives the same bits") {
   on_every_device([](Device& device) {
     const Tuning usual = device.tuning();

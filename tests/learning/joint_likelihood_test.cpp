@@ -157,6 +157,43 @@ TEST_CASE("the joint likelihood moves by Adam's first step, fused and composed")
   });
 }
 
+// More rows than a panel of gradients takes at a time: sums wait among the gradients, while the
+// velocities wait beside them.
+TEST_CASE("the joint likelihood's momentum, of many rows, is the double reference's") {
+  const MrbmSettings settings{.rate = 0.05, .weight_decay = 0.1, .adam = false, .momentum = 0.8};
+  REQUIRE(odd().rows() > kUpdateChunk);
+  Scene moved = odd();
+  reference::Mrbm velocity = zeros_like(odd().model);
+  RandomKey key = kKey;
+  for (int step = 0; step < 2; ++step, ++key.step) {
+    ReferenceChain chain(moved, settings);
+    std::vector<std::size_t> all(moved.codes.size());
+    std::iota(all.begin(), all.end(), 0);
+    chain.start(key);
+    chain.run(all, key);
+    REQUIRE(chain.closest > 1e-5);
+    reference::Mrbm gradient = zeros_like(odd().model);
+    const double rows = static_cast<double>(moved.rows());
+    chain.add(Eigen::VectorXd::Constant(chain.hidden.rows(), 1.0 / rows), gradient);
+    for (std::size_t m = 0; m < gradient.weights.size(); ++m)
+      gradient.weights[m] += 0.1 * moved.model.weights[m];
+    velocity = velocity.with_parameters(0.8 * velocity.flattened() - 0.05 * gradient.flattened());
+    moved.model = moved.model.with_parameters(moved.model.flattened() + velocity.flattened());
+  }
+  on_every_device([&](Device& device) {
+    Mrbm any(device, odd().start);
+    auto tiles = both_ways(any, odd().rows());
+    tiles.insert(tiles.end(), kOtherTiles.begin(), kOtherTiles.end());
+    for (const auto& tile : tiles) {
+      CAPTURE(tile.has_value());
+      Mrbm mrbm(device, odd().start);
+      JointLikelihood rule(mrbm, odd().rows(), tile, settings);
+      run(device, odd(), rule, 2);
+      check_close(mrbm.to_host(), moved.model);
+    }
+  });
+}
+
 TEST_CASE("the joint likelihood is composed where a row of all modalities does not fit") {
   on_every_device([](Device& device) {
     const std::size_t half = device.info().local_memory_bytes / sizeof(float) / 2;
