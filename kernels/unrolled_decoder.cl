@@ -8,7 +8,7 @@
 // units are: none, sigmoid, or centered_sigmoid, of which drop-out kept kept_share.
 //
 // Variants that `scripts/lint kernels` compiles:
-//   VEC=1,4,8,16 THROUGH=none,sigmoid,centered_sigmoid GROUP=1,64 ORDER_B=0
+//   VEC=1,4,8,16 THROUGH=none,sigmoid,centered_sigmoid GROUP=1,64 ORDER_B=0 GAUSSIAN= HIDDEN= SAMPLE=
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8 ORDER_B=0
 //   VISIBLE=1,97 ORDER_A=1,5 ORDER_B=0 THROUGH=none,sigmoid,centered_sigmoid
 
