@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <sstream>
 
 #include "mcdbn/base/errors.hpp"
@@ -16,7 +17,7 @@ OpencvStorage::OpencvStorage(const CameraSource& source) : source_(source) {
   };
   try {
     storage_.open(source.text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
-  } catch (const cv::Exception&) {
+  } catch (const std::exception&) {  // also of the standard library, for lengths
     fail();
   }
   if (!storage_.isOpened() || !storage_.root().isMap()) fail();
@@ -64,7 +65,7 @@ OpencvStorage::Values OpencvStorage::matrix(const std::string& name) const {
     } else {
       found >> values;
     }
-  } catch (const cv::Exception&) {
+  } catch (const std::exception&) {
     throw InputError(where(name) + " cannot be read; give an opencv-matrix");
   }
   if (values.empty() || values.channels() != 1)

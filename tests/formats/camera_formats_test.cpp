@@ -315,8 +315,12 @@ TEST_CASE("camera formats: what only nests, or is larger than any calibration, i
         "<?xml version=\"1.0\"?>\n<camera_matrix a=\0\0\x04\x1e\"5\"></camera_matrix>\n"s})
     CHECK_THROWS_WITH_AS(read_cameras(folder.write("bytes.xml", text)),
                          doctest::Contains("a byte that no text holds"), InputError);
-  CHECK_THROWS_WITH_AS(read_cameras(folder.write("list.yml", "%YAML:1.0\n---\n- camera_matrix\n")),
-                       doctest::Contains("list.yml:1: not an OpenCV YAML"), InputError);
+  for (const char* text :
+       {"%YAML:1.0\n---\n- camera_matrix\n",
+        "%YAML:1.0\n---\ncamera_matr`x: !!opencv-matrix\n   rows: 3\n   :cosl 3\n   dt: d\n"
+        "   data: [ 1. ]\n"})
+    CHECK_THROWS_WITH_AS(read_cameras(folder.write("list.yml", text)),
+                         doctest::Contains("list.yml:1: not an OpenCV YAML"), InputError);
   CHECK_THROWS_WITH_AS(read_cameras(folder.write("big.yml", many("# 89 123456\n", 400'000))),
                        doctest::Contains("larger than any"), InputError);
   CHECK_THROWS_WITH_AS(read_cameras(folder.write("text.yml", "hello\n")),

@@ -1,0 +1,144 @@
+// What files say of people, rates, frames and confidences, each where another reading would do for
+// the layouts' figures.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/scratch_folder.hpp"
+#include "mcdbn/formats/track_file.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+using nlohmann::json;
+
+namespace {
+
+constexpr int kFrames = 6;
+
+/// x, y, confidence of 17 joints about a place.
+json body(double x) {
+  json numbers = json::array();
+  for (int joint = 0; joint < 17; ++joint)
+    for (const double value : {x + 3.0 * joint, 100.0 + 20 * (joint % 5), 0.9})
+      numbers.push_back(value);
+  return numbers;
+}
+
+json points(double x) {
+  json list = json::array();
+  const json numbers = body(x);
+  for (std::size_t i = 0; i < numbers.size(); i += 3) list.push_back({numbers[i], numbers[i + 1]});
+  return list;
+}
+
+/// Where person `who` of two is in a frame: they change places in each, as no one who is followed
+/// would.
+double place_of(int who, int frame) {
+  return (who + frame) % 2 == 0 ? 200 : 900;
+}
+
+std::string lists_of_people(const std::string& format) {
+  json list = json::array();
+  for (int frame = 0; frame < kFrames; ++frame) {
+    json instances = json::array();
+    // Not always in the same order.
+    for (const int who : {frame / 2 % 2, 1 - frame / 2 % 2}) {
+      const double x = place_of(who, frame);
+      if (format == "alphapose")
+        list.push_back({{"image_id", fmt::format("{}.jpg", frame)},
+                        {"keypoints", body(x)},
+                        {"idx", {who + 1.0}}});
+      if (format == "coco")
+        list.push_back({{"image_id", frame}, {"keypoints", body(x)}, {"track_id", who + 4}});
+      instances.push_back({{"keypoints", points(x)},
+                           {"keypoint_scores", std::vector<double>(17, 0.5)},
+                           {"track_id", who}});
+    }
+    if (format == "mmpose") list.push_back({{"frame_id", frame}, {"instances", instances}});
+  }
+  return list.dump();
+}
+
+}  // namespace
+
+TEST_CASE("track details: the numbers that a tracker gave people hold") {
+  const ScratchFolder folder;
+  for (const std::string format : {"alphapose", "coco", "mmpose"}) {
+    CAPTURE(format);
+    const TrackReading reading =
+        read_tracks(folder.write("people.json", lists_of_people(format)), {.person = "all"});
+    CHECK(reading.format == format);
+    REQUIRE(reading.people.size() == 2);
+    for (const Track2d& track : reading.people)
+      for (int frame = 1; frame < kFrames; ++frame)
+        CHECK(std::abs(track.x_px(frame, 0) - track.x_px(frame - 1, 0)) == doctest::Approx(700));
+  }
+}
+
+TEST_CASE("track details: who is seen for half a second, or a tenth of a short film, stays") {
+  const ScratchFolder folder;
+  for (const int seen : {14, 15}) {
+    CAPTURE(seen);
+    json list = json::array();
+    for (int frame = 0; frame < 200; ++frame) {
+      list.push_back({{"image_id", frame}, {"keypoints", body(200)}});
+      if (frame < seen) list.push_back({{"image_id", frame}, {"keypoints", body(900)}});
+    }
+    CHECK(read_tracks(folder.write("guest.json", list.dump()), {.fps = 30}).people_seen ==
+          (seen < 15 ? 1 : 2));
+  }
+}
+
+TEST_CASE("track details: third numbers are confidences unless one of them is below 0") {
+  const ScratchFolder folder;
+  const auto of = [&](double last) {
+    json frame = json::array();
+    for (int joint = 0; joint < 17; ++joint)
+      frame.push_back({200 + 10.0 * joint, 100.0 + joint, joint == 16 ? last : 0.25});
+    return read_track(folder.write("lists.json", json::array({frame, frame}).dump()));
+  };
+  CHECK(of(0.75).confidence(0, 0) == 0.25);
+  CHECK(of(0.75).confidence(1, 16) == 0.75);
+  CHECK(of(-0.75).confidence(0, 0) == 1);
+  CHECK(of(-0.75).confidence(1, 16) == 1);
+}
+
+TEST_CASE("track details: of two confidences in columns the first counts") {
+  const ScratchFolder folder;
+  std::string header = "frame", row = "0";
+  for (int joint = 0; joint < 33; ++joint) {
+    header += fmt::format(",L{0}_x,L{0}_y,L{0}_z,L{0}_visibility,L{0}_presence", joint);
+    row += fmt::format(",{},0.5,-0.1,0.25,0.75", 0.01 * joint + 0.1);
+  }
+  CHECK((read_track(folder.write("two.csv", header + "\n" + row + "\n")).confidence.array() == 0.25)
+            .all());
+}
+
+TEST_CASE("track details: labelled images are frames by the numbers in their names") {
+  const ScratchFolder folder;
+  const std::string header = "scorer,me,me\nbodyparts,tail,tail\ncoords,x,y\n";
+  const TrackReading labels = read_tracks(
+      folder.write("labels.csv", header + "cam2/img0010_a1.png,5,6\ncam2/img0012_a1.png,7,8\n"
+                                          "cam2/img0013_a1.png,7,9\n"));
+  CHECK(labels.first_frame == 10);
+  REQUIRE(labels.people.front().frames() == 4);
+  CHECK(labels.people.front().confidence(1, 0) == 0);
+  CHECK(labels.people.front().y_px(3, 0) == 9);
+  // Names whose numbers are not different ones say nothing.
+  CHECK(read_tracks(folder.write("labels.csv", header + "a7.png,5,6\nb7.png,7,8\nc9.png,7,9\n"))
+            .people.front()
+            .frames() == 3);
+}
+
+TEST_CASE("track details: a rate in the file holds, and --fps before it") {
+  const ScratchFolder folder;
+  const auto file =
+      folder.write("rate.csv", "# fps=25 width_px=640 height_px=480\na_x_px,a_y_px\n1,2\n3,4\n");
+  CHECK(read_track(file).fps == 25);
+  CHECK(read_track(file, {.fps = 50}).fps == 50);
+  for (const std::string& notice : read_tracks(file).notices)
+    CHECK(notice.find("rate") == std::string::npos);
+}
