@@ -9,10 +9,13 @@
 #include "camera/keypoint_map.hpp"
 #include "camera/random_camera.hpp"
 #include "camera/track_noise.hpp"
+#include "corpus/new_poses.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
+#include "motion/joint_matching.hpp"
 #include "motion/mirror.hpp"
 #include "motion/other_body.hpp"
 #include "motion/resample.hpp"
+#include "motion/turned_motion.hpp"
 
 namespace mcdbn {
 namespace {
@@ -27,7 +30,8 @@ enum Draw : std::uint32_t {
   kBones,
   kTurns,
   kMissing,
-  kDetector
+  kDetector,
+  kGravity
 };
 
 double uniform(const RandomKey& key, Draw draw, std::uint32_t column = 0) {
@@ -95,15 +99,35 @@ void see_by_detector(AugmentedView& view, const RandomKey& key, bool all_in_sigh
       KeypointMap(keypoints, view.motion.skeleton, roles).joints_of(seen, view.motion, view.camera);
 }
 
-}  // namespace
+/// Where it is taken to be down: what the network is told of the camera and the answer that it is
+/// to give turn by the same about a level axis; the track, the heights and the truth in the image
+/// stay.
+void misjudge_gravity(AugmentedView& view, double deviation_deg, const RandomKey& key) {
+  const double angle = deviation_deg * EIGEN_PI / 180 * random_normal(key, kGravity, 0),
+               about = 2 * EIGEN_PI * uniform(key, kGravity, 1);
+  const Eigen::Matrix3d error =
+      Eigen::AngleAxisd(angle, Eigen::Vector3d(std::cos(about), 0, std::sin(about)))
+          .toRotationMatrix();
+  const auto height = [&] {
+    const int root = moving_root({&view.motion});
+    return joint_positions(view.motion).col(3 * root + 1).eval();
+  };
+  const Eigen::VectorXd was = height();
+  view.motion = turned_motion(std::move(view.motion), error);
+  const int up = find_channel(view.motion.skeleton.joints[0], Channel::y_position);
+  if (up >= 0) view.motion.channels.col(up) += was - height();
+  view.camera.camera_from_world = view.camera.camera_from_world * error.transpose();
+}
 
-AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacement& placement,
-                             const AugmentationSettings& settings, const RandomKey& key,
-                             bool all_in_sight) {
+/// The clip seen otherwise, gravity known.
+AugmentedView seen_view(const Motion& raw, double fps, const CameraPlacement& placement,
+                        const AugmentationSettings& settings, const RandomKey& key,
+                        bool all_in_sight, const PosePool* pool) {
   AugmentedView view;
   view.motion = other_timing(raw, fps, settings.speed, key);
   if (settings.mirror && uniform(key, kMirror) < 0.5)
     if (auto other = mirrored(view.motion)) view.motion = std::move(*other);
+  if (pool != nullptr) view.motion = with_new_poses(view.motion, settings, *pool, key);
   if (settings.bone > 0)
     scale_bones(view.motion, [&](int joint) {
       return std::exp(settings.bone *
@@ -127,6 +151,16 @@ AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacemen
       mixed_seed({key.seed, key.step}));
   if (!all_in_sight && uniform(key, kMissing) < settings.missing)
     hide_limbs(view.track, view.motion.skeleton, mixed_seed({key.seed, key.step}));
+  return view;
+}
+
+}  // namespace
+
+AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacement& placement,
+                             const AugmentationSettings& settings, const RandomKey& key,
+                             bool all_in_sight, const PosePool* pool) {
+  AugmentedView view = seen_view(raw, fps, placement, settings, key, all_in_sight, pool);
+  if (settings.gravity_deg > 0) misjudge_gravity(view, settings.gravity_deg, key);
   return view;
 }
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/missing_values.hpp"
 #include "base/random_streams.hpp"
 #include "corpus/people.hpp"
+#include "corpus/pose_pool.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/features/standardizer.hpp"
 
@@ -31,14 +33,18 @@ TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Mod
   const std::size_t count = views_that_fit(clips, settings);
   TrainingSet views{modalities, {}, {}, {}, {}, {}};
   PeopleCount people;
+  std::optional<PosePool> pool;
+  if (settings.augment.new_poses()) pool.emplace(clips, settings.fps);
   RandomKey key{seed, 0, random_streams::kAugmentedViews, 0};
-  for (const auto& [clip, raw] : clips) {
-    const std::size_t person = people.number_of(raw.skeleton);
+  for (const LoadedClip& loaded : clips) {
+    const Motion& raw = loaded.motion;
+    const std::size_t person = people.number_of(raw.skeleton, loaded.person);
     for (std::size_t i = 0; i < count; ++i, ++key.step) {
       views.people.push_back(person);
-      views.clips.push_back(clip);
+      views.clips.push_back(loaded.clip);
       const AugmentedView view =
-          augmented_view(raw, settings.fps, settings.camera, settings.augment, key);
+          augmented_view(raw, settings.fps, settings.camera, settings.augment, key, false,
+                         pool ? &*pool : nullptr);
       // Limbs out of sight: as Mcdbn::fills_gaps says, and nothing is learnt from them.
       const MatrixF track = modalities.encode_track(view.track, view.camera);
       views.tracks_seen.push_back((!track.array().isNaN()).cast<float>().matrix());

@@ -72,7 +72,9 @@ std::vector<LoadedClip> load_clips(const std::vector<fs::path>& files, bool keep
     const std::string text = read_text_file(file);
     clips.push_back({identified(file, text),
                      prepared(parse_motion(text, file, notices), file,
-                              {.fps = 0, .keep_first_frame = keep_first_frame}, notices)});
+                              {.fps = 0, .keep_first_frame = keep_first_frame}, notices),
+                     {},
+                     {}});
   }
   return clips;
 }

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/random_streams.hpp"
+#include "corpus/pose_pool.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/motion/humanoid.hpp"
 #include "motion/resample.hpp"
 
 namespace mcdbn {
@@ -39,11 +42,19 @@ std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair
 /// in their views (the left arm of somebody who waves with the right one, seen in a mirror), and
 /// what counts for fifty deviations there hides everything else.
 void add_views(const Motion& raw, const CorpusSettings& settings, RandomKey& key,
-               std::vector<AugmentedView>& views) {
+               const PosePool* pool, std::vector<AugmentedView>& views) {
   constexpr std::size_t kViews = 4;  // with and without mirror
   for (std::size_t i = 0; i < std::min(kViews, settings.augment.views); ++i, ++key.step)
     views.push_back(
-        augmented_view(raw, settings.fps, settings.camera, settings.augment, key, true));
+        augmented_view(raw, settings.fps, settings.camera, settings.augment, key, true, pool));
+}
+
+/// Of a humanoid the model's skeleton is nobody's in particular.
+PoseFeatures fitted_features(const std::vector<const Motion*>& clips) {
+  PoseFeatures features = PoseFeatures::fit(clips);
+  if (!is_humanoid(features.skeleton())) return features;
+  return PoseFeatures::restored(canonical_humanoid(), features.root(), features.joints(),
+                                features.fixed_channels());
 }
 
 }  // namespace
@@ -61,17 +72,19 @@ TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const Corpus
   std::vector<TrainingClip> recorded;
   std::vector<Motion> motions;
   std::vector<AugmentedView> views;
+  std::optional<PosePool> pool;
+  if (with_views && settings.augment.new_poses()) pool.emplace(clips, settings.fps);
   RandomKey key{seed, 0, random_streams::kScalingViews, 0};
   for (const LoadedClip& loaded : clips) {
     for (Motion& motion : resampled_phases(loaded.motion, settings))
       motions.push_back(std::move(motion));
-    if (with_views) add_views(loaded.motion, settings, key, views);
+    if (with_views) add_views(loaded.motion, settings, key, pool ? &*pool : nullptr, views);
     recorded.push_back(loaded.clip);
   }
   std::vector<const Motion*> all;
   all.reserve(motions.size());
   for (const Motion& motion : motions) all.push_back(&motion);
-  PoseFeatures pose_features = PoseFeatures::fit(all);
+  PoseFeatures pose_features = fitted_features(all);
   TrackFeatures track_features =
       TrackFeatures::for_skeleton(pose_features.skeleton(), pose_features.root());
   TrainingSet set{{std::move(pose_features),

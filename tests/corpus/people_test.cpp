@@ -25,4 +25,8 @@ TEST_CASE("a person is read off a clip's name, where it tells") {
   CHECK(person_of("motion/jumping-jacks_s12_03.bvh") == "s12");
   CHECK(person_of("dataset-2_wave-both-hands_active_001.bvh").empty());
   CHECK(person_of("my_clip.bvh").empty());
+  CHECK(action_of("cmu/walk/08_01.bvh") == "walk");
+  CHECK(action_of("motion/jumping-jacks_s12_03.bvh") == "jumping-jacks");
+  CHECK(action_of("set1/dataset-1_bow_active_001.bvh") == "bow");
+  CHECK(action_of("set2/dataset-2_raise-up-both-hands_happy_004.bvh") == "raise-up-both-hands");
 }

@@ -27,6 +27,14 @@ const std::vector<Expected<CorpusSettings>>& corpus_settings() {
       {"augment.noise", [](C& c) { return at(c.augment.noise_px); }, "0.5"},
       {"augment.missing", [](C& c) { return at(c.augment.missing); }, "0.3"},
       {"augment.detector", [](C& c) { return at(c.augment.detector); }, "0"},
+      {"augment.limbs-exchanged", [](C& c) { return at(c.augment.limbs_exchanged); }, "0"},
+      {"augment.limbs-turned", [](C& c) { return at(c.augment.limbs_turned); }, "0"},
+      {"augment.limbs-turned-by", [](C& c) { return at(c.augment.limbs_turned_deg); }, "25"},
+      {"augment.arms-anywhere", [](C& c) { return at(c.augment.arms_anywhere); }, "0"},
+      {"augment.leaning", [](C& c) { return at(c.augment.leaning); }, "0"},
+      {"augment.leaning-by", [](C& c) { return at(c.augment.leaning_deg); }, "15"},
+      {"augment.turning-round", [](C& c) { return at(c.augment.turning_round); }, "0"},
+      {"augment.gravity", [](C& c) { return at(c.augment.gravity_deg); }, "0"},
       {"camera.azimuth", [](C& c) { return at(c.camera.azimuth_deg); }, "30"},
       {"camera.elevation", [](C& c) { return at(c.camera.elevation_deg); }, "10"},
       {"camera.fov", [](C& c) { return at(c.camera.field_of_view_deg); }, "45"}};
@@ -46,7 +54,7 @@ TEST_CASE("corpus settings: visit leaves no member out") {
   CHECK(!CameraPlacement{}.distance);
   CHECK(CameraPlacement{}.width_px == 1920);
   CHECK(CameraPlacement{}.height_px == 1080);
-  constexpr std::size_t kGroups = 2;
+  constexpr std::size_t kGroups = 3;  // and the choice of skeleton
   CHECK(member_count<CorpusSettings>() - kGroups == corpus_settings().size() -
                                                         listed_under<CorpusSettings>("augment.") -
                                                         listed_under<CorpusSettings>("camera."));
@@ -65,7 +73,14 @@ TEST_CASE("corpus settings: what is out of range is refused by its name") {
     refused(name, 0, "at least 1");
     accepted(name, 1);
   }
-  for (const char* name : {"augment.distance", "augment.bone", "augment.turn", "augment.noise"}) {
+  for (const char* name : {"augment.limbs-exchanged", "augment.limbs-turned",
+                           "augment.arms-anywhere", "augment.leaning", "augment.turning-round"}) {
+    refused(name, -0.01, "at least 0 and at most 1");
+    refused(name, 1.01, "at least 0 and at most 1");
+    accepted(name, 1);
+  }
+  for (const char* name : {"augment.distance", "augment.bone", "augment.turn", "augment.noise",
+                           "augment.limbs-turned-by", "augment.leaning-by", "augment.gravity"}) {
     refused(name, -0.01, "at least 0");
     accepted(name, 0);
   }

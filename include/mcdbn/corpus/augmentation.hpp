@@ -22,6 +22,17 @@ struct AugmentationSettings {
   double noise_px = 0.5;
   double missing = 0.3;
   double detector = 0.0;
+  double limbs_exchanged = 0.0, limbs_turned = 0.0, limbs_turned_deg = 25.0;
+  double arms_anywhere = 0.0;
+  double leaning = 0.0, leaning_deg = 15.0;
+  double turning_round = 0.0;
+  double gravity_deg = 0.0;
+
+  /// Whether views hold poses that no clip holds, which takes the canonical humanoid.
+  bool new_poses() const {
+    return limbs_exchanged > 0 || limbs_turned > 0 || arms_anywhere > 0 || leaning > 0 ||
+           turning_round > 0;
+  }
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
@@ -57,8 +68,36 @@ struct AugmentationSettings {
                   "share of the views that a detector sees (OpenPose, MediaPipe or RTMPose, as "
                   "measured) through a camera anywhere around the person"},
           self.detector);
+    visit(Setting{"limbs-exchanged", within(0, 1), "",
+                  "share of the views with the legs of one clip, the upper body of another and an "
+                  "arm of a third: poses that nobody held"},
+          self.limbs_exchanged);
+    visit(Setting{"limbs-turned", within(0, 1), "",
+                  "share of the views in which limbs and trunk are turned smoothly at random, "
+                  "within the limits of the clips' joints"},
+          self.limbs_turned);
+    visit(Setting{"limbs-turned-by", at_least(0), "degrees",
+                  "deviation of that turn about each axis"},
+          self.limbs_turned_deg);
+    visit(Setting{"arms-anywhere", within(0, 1), "",
+                  "share of the views in which arms point anywhere before and beside the body"},
+          self.arms_anywhere);
+    visit(Setting{"leaning", within(0, 1), "",
+                  "share of the views in which all above the hips leans, now this way, now that"},
+          self.leaning);
+    visit(Setting{"leaning-by", at_least(0), "degrees", "deviation of that lean"},
+          self.leaning_deg);
+    visit(Setting{"turning-round", within(0, 1), "",
+                  "share of the views in which the person turns round on the way"},
+          self.turning_round);
+    visit(Setting{"gravity", at_least(0), "degrees",
+                  "deviation of the error in what is taken for down: of phones' and of assumed "
+                  "cameras"},
+          self.gravity_deg);
   }
 };
+
+class PosePool;
 
 /// A view of a clip before scaling.
 struct AugmentedView {
@@ -71,8 +110,9 @@ struct AugmentedView {
 /// skeleton's own joints all the same, as far as its keypoints tell of them.
 /// @param raw at its own rate
 /// @param all_in_sight nothing goes out of sight and no detector loses anything; cameras stay
+/// @param pool what new poses are made of; none: there are no new poses
 AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacement& placement,
                              const AugmentationSettings& settings, const RandomKey& key,
-                             bool all_in_sight = false);
+                             bool all_in_sight = false, const PosePool* pool = nullptr);
 
 }  // namespace mcdbn

@@ -39,7 +39,8 @@ TrainingClip identify_clip(const std::filesystem::path& path);
 /// A clip to train on, its file read once for all that is made of it.
 struct LoadedClip {
   TrainingClip clip;
-  Motion motion;  ///< at the file's own rate
+  Motion motion;                         ///< at the file's own rate
+  std::string person = {}, action = {};  ///< where somebody said who does what
 };
 
 /// @param notices as load_clip collects them  @throws InputError as load_clip does

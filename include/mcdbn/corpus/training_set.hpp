@@ -13,11 +13,19 @@
 
 namespace mcdbn {
 
+/// The skeleton that a model learns.
+enum class SkeletonUse {
+  shared,    ///< the clips' own where they share one, by joint names; else the humanoid
+  own,       ///< the clips' own
+  humanoid,  ///< the canonical humanoid, onto which every clip is brought
+};
+
 /// How clips become training sequences.
 struct CorpusSettings {
   double fps = 30.0;
   std::size_t phases = 1;
   bool keep_first_frame = false;
+  SkeletonUse skeleton = SkeletonUse::shared;  ///< no number: a choice of load_training_clips
   AugmentationSettings augment;
   CameraPlacement camera;
 

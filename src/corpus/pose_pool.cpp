@@ -1,0 +1,74 @@
+#include "corpus/pose_pool.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mcdbn/base/errors.hpp"
+#include "motion/resample.hpp"
+#include "motion/rig_axes.hpp"
+
+namespace mcdbn {
+namespace {
+
+const Eigen::Vector3d kMirror(-1, 1, 1);
+
+/// The rotation seen in a mirror.
+Eigen::Matrix3d mirrored(const Eigen::Matrix3d& rotation) {
+  return kMirror.asDiagonal() * rotation * kMirror.asDiagonal();
+}
+
+/// Frame t of a clip that is played to its end and back, again and again.
+int there_and_back(int t, int frames) {
+  if (frames == 1) return 0;
+  const int period = 2 * (frames - 1), at = t % period;
+  return at < frames ? at : period - at;
+}
+
+}  // namespace
+
+PosePool::PosePool(const std::vector<LoadedClip>& clips, double fps) : clips_(clips), fps_(fps) {
+  for (const LoadedClip& clip : clips)
+    if (!is_humanoid(clip.motion.skeleton))
+      throw ConfigError(
+          "limbs that are exchanged or turned are the canonical humanoid's; train on that");
+  constexpr double kMostFrames = 20'000;
+  double frames = 0;
+  for (const LoadedClip& clip : clips) frames += clip.motion.frames();
+  std::array<std::vector<Eigen::Matrix3d>, std::tuple_size_v<decltype(limits_)>> seen;
+  for (const LoadedClip& clip : clips) {
+    const double share = std::min(1.0, kMostFrames / frames);
+    Motion some{clip.motion.skeleton, clip.motion.frame_time_s, {}};
+    some.channels = clip.motion.channels(
+        spread_frames(clip.motion, std::max(1, static_cast<int>(share * clip.motion.frames()))),
+        Eigen::all);
+    const HumanoidPoses poses(some);
+    for (const JointRole role : joint_roles())
+      for (int t = 0; t < poses.frames(); ++t) {
+        const Eigen::Matrix3d& local = poses.local(t, role);
+        seen[static_cast<std::size_t>(role)].push_back(local);
+        seen[static_cast<std::size_t>(other_side(role))].push_back(mirrored(local));
+      }
+  }
+  for (std::size_t role = 0; role < seen.size(); ++role)
+    limits_[role] = JointLimits::of(seen[role]);
+}
+
+HumanoidPoses PosePool::piece(std::size_t clip, double from, int frames) const {
+  const Motion& whole = clips_[clip].motion;
+  // Only what is needed is resampled; its low-pass looks at what is around.
+  constexpr double kAround_s = 0.5;
+  const double step = whole.fps() / fps_, around = kAround_s * whole.fps();
+  const double first = from * std::max(0.0, whole.frames() - 1 - frames * step);
+  const int begin = std::max(0, static_cast<int>(first - around));
+  const int end = std::min(whole.frames(), static_cast<int>(first + frames * step + around) + 2);
+  Motion part{whole.skeleton, whole.frame_time_s, whole.channels.middleRows(begin, end - begin)};
+  part = resample(part, fps_);
+  const int skipped = static_cast<int>((first - begin) / step);
+  const int left = part.frames() - skipped;
+  std::vector<int> rows;
+  for (int t = 0; t < frames; ++t) rows.push_back(skipped + there_and_back(t, left));
+  part.channels = part.channels(rows, Eigen::all).eval();
+  return HumanoidPoses(part);
+}
+
+}  // namespace mcdbn

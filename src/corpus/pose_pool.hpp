@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mcdbn/corpus/clip.hpp"
+#include "motion/humanoid_poses.hpp"
+#include "motion/joint_limits.hpp"
+
+namespace mcdbn {
+
+/// What new poses of the humanoid are made of: the clips of a corpus, and how far joints turn in
+/// them. Left and right are taken together.
+class PosePool {
+ public:
+  /// @param clips on the humanoid (load_training_clips); they must live on
+  /// @throws ConfigError if they are not
+  PosePool(const std::vector<LoadedClip>& clips, double fps);
+
+  std::size_t clips() const { return clips_.size(); }
+  /// A piece of a clip at the pool's rate: from some share of it on, and back again where it ends.
+  /// @param from 0 to 1
+  HumanoidPoses piece(std::size_t clip, double from, int frames) const;
+  const JointLimits& limits(JointRole role) const {
+    return limits_[static_cast<std::size_t>(role)];
+  }
+
+ private:
+  const std::vector<LoadedClip>& clips_;
+  double fps_;
+  std::array<JointLimits, static_cast<std::size_t>(JointRole::right_toe) + 1> limits_;
+};
+
+}  // namespace mcdbn
