@@ -116,7 +116,11 @@ ClipPlacement placement_of(const RegenerateOptions& options, const std::optional
   ClipPlacement placement;
   placement.camera = camera;
   placement.view = options.seen_by.view;
-  if (!options.skeleton.empty()) placement.skeleton = read_motion(options.skeleton).skeleton;
+  if (!options.skeleton.empty()) {
+    Motion clip = read_motion(options.skeleton);
+    placement.skeleton = std::move(clip.skeleton);
+    placement.skeleton_channels = std::move(clip.channels);
+  }
   placement.fit = track_fit(options.fit);
   if (!options.joint_map.empty()) placement.joint_map = read_joint_map(options.joint_map);
   return placement;

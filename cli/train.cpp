@@ -8,7 +8,7 @@
 #include "commands.hpp"
 #include "comparison/sweep.hpp"
 #include "epoch_progress.hpp"
-#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/motion_model/training_run.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
 #include "setting_flags.hpp"
@@ -24,16 +24,16 @@ struct TrainOptions {
   TrainingOptions settings;
 };
 
-std::vector<LoadedClip> read_clips(const std::vector<std::filesystem::path>& files,
+std::vector<LoadedClip> read_clips(const std::vector<ListedClip>& files,
                                    const TrainingConfig& config) {
   std::vector<std::string> notices;
-  std::vector<LoadedClip> clips = load_clips(files, config.keep_first_frame, &notices);
+  std::vector<LoadedClip> clips = load_training_clips(files, config, &notices);
   for (const std::string& notice : notices) spdlog::info("{}", with_flags(notice));
   return clips;
 }
 
 void train_once(const CommandContext& context, Device& device, const TrainOptions& options,
-                const std::vector<std::filesystem::path>& files, const TrainingConfig& config) {
+                const std::vector<ListedClip>& files, const TrainingConfig& config) {
   std::vector<LoadedClip> clips = read_clips(files, config);
   const TrainingSet data = make_training_set(clips, config);
   spdlog::info("{} clips, {} frames at {:g} fps on {}; 3D {} values a frame, 2D {}",
@@ -62,7 +62,7 @@ void print_record(const nlohmann::ordered_json& record) {
 }
 
 void train_sweep(const CommandContext& context, Device& device, const TrainOptions& options,
-                 const std::vector<std::filesystem::path>& clips, const SweepFile& file) {
+                 const std::vector<ListedClip>& clips, const SweepFile& file) {
   const InterruptGuard interrupt;
   std::optional<ProgressLine> progress;
   const auto watch = [&](bool counts) {
@@ -89,7 +89,7 @@ void train_sweep(const CommandContext& context, Device& device, const TrainOptio
 
 void run_train(const CommandContext& context, const TrainOptions& options) {
   const TrainingConfig config = options.settings.resolve();
-  const auto clips = find_clips(options.data);
+  const auto clips = find_listed_clips(options.data);
   std::optional<SweepFile> sweep;
   if (!options.sweep.empty()) sweep = read_sweep_file(options.sweep);
   Device device = Device::open({context.platform, context.device});
@@ -104,7 +104,9 @@ void run_train(const CommandContext& context, const TrainOptions& options) {
 void add_train_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<TrainOptions>();
   CLI::App* command = app.add_subcommand("train", "Trains a model on BVH clips");
-  command->add_option("data", options->data, "BVH files, or folders that hold some")
+  command
+      ->add_option("data", options->data,
+                   "BVH or AMC files, folders that hold some, or lists that `corpus` wrote")
       ->required()
       ->type_name("PATH");
   command

@@ -43,6 +43,12 @@ void TrainingOptions::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"exact", "detector"}))
       ->capture_default_str();
   command
+      .add_option("--skeleton", skeleton_,
+                  "own: the clips' own, which has to be the same; canonical: a humanoid onto which "
+                  "every clip is brought, so that skeletons may differ (default: own where they "
+                  "share it, else canonical)")
+      ->check(CLI::IsMember({"own", "canonical"}));
+  command
       .add_option_function<std::filesystem::path>(
           "--config",
           [this](const std::filesystem::path& file) { file_ = read_settings_file(file); },
@@ -78,6 +84,7 @@ TrainingConfig TrainingOptions::resolve(const std::vector<SaidSetting>& last) co
     assign_settings(config, flags_);
     apply_stages(config);
     apply_tracks(config);
+    apply_skeleton(config);
     assign_settings(config, last);
     return config;
   };
@@ -100,6 +107,11 @@ void TrainingOptions::apply_stages(TrainingConfig& config) const {
 void TrainingOptions::apply_tracks(TrainingConfig& config) const {
   constexpr double kUsualShare = 0.8;
   if (tracks_ == "detector" && config.augment.detector == 0) config.augment.detector = kUsualShare;
+}
+
+void TrainingOptions::apply_skeleton(TrainingConfig& config) const {
+  if (skeleton_ == "own") config.skeleton = SkeletonUse::own;
+  if (skeleton_ == "canonical") config.skeleton = SkeletonUse::humanoid;
 }
 
 }  // namespace mcdbn::cli

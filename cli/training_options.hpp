@@ -22,8 +22,9 @@ class TrainingOptions {
   void add_setting(CLI::App& command, const Setting& setting, const nlohmann::json& usual);
   void apply_stages(TrainingConfig& config) const;
   void apply_tracks(TrainingConfig& config) const;
+  void apply_skeleton(TrainingConfig& config) const;
 
-  std::string preset_ = "default", stages_, tracks_ = "exact";
+  std::string preset_ = "default", stages_, tracks_ = "exact", skeleton_;
   std::vector<SaidSetting> file_, flags_;
 };
 

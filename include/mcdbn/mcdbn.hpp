@@ -18,6 +18,8 @@
 #include "mcdbn/camera/track_summary.hpp"
 #include "mcdbn/corpus/augmentation.hpp"
 #include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/corpus/clip_list.hpp"
+#include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/corpus/training_set.hpp"
 #include "mcdbn/device/device.hpp"
 #include "mcdbn/device/matrix.hpp"

@@ -10,6 +10,7 @@
 #include "comparison/comparison_run.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/motion_model/training_run.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
 
@@ -19,10 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-TrainedRun trained_run(Device& device, const std::vector<fs::path>& files,
+TrainedRun trained_run(Device& device, const std::vector<ListedClip>& files,
                        const TrainingConfig& config, const fs::path& folder,
                        const Sweep::Watch& watch, bool counts) {
-  std::vector<LoadedClip> clips = load_clips(files, config.keep_first_frame);
+  std::vector<LoadedClip> clips = load_training_clips(files, config);
   const TrainingSet data = make_training_set(clips, config);
   return train_to_folder(device, data, std::move(clips), config, folder,
                          watch ? watch(counts) : EpochObserver());
@@ -77,7 +78,7 @@ void Sweep::Log::add(ordered_json record) {
   write_text_file(path_, text);
 }
 
-Sweep::Sweep(Device& device, const std::vector<fs::path>& test, std::vector<fs::path> clips,
+Sweep::Sweep(Device& device, const std::vector<fs::path>& test, std::vector<ListedClip> clips,
              Resolve resolve, fs::path run)
     : device_(device),
       test_(find_clips(test)),

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mcdbn/corpus/clip_list.hpp"
 #include "mcdbn/device/device.hpp"
 #include "mcdbn/learning/epoch_report.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
@@ -42,7 +43,7 @@ class Sweep {
 
   /// @throws InputError if the test clips cannot be used or the folder not be made
   Sweep(Device& device, const std::vector<std::filesystem::path>& test,
-        std::vector<std::filesystem::path> clips, Resolve resolve, std::filesystem::path run);
+        std::vector<ListedClip> clips, Resolve resolve, std::filesystem::path run);
 
   /// @return the line, also of a configuration that failed, or was done before
   /// @throws Interrupted, DeviceError: the next one would fail too
@@ -65,7 +66,8 @@ class Sweep {
              nlohmann::ordered_json& record) const;
 
   Device& device_;
-  std::vector<std::filesystem::path> test_, clips_;
+  std::vector<std::filesystem::path> test_;
+  std::vector<ListedClip> clips_;
   Resolve resolve_;
   std::filesystem::path run_;
   Log log_;

@@ -1,5 +1,6 @@
 #include "comparison/training_views.hpp"
 
+#include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
 
@@ -13,8 +14,10 @@ void add_training_views(const Model& model, TestRunOptions& run) {
     if (!std::filesystem::exists(clip.path)) return;
     if (files.empty() || files.back() != clip.path) files.emplace_back(clip.path);
   }
-  TrainingSet views =
-      make_augmented_views(load_clips(files, config.keep_first_frame), model.modalities, config);
+  std::vector<LoadedClip> clips = load_clips(files, config.keep_first_frame);
+  for (LoadedClip& clip : clips)
+    clip.motion = for_skeleton(std::move(clip.motion), model.modalities.pose_features.skeleton());
+  TrainingSet views = make_augmented_views(clips, model.modalities, config);
   run.view_tracks = std::move(views.tracks);
   run.view_poses = std::move(views.poses);
 }

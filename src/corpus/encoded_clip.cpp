@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "mcdbn/corpus/training_clips.hpp"
+
 namespace mcdbn {
 namespace {
 
@@ -16,8 +18,9 @@ EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& mod
                         std::vector<std::string>* notices) {
   EncodedClip clip;
   clip.file = file;
-  clip.motion =
-      load_clip(file, {.fps = modalities.fps, .keep_first_frame = keep_first_frame}, notices);
+  clip.motion = for_skeleton(
+      load_clip(file, {.fps = modalities.fps, .keep_first_frame = keep_first_frame}, notices),
+      modalities.pose_features.skeleton());
   clip.camera = place_camera(clip.motion, placement);
   clip.track = project_motion(clip.motion, clip.camera);
   clip.track_features = modalities.encode_track(clip.track, clip.camera);

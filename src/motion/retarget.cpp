@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "mcdbn/motion/humanoid_rig.hpp"
 #include "motion/body_size.hpp"
 #include "motion/rest_pose.hpp"
 
@@ -56,10 +55,9 @@ Skeleton with_limbs_of(const Skeleton& skeleton, const SkeletonRoles& roles, con
   return result;
 }
 
-Motion retargeted(const Motion& motion, const SkeletonRoles& roles, const Skeleton& target,
-                  const SkeletonRoles& target_roles) {
-  const HumanoidRig there({target, motion.frame_time_s, {}}, target_roles);
-  return there.from_humanoid(HumanoidRig(motion, roles).to_humanoid(motion));
+Motion retargeted(const Motion& motion, const SkeletonRoles& roles, const HumanoidRig& target) {
+  if (is_humanoid(motion.skeleton)) return target.from_humanoid(motion);
+  return target.from_humanoid(HumanoidRig(motion, roles).to_humanoid(motion));
 }
 
 }  // namespace mcdbn

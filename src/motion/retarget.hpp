@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mcdbn/motion/skeleton_roles.hpp"
+#include "mcdbn/motion/humanoid_rig.hpp"
 
 namespace mcdbn {
 
@@ -11,8 +11,7 @@ Skeleton with_limbs_of(const Skeleton& skeleton, const SkeletonRoles& roles, con
 
 /// The motion on another skeleton, in the same file units, by way of the humanoid (HumanoidRig).
 /// Joints without a role, or whose role `motion` lacks, stay as they rest on their parent.
-/// @throws InputError if one of them has no pelvis
-Motion retargeted(const Motion& motion, const SkeletonRoles& roles, const Skeleton& target,
-                  const SkeletonRoles& target_roles);
+/// @throws InputError if `motion` has no pelvis
+Motion retargeted(const Motion& motion, const SkeletonRoles& roles, const HumanoidRig& target);
 
 }  // namespace mcdbn

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion/humanoid_rig.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/body_size.hpp"
 #include "motion/resample.hpp"
@@ -29,6 +30,13 @@ MatrixD root_path(const MatrixD& root, const Eigen::Matrix3d& axes_from_world, d
 std::vector<Motion> generate_clip(const Model& model, const Motion& seed,
                                   const GenerationOptions& options, GenerationHealth* health) {
   const Modalities& modalities = model.modalities;
+  if (is_humanoid(modalities.pose_features.skeleton()) && !is_humanoid(seed.skeleton)) {
+    const HumanoidRig rig(seed);
+    require_person(rig);
+    std::vector<Motion> motions = generate_clip(model, rig.to_humanoid(seed), options, health);
+    for (Motion& motion : motions) motion = rig.from_humanoid(motion);
+    return motions;
+  }
   const Cdbn& cdbn = model.network.cdbns[kPose];
   const Motion at_rate = resample(seed, modalities.fps);
   if (at_rate.frames() < static_cast<int>(seed_frames(cdbn)))

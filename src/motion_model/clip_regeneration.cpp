@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "camera/track_resample.hpp"
+#include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/resample.hpp"
 #include "motion/retarget.hpp"
@@ -20,25 +21,27 @@ Motion with_frames(Motion motion, Eigen::Index frames) {
 }
 
 /// A skeleton that is wanted and has other joints than the model: the model's own is regenerated
-/// with its limbs, and the motion put on it by roles.
+/// with its limbs, the humanoid with all its bones, and the motion put on it by roles.
 class OtherSkeleton {
  public:
   OtherSkeleton(const Skeleton& own, const ClipPlacement& wanted) : own_(own) {
     if (!wanted.skeleton || has_joints_of(own, *wanted.skeleton)) return;
-    target_ = wanted.skeleton;
     roles_ = skeleton_roles(own);
-    target_roles_ = skeleton_roles(*target_, wanted.joint_map);
+    target_.emplace(Motion{*wanted.skeleton, 1.0, wanted.skeleton_channels},
+                    skeleton_roles(*wanted.skeleton, wanted.joint_map));
   }
 
   ClipPlacement placement(ClipPlacement wanted) const {
     if (!target_) return wanted;
-    wanted.skeleton = with_limbs_of(own_, roles_, *target_, target_roles_);
+    wanted.skeleton = is_humanoid(own_)
+                          ? target_->body()
+                          : with_limbs_of(own_, roles_, target_->skeleton(), target_->roles());
     wanted.joint_map.clear();  // it was the other's
     return wanted;
   }
 
   Motion moved(Motion motion) const {
-    return target_ ? retargeted(motion, roles_, *target_, target_roles_) : motion;
+    return target_ ? retargeted(motion, roles_, *target_) : motion;
   }
 
  private:
@@ -48,8 +51,8 @@ class OtherSkeleton {
   }
 
   const Skeleton& own_;
-  std::optional<Skeleton> target_;
-  SkeletonRoles roles_, target_roles_;
+  std::optional<HumanoidRig> target_;
+  SkeletonRoles roles_;
 };
 
 }  // namespace
@@ -92,9 +95,10 @@ std::vector<Track2d> regenerate_track(const Model& model, const Motion& clip,
                                       const RegenerationOptions& options,
                                       const std::optional<Camera>& camera) {
   const Modalities& modalities = model.modalities;
+  const Motion taken = for_skeleton(clip, modalities.pose_features.skeleton());
   const Camera seen_by = camera.value_or(camera_at_origin(modalities.camera));
   const MatrixF pose =
-      modalities.encode_pose(resample(clip, modalities.fps), seen_by.camera_from_world);
+      modalities.encode_pose(resample(taken, modalities.fps), seen_by.camera_from_world);
   std::vector<std::vector<MatrixF>> present(model.network.modality_count());
   present[kPose] = {pose};
   std::vector<Track2d> tracks;

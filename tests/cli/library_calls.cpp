@@ -5,7 +5,7 @@
 
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
-#include "mcdbn/corpus/training_set.hpp"
+#include "mcdbn/corpus/training_clips.hpp"
 #include "motion_model/sample_calibration.hpp"
 
 namespace mcdbn::test {
@@ -19,7 +19,7 @@ LibraryTraining train_by_library(const std::vector<std::filesystem::path>& clips
                                  const TrainingConfig& config, const nlohmann::json& record) {
   LibraryTraining result;
   std::vector<std::string> notices;
-  const auto loaded = load_clips(clips, config.keep_first_frame, &notices);
+  const auto loaded = load_training_clips({clips.begin(), clips.end()}, config, &notices);
   const TrainingSet data = make_training_set(loaded, config);
   auto [network, stopped] =
       train_network(usual_device(), data, loaded, config,

@@ -110,6 +110,17 @@ TEST_CASE("train: every option changes what its help says") {
       {"--preset", [&] { CHECK(train("x.bvh", run, "--preset other").exit_code == 2); }});
   rows.push_back(
       {"--stages", [&] { CHECK(train("x.bvh", run, "--stages other").exit_code == 2); }});
+  rows.push_back({"--skeleton", [&] {
+                    CHECK(train("x.bvh", run, "--skeleton other").exit_code == 2);
+                    trained(pipeline.training_clips(), "--skeleton own");
+                    CHECK(model() == plain);
+                    const CliResult canonical =
+                        trained(pipeline.training_clips(), "--skeleton canonical");
+                    CHECK(canonical.standard_error.find("brought onto the canonical humanoid") !=
+                          std::string::npos);
+                    CHECK(model().find("JOINT left_shoulder") != std::string::npos);
+                    CHECK(plain.find("JOINT left_shoulder") == std::string::npos);
+                  }});
   rows.push_back({"--tracks", [&] {
                     CHECK(train("x.bvh", run, "--tracks other").exit_code == 2);
                     const auto share = [&](const std::string& said) {

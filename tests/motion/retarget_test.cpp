@@ -56,7 +56,7 @@ TEST_CASE("retargeted: every role's joint is where it was, whatever the rest pos
       Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
   for (Joint& joint : target.joints) joint.offset = turn * joint.offset;
   const SkeletonRoles target_roles = skeleton_roles(target);
-  const Motion result = retargeted(motion, roles, target, target_roles);
+  const Motion result = retargeted(motion, roles, HumanoidRig({target, 0.1, {}}, target_roles));
   CHECK(result.frames() == 20);
   CHECK(result.fps() == doctest::Approx(motion.fps()));
   const MatrixD wanted = joint_positions(motion), got = joint_positions(result);
@@ -70,7 +70,11 @@ TEST_CASE("retargeted: every role's joint is where it was, whatever the rest pos
   }
   Skeleton nobody;
   nobody.joints = {make_joint("Base", -1, {0, 0, 0}, {})};
-  CHECK_THROWS_AS(retargeted(motion, roles, nobody, skeleton_roles(nobody)), InputError);
+  const HumanoidRig there({target, 0.1, {}}, target_roles);
+  CHECK_THROWS_AS(retargeted({nobody, 0.1, {}}, skeleton_roles(nobody), there), InputError);
+  // The humanoid's own motion needs no rig, whatever it lacks.
+  const HumanoidRig rig(motion, roles);
+  CHECK(retargeted(rig.to_humanoid(motion), {}, there).channels.isApprox(result.channels, 1e-6));
 }
 
 TEST_CASE("a skeleton takes on a person's height and limbs") {

@@ -16,6 +16,9 @@ struct ClipPlacement : KnownOfClip {
   std::optional<TrackFitSettings> fit =
       TrackFitSettings{};   ///< unset: the network's answer as it is
   JointMap joint_map = {};  ///< roles of the skeleton's joints, said by hand
+  /// Channels of a clip of that skeleton, if there is one: they tell how its joints are turned
+  /// where its rest pose is nobody's (HumanoidRig).
+  MatrixD skeleton_channels = {};
 };
 
 /// The features of a track of which parts are out of sight for long, with what an answer to the

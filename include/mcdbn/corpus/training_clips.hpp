@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/corpus/clip_list.hpp"
+#include "mcdbn/corpus/training_set.hpp"
+
+namespace mcdbn {
+
+/// Reads clips to train on, all of one skeleton or, as settings.skeleton says, on the canonical
+/// humanoid.
+/// @param notices as load_clip collects them, and what is lost on the humanoid
+/// @throws InputError as load_clip does; naming the file whose skeleton lacks joints or is nobody's
+std::vector<LoadedClip> load_training_clips(const std::vector<ListedClip>& files,
+                                            const CorpusSettings& settings,
+                                            std::vector<std::string>* notices = nullptr);
+
+/// The clip as a model of that skeleton takes it: brought onto the canonical humanoid if that is
+/// the model's and the clip's is another.
+/// @throws InputError if it cannot be brought onto it
+Motion for_skeleton(Motion clip, const Skeleton& model);
+
+}  // namespace mcdbn

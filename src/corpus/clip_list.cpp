@@ -1,0 +1,119 @@
+#include "mcdbn/corpus/clip_list.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <iterator>
+#include <set>
+#include <sstream>
+
+#include "base/text_file.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/corpus/clip.hpp"
+
+namespace fs = std::filesystem;
+
+namespace mcdbn {
+namespace {
+
+constexpr const char* kExample = "give tables such as [[clip]] with file = \"walk/02_01.bvh\"";
+
+[[noreturn]] void fail(const fs::path& path, const toml::source_region& source,
+                       const std::string& what) {
+  throw InputError(fmt::format("{}:{}: {}", path.string(), source.begin.line, what));
+}
+
+toml::table parsed(const fs::path& path) {
+  try {
+    return toml::parse(read_text_file(path), path.string());
+  } catch (const toml::parse_error& error) {
+    fail(path, error.source(), fmt::format("not TOML; {}", kExample));
+  }
+}
+
+std::string text_of(const fs::path& path, std::string_view key, const toml::node& node) {
+  const auto* text = node.as_string();
+  if (text == nullptr || text->get().empty())
+    fail(path, node.source(), fmt::format("{}: give a text, in quotes", key));
+  return text->get();
+}
+
+ListedClip clip_from(const fs::path& path, const toml::table& table) {
+  ListedClip clip{fs::path()};
+  for (const auto& [key, node] : table) {
+    const std::string text = text_of(path, key.str(), node);
+    if (key == "file")
+      clip.file = path.parent_path() / text;
+    else if (key == "person")
+      clip.person = text;
+    else if (key == "action")
+      clip.action = text;
+    else
+      fail(path, key.source(),
+           fmt::format("no key {} is known; a clip has file, person and action", key.str()));
+  }
+  if (clip.file.empty())
+    fail(path, table.source(), fmt::format("a clip without file; {}", kExample));
+  if (!fs::is_regular_file(clip.file))
+    fail(path, table.source(), fmt::format("{}: no such file", clip.file.string()));
+  return clip;
+}
+
+bool is_list(const fs::path& path) {
+  return path.extension() == ".toml" && fs::is_regular_file(path);
+}
+
+std::string quoted(const std::string& text) {
+  std::ostringstream out;
+  out << toml::value(text);
+  return out.str();
+}
+
+}  // namespace
+
+std::vector<ListedClip> read_clip_list(const fs::path& path) {
+  const toml::table content = parsed(path);
+  std::vector<ListedClip> clips;
+  for (const auto& [key, node] : content) {
+    const auto* tables = node.as_array();
+    if (key != "clip" || tables == nullptr || !tables->is_array_of_tables())
+      fail(path, key.source(), fmt::format("no list of clips; {}", kExample));
+    for (const toml::node& table : *tables) clips.push_back(clip_from(path, *table.as_table()));
+  }
+  if (clips.empty()) throw InputError(fmt::format("{}:1: no clips; {}", path.string(), kExample));
+  return clips;
+}
+
+std::vector<ListedClip> find_listed_clips(const std::vector<fs::path>& paths) {
+  std::vector<ListedClip> clips;
+  std::set<fs::path> seen;
+  const auto add = [&](ListedClip clip) {
+    if (seen.insert(fs::weakly_canonical(clip.file)).second) clips.push_back(std::move(clip));
+  };
+  for (const fs::path& path : paths)
+    if (is_list(path))
+      for (ListedClip& clip : read_clip_list(path)) add(std::move(clip));
+    else
+      for (fs::path& file : find_clips({path})) add(std::move(file));
+  if (clips.empty()) find_clips({});
+  return clips;
+}
+
+void write_clip_list(const fs::path& path, const std::vector<ListedClip>& clips) {
+  std::string text =
+      "# Clips for `mcdbn-cl train`. Files are relative to this folder; person and action may be\n"
+      "# changed.\n";
+  const fs::path folder = fs::absolute(path).parent_path();
+  for (const ListedClip& clip : clips) {
+    const fs::path file = fs::absolute(clip.file).lexically_normal();
+    fmt::format_to(std::back_inserter(text), "\n[[clip]]\nfile = {}\n",
+                   quoted(file.lexically_proximate(folder.lexically_normal()).generic_string()));
+    if (!clip.person.empty())
+      fmt::format_to(std::back_inserter(text), "person = {}\n", quoted(clip.person));
+    if (!clip.action.empty())
+      fmt::format_to(std::back_inserter(text), "action = {}\n", quoted(clip.action));
+  }
+  write_text_file(path, text);
+}
+
+}  // namespace mcdbn
