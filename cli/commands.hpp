@@ -30,6 +30,7 @@ void print_json(const nlohmann::json& value);
 // One for each file cli/NAME.cpp. To add a command: declare it here, list it in main.cpp.
 // Messages for people go through spdlog (info, warn), which writes to stderr.
 void add_devices_command(CLI::App& app, CommandContext& context);
+void add_corpus_command(CLI::App& app, CommandContext& context);
 void add_info_command(CLI::App& app, CommandContext& context);
 void add_project_command(CLI::App& app, CommandContext& context);
 void add_render_command(CLI::App& app, CommandContext& context);

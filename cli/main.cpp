@@ -27,10 +27,10 @@ enum ExitCode {
 };
 
 constexpr std::array kCommands = {
-    add_devices_command, add_synthesize_command, add_project_command,  add_render_command,
-    add_train_command,   add_regenerate_command, add_generate_command, add_evaluate_command,
-    add_fit_command,     add_sample_command,     add_score_command,    add_transform_command,
-    add_info_command,    add_bench_command,
+    add_devices_command,   add_synthesize_command, add_project_command,    add_render_command,
+    add_corpus_command,    add_train_command,      add_regenerate_command, add_generate_command,
+    add_evaluate_command,  add_fit_command,        add_sample_command,     add_score_command,
+    add_transform_command, add_info_command,       add_bench_command,
 };
 
 constexpr const char* kDescription =

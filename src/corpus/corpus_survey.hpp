@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mcdbn/corpus/clip_list.hpp"
+#include "mcdbn/motion/humanoid_rig.hpp"
+
+namespace mcdbn {
+
+/// Something odd about a clip.
+struct ClipProblem {
+  enum class Kind { unreadable, no_person, first_frame, rate, length, spikes, jumps, ground, up };
+  Kind kind;
+  std::string text;
+};
+std::string_view name_of(ClipProblem::Kind kind);
+
+/// What there is to know of a clip before it is trained on.
+struct SurveyedClip {
+  ListedClip clip;  ///< person and action as said, or as names, folders and bones tell
+  int frames = 0;
+  double fps = 0;
+  std::size_t skeleton = 0;  ///< which of the corpus' skeletons, by joint names, from 1 on
+  std::optional<RetargetError> error;  ///< of the canonical humanoid
+  std::vector<ClipProblem> problems;
+
+  bool usable() const { return error.has_value(); }
+  double seconds() const { return frames > 0 ? frames / fps : 0; }
+};
+
+/// What is taken for odd. Lengths are those of a body 1.7 m tall.
+struct SurveyLimits {
+  double least_fps = 20, least_s = 1;
+  /// A joint that is in one frame away from where it is before and after it, faster than any limb
+  /// is (a kicked foot lands at some 300 m/s²).
+  double spike_m = 0.03, spike_m_s2 = 1000;
+  double jump_m_s = 25;  ///< a thrown ball's hand comes near it
+  double below_ground_m = 0.08;
+  double lying_deg = 60;  ///< of the trunk from +y, on average
+};
+
+/// Reads every clip; what cannot be read is a problem of that clip.
+std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips,
+                                 const SurveyLimits& limits = {});
+
+/// The problems of a motion that is read, of a person whose joints have roles.
+std::vector<ClipProblem> motion_problems(const Motion& motion, const SkeletonRoles& roles,
+                                         const SurveyLimits& limits);
+
+}  // namespace mcdbn
