@@ -4,29 +4,20 @@
 //
 // `errors` [V_LD wide] holds each frame's own error and becomes that by the frame's input. Sequence i's
 // frame t is row i · frames + t of `errors` and of `state`, the units themselves. `following`: A with its
-// lags turned round, block q of it [V_LD x V_LD] transposed for the frame q + 1 later. THROUGH is what the
-// units are: none, sigmoid, or centered_sigmoid, of which drop-out kept kept_share.
+// lags turned round, block q of it [V_LD x V_LD] transposed for the frame q + 1 later. ACTIVATION is the
+// gradient of what the units are (epilogue.clh): none, sigmoid_gradient, or centered_sigmoid_gradient, of
+// which drop-out kept kept_share.
 //
 // Variants that `scripts/lint kernels` compiles:
-//   VEC=1,4,8,16 THROUGH=none,sigmoid,centered_sigmoid GROUP=1,64 ORDER_B=0 GAUSSIAN= HIDDEN= SAMPLE=
+//   VEC=1,4,8,16 ACTIVATION=none,sigmoid_gradient,centered_sigmoid_gradient GROUP=1,64 ORDER_B=0
+//   ACTIVATION= BIAS= GAUSSIAN= HIDDEN= SAMPLE= ORDER_B=0
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8 ORDER_B=0
-//   VISIBLE=1,97 ORDER_A=1,5 ORDER_B=0 THROUGH=none,sigmoid,centered_sigmoid
+//   VISIBLE=1,97 ORDER_A=1,5 ORDER_B=0 ACTIVATION=none,sigmoid_gradient,centered_sigmoid_gradient
 
 #include "frame_ring.clh"
+#include "epilogue.clh"
 
-#ifndef THROUGH
-#define THROUGH none
-#endif
-
-// What is left of an error before a unit that became y.
-INLINE floatN through_none(floatN error, floatN y, float kept_share) { return error; }
-INLINE floatN through_sigmoid(floatN error, floatN y, float kept_share) {
-  return error * (y * (1.0f - y));
-}
-INLINE floatN through_centered_sigmoid(floatN error, floatN y, float kept_share) {
-  return centered_sigmoid_gradient(error, y, kept_share);
-}
-
+// What is left of errors before units, which became `state`.
 INLINE void go_through_units(floatN sum[ROWS][COLUMNS], const int count, global const float* state,
                              const int start[ROWS], int frame, int column, float kept_share) {
 #pragma unroll
@@ -34,8 +25,8 @@ INLINE void go_through_units(floatN sum[ROWS][COLUMNS], const int count, global 
     const floatN mask = column_mask(column + c * VEC, VISIBLE);
 #pragma unroll
     for (int r = 0; r < ROWS; ++r) {
-      const floatN y = loadN((start[r] + frame) * V_LD + column + c * VEC, state);
-      sum[r][c] = mask * PASTE(through_, THROUGH)(sum[r][c], y, kept_share);
+      const int at = (start[r] + frame) * V_LD + column + c * VEC;
+      sum[r][c] = mask * PASTE(activation_, ACTIVATION)(sum[r][c], state, at, kept_share);
     }
   }
 }

@@ -44,9 +44,9 @@ void FusedDownPass::backward(const Matrix& states, const Matrix& errors, float k
   Defines defines = crbm_row_defines(crbm.shape(), tile_);
   defines["ORDER_B"] = 0;
   const bool is_gaussian = crbm.shape().kind == VisibleKind::gaussian;
-  defines["THROUGH"] = below_ == Below::code ? "centered_sigmoid"
-                       : is_gaussian         ? "none"
-                                             : "sigmoid";
+  defines["ACTIVATION"] = below_ == Below::code ? "centered_sigmoid_gradient"
+                          : is_gaussian         ? "none"
+                                                : "sigmoid_gradient";
   launch(crbm.device(),
          crbm.device().programs().kernel("unrolled_decoder.cl", "decoder_errors", defines), size(),
          errors.buffer(), states.buffer(), to_int(windows_.count), to_int(windows_.frames),
