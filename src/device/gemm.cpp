@@ -79,8 +79,8 @@ void gemm_own(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& op
   const int columns = device.tuning().product_columns;
   defines["COLUMNS"] = columns;
   defines["A_ROWS"] = a.index ? 1 : 0;
-  const auto group = packed_group(device, c, b.count, static_cast<std::size_t>(tile_rows),
-                                  static_cast<std::size_t>(columns * vec));
+  const auto width = static_cast<std::size_t>(columns) * static_cast<std::size_t>(vec);
+  const auto group = packed_group(device, c, b.count, static_cast<std::size_t>(tile_rows), width);
   defines["PACKED"] = group ? 1 : 0;
   cl::Kernel& kernel = device.programs().kernel("gemm.cl", "gemm", defines);
   // Arguments that this variant does not read still need a buffer: C's own.

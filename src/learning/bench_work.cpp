@@ -65,17 +65,17 @@ std::vector<KernelWork> joint_likelihood_work(std::size_t modalities, std::size_
 
 double unrolled_flops(const Mcdbn& network, std::size_t absent, const SequenceWindows& windows,
                       const FineTuningSettings& settings) {
-  const double rows = static_cast<double>(windows.count * (windows.frames - windows.first));
-  const double shared = static_cast<double>(network.mrbm.hidden());
-  const double t = static_cast<double>(settings.mean_field_steps);
+  const auto rows = static_cast<double>(windows.count * (windows.frames - windows.first));
+  const auto shared = static_cast<double>(network.mrbm.hidden());
+  const auto t = static_cast<double>(settings.mean_field_steps);
   double multiply_adds = 0;
   for (std::size_t m = 0; m < network.modality_count(); ++m) {
     const auto& layers = network.cdbns[m].layers;
     for (const Crbm& layer : layers) {
       const CrbmShape& shape = layer.shape();
       const auto v = static_cast<double>(shape.visible), h = static_cast<double>(shape.hidden);
-      const double order_a = static_cast<double>(shape.order_A()),
-                   order_b = static_cast<double>(shape.order_B());
+      const auto order_a = static_cast<double>(shape.order_A()),
+                 order_b = static_cast<double>(shape.order_B());
       // Values, gradients and, where something lies before it, errors.
       if (m == absent)
         multiply_adds += 3.0 * (v * h + order_a * v * v);
