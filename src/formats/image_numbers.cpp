@@ -31,6 +31,7 @@ std::vector<std::string> names_under(const JsonPlace& list, const std::string& k
 
 ImageNumbers::ImageNumbers(const std::vector<std::string>& names) {
   std::vector<std::string> plain;
+  plain.reserve(names.size());
   for (const std::string& name : names) plain.push_back(without_ending(name));
   const auto numbers = frame_numbers(plain);
   for (std::size_t i = 0; i < names.size(); ++i) numbers_[names[i]] = numbers[i];

@@ -7,6 +7,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "formats/frame_numbers.hpp"
 #include "formats/landmarks.hpp"
@@ -59,7 +60,7 @@ std::vector<std::string> keys_by_number(std::vector<std::string> keys) {
 
 class LandmarkReader {
  public:
-  explicit LandmarkReader(const std::string& file) : file_(file) {}
+  explicit LandmarkReader(std::string file) : file_(std::move(file)) {}
 
   SeenPeople read(const JsonPlace& content) {
     read_film(content);

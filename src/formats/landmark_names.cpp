@@ -25,6 +25,7 @@ bool are_only_numbered(const std::vector<std::string>& names) {
 /// the set's joints.
 std::vector<std::size_t> places_of_set(const JointSet& set, const std::vector<std::string>& names) {
   std::vector<std::string> places;
+  places.reserve(names.size());
   for (const std::string& name : names) places.push_back(place_name_of(name));
   std::vector<std::size_t> order;
   for (const Keypoint& keypoint : set.keypoints) {
@@ -41,6 +42,7 @@ void put_in_order(SeenPeople& people, const std::vector<std::size_t>& order) {
     for (SeenPerson& person : frame)
       for (std::vector<double>* values : {&person.x_px, &person.y_px, &person.confidence}) {
         std::vector<double> ordered;
+        ordered.reserve(order.size());
         for (const std::size_t at : order) ordered.push_back(values->at(at));
         *values = std::move(ordered);
       }
