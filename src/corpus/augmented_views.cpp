@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "base/missing_values.hpp"
 #include "base/random_streams.hpp"
@@ -33,14 +36,20 @@ TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Mod
   const std::size_t count = views_that_fit(clips, settings);
   TrainingSet views{modalities, {}, {}, {}, {}, {}};
   PeopleCount people;
+  std::map<std::pair<std::size_t, std::string>, std::size_t> groups;
+  const bool actions_said =
+      std::ranges::any_of(clips, [](const LoadedClip& loaded) { return !loaded.action.empty(); });
   std::optional<PosePool> pool;
   if (settings.augment.new_poses()) pool.emplace(clips, settings.fps);
   RandomKey key{seed, 0, random_streams::kAugmentedViews, 0};
   for (const LoadedClip& loaded : clips) {
     const Motion& raw = loaded.motion;
     const std::size_t person = people.number_of(raw.skeleton, loaded.person);
+    const std::size_t group =
+        groups.try_emplace(std::pair{person, loaded.action}, groups.size()).first->second;
     for (std::size_t i = 0; i < count; ++i, ++key.step) {
       views.people.push_back(person);
+      if (actions_said) views.groups.push_back(group);
       views.clips.push_back(loaded.clip);
       const AugmentedView view =
           augmented_view(raw, settings.fps, settings.camera, settings.augment, key, false,

@@ -15,6 +15,7 @@ TrainingSet selected(const TrainingSet& views, std::size_t person, bool that_per
     result.poses.push_back(views.poses[i]);
     result.clips.push_back(views.clips[i]);
     result.people.push_back(views.people[i]);
+    if (!views.groups.empty()) result.groups.push_back(views.groups[i]);
     if (!views.tracks_seen.empty()) result.tracks_seen.push_back(views.tracks_seen[i]);
   }
   return result;

@@ -89,7 +89,7 @@ class Places {
   std::optional<Vector3d> first_bone(
       std::initializer_list<std::pair<JointRole, JointRole>> bones) const {
     for (const auto& [from, to] : bones)
-      if (const auto found = bone(from, to)) return found;
+      if (auto found = bone(from, to)) return found;
     return {};
   }
 
@@ -324,6 +324,7 @@ RigAxes axes_from_motion(const Motion& motion, const SkeletonRoles& roles) {
 std::vector<int> spread_frames(const Motion& motion, int most) {
   const int count = std::min(most, motion.frames());
   std::vector<int> frames;
+  frames.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     frames.push_back(static_cast<int>(static_cast<long long>(i) * (motion.frames() - 1) /
                                       std::max(1, count - 1)));

@@ -117,7 +117,8 @@ TEST_CASE("a survey of recorded motion: CMU and Bandai are as they should be") {
   for (int i = 1; i < 4; ++i) {
     CAPTURE(clips[i].clip.file);
     CHECK(clips[i].usable());
-    CHECK(clips[i].problems.empty());
+    // 16_15 itself begins with a jump.
+    CHECK(kinds(clips[i].problems) == (i < 3 ? std::set<Kind>{} : std::set{Kind::jumps}));
   }
   CHECK(clips[0].clip.person == "08");
   CHECK(clips[1].clip.action == "jumping");

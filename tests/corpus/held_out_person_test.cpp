@@ -38,6 +38,11 @@ TEST_CASE("who is held out: of those with several clips the one with the fewest 
   CHECK(clip_names(views_of(views, 2)) == std::vector<std::string>{"c1", "c2"});
   CHECK(clip_names(views_without(views, 2)) ==
         std::vector<std::string>{"a1", "a2", "b1", "d1", "d2"});
+  CHECK(views_of(views, 2).groups.empty());
+  TrainingSet grouped = views;
+  grouped.groups = {0, 1, 2, 2, 3, 4, 5, 5};
+  CHECK(views_of(grouped, 2).groups == std::vector<std::size_t>{3, 4});
+  CHECK(views_without(grouped, 2).groups == std::vector<std::size_t>{0, 1, 2, 2, 5, 5});
 }
 
 TEST_CASE("who is held out: of people with a clip each the one with the fewest frames") {

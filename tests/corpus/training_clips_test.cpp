@@ -99,6 +99,24 @@ TEST_CASE("training clips: people are those that are said, else those of the bon
   }
 }
 
+TEST_CASE("training clips: windows are drawn by people, and by actions where those are said") {
+  const TrainingFiles walks({{1, 1}, {1, 2}, {2, 1}});
+  const auto& files = walks.files();
+  const auto groups = [&](const std::vector<ListedClip>& listed) {
+    CorpusSettings settings;
+    settings.augment.views = 2;
+    const auto clips = load_training_clips(listed, settings);
+    const TrainingSet set = make_training_set(clips, settings, 1, false);
+    return make_augmented_views(clips, set.modalities, settings, 1).groups;
+  };
+  using Groups = std::vector<std::size_t>;
+  CHECK(groups({files[0], files[1], files[2]}).empty());
+  CHECK(groups({{files[0], "", "walk"}, {files[1], "", "stroll"}, {files[2], "", "walk"}}) ==
+        Groups{0, 0, 1, 1, 2, 2});
+  CHECK(groups({{files[0], "", "walk"}, {files[1], "", "walk"}, files[2]}) ==
+        Groups{0, 0, 0, 0, 1, 1});
+}
+
 TEST_CASE("a model of the humanoid takes any skeleton's clips") {
   const MixedFiles files;
   const auto clips = load_training_clips(files.all(), {});

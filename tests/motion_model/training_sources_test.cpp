@@ -19,3 +19,18 @@ TEST_CASE("a training set's clips say what was seen of the tracks, and of nothin
   CHECK(clips.modalities[kTrack].seen[0] == set.tracks_seen[0]);
   CHECK(clips.modalities[kPose].seen.empty());
 }
+
+TEST_CASE(
+    "a training set's clips are grouped by person and action, by person where none are said") {
+  const SmallFigure figure;
+  TrainingSet set{figure.modalities(),
+                  {MatrixF::Zero(4, 3), MatrixF::Zero(4, 3)},
+                  {MatrixF::Ones(4, 2), MatrixF::Ones(4, 2)},
+                  {},
+                  {},
+                  {}};
+  set.people = {7, 7};
+  CHECK(ClipSource(set).sequences().groups.back() == 7);
+  set.groups = {3, 4};
+  CHECK(ClipSource(set).sequences().groups.back() == 4);
+}

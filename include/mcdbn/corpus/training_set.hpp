@@ -58,6 +58,9 @@ struct TrainingSet {
   /// What was seen of each of `tracks`, 1, and what was not, 0, where the track is at its mean;
   /// empty where everything was.
   std::vector<MatrixF> tracks_seen;
+  /// Who does what in each of `poses`, a number for each person and action; empty where nobody said
+  /// actions.
+  std::vector<std::size_t> groups = {};
   std::size_t frames() const;
 };
 

@@ -15,14 +15,15 @@ namespace mcdbn {
 inline constexpr std::size_t kTrack = 0, kPose = 1;  // 2D, 3D
 inline constexpr std::array<const char*, 2> kModalityNames{"track", "pose"};
 
-/// A training set's clips; the set must live on.
+/// A training set's clips; the set must live on. Those of one person and action belong together, or
+/// of one person where nobody said actions.
 class ClipSource : public SequenceSource {
  public:
   explicit ClipSource(const TrainingSet& set) : set_(set) {}
   SynchronizedClips sequences() const override {
     return {{{kModalityNames[kTrack], set_.tracks, VisibleKind::gaussian, set_.tracks_seen},
              {kModalityNames[kPose], set_.poses}},
-            set_.people};
+            set_.groups.empty() ? set_.people : set_.groups};
   }
 
  private:
