@@ -124,10 +124,12 @@ void exchange_limbs(HumanoidPoses& poses, const PosePool& pool, std::uint64_t se
 void turn_limbs(HumanoidPoses& poses, const PosePool& pool, double deviation_deg,
                 std::uint64_t seed) {
   RandomSequence random(seed, random_streams::kNewPoses);
-  const double deviation = deviation_deg * kPi / 180, step_s = poses.frame_time_s();
+  const double step_s = poses.frame_time_s();
   for (const JointRole role : joint_roles()) {
     const WanderingVector wandering(random);
     if (role == pelvis) continue;
+    // The turns of a trunk's joints add up.
+    const double deviation = deviation_deg * kPi / 180 * (role <= head ? 0.5 : 1.0);
     for (int t = 0; t < poses.frames(); ++t) {
       const Matrix3d was = poses.local(t, role);
       poses.local(t, role) =

@@ -17,7 +17,8 @@ Motion with_new_poses(const Motion& motion, const AugmentationSettings& settings
 /// The legs of `poses`, the upper body of one other clip and an arm of another. The upper body
 /// stands in the world as it did there, turned about the vertical so that both pelvises head alike.
 void exchange_limbs(HumanoidPoses& poses, const PosePool& pool, std::uint64_t seed);
-/// Every joint is turned by a smooth random rotation, not beyond the pool's limits.
+/// Every joint but the pelvis is turned by a smooth random rotation, those of trunk and neck by
+/// half of it, not beyond the pool's limits.
 void turn_limbs(HumanoidPoses& poses, const PosePool& pool, double deviation_deg,
                 std::uint64_t seed);
 /// Upper arms point anywhere but far behind the body or across it, elbows bend at random.

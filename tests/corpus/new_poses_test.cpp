@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "base/random_sequence.hpp"
 #include "corpus/humanoid_clips.hpp"
 #include "corpus/no_augmentation.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -105,6 +106,35 @@ TEST_CASE("limbs turned: smoothly, within the limits, the pelvis as it was") {
       CHECK(pool.limits(role).beyond_deg(poses.local(t, role)) <
             pool.limits(role).beyond_deg(before.local(t, role)) + 1e-6);
   }
+  // Of joints that nothing limits the trunk's turn by half.
+  std::vector<LoadedClip> free_clips;
+  for (std::uint64_t i = 1; i <= 4; ++i) {
+    HumanoidPoses wild = before;
+    RandomSequence random(i);
+    for (int t = 0; t < wild.frames(); ++t)
+      for (const JointRole role : {chest, left_wrist})
+        wild.local(t, role) =
+            Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal())
+                .normalized()
+                .toRotationMatrix();
+    free_clips.push_back({{}, wild.motion(), {}, {}});
+  }
+  const PosePool free_pool(free_clips, kFps);
+  double trunk = 0, limb = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    HumanoidPoses turned = before;
+    turn_limbs(turned, free_pool, 15, seed);
+    for (int t = 0; t < before.frames(); t += 10) {
+      const auto turn = [&](JointRole role) {
+        const double deg = angle_deg(before.local(t, role).transpose() * turned.local(t, role));
+        return deg * deg / (3 * 9 * 20);
+      };
+      trunk += turn(chest);
+      limb += turn(left_wrist);
+    }
+  }
+  CHECK(std::sqrt(limb) == doctest::Approx(15).epsilon(0.25));
+  CHECK(std::sqrt(trunk) == doctest::Approx(7.5).epsilon(0.25));
   turn_limbs(same = before, pool, 0, 5);
   CHECK(changed_roles(before, same).empty());
 }
