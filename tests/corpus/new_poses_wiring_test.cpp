@@ -50,7 +50,13 @@ TEST_CASE("training sets and views are made with them, and without them as befor
   augment.arms_anywhere = 1;
   const auto [set, views] = made(augment);
   CHECK(views.poses.size() == plain_views.poses.size());
-  CHECK(views.poses[0] != plain_views.poses[0]);
+  // In the same scaling: it changes with the poses, too.
+  settings.augment = augment;
+  const TrainingSet scaled_alike = make_augmented_views(clips, plain_set.modalities, settings, 3);
+  for (std::size_t i = 0; i < views.poses.size(); ++i) {
+    CHECK(scaled_alike.poses[i].rows() == plain_views.poses[i].rows());
+    CHECK(scaled_alike.poses[i] != plain_views.poses[i]);
+  }
   // What hardly moved in the clips moves in the views that the scaling is learnt from.
   CHECK(set.modalities.pose_scale.deviation() != plain_set.modalities.pose_scale.deviation());
   CHECK(set.poses.size() == 2);
