@@ -35,23 +35,22 @@ std::string known_person(const Model& model, const std::filesystem::path& file) 
   return known ? person : "";
 }
 
-/// Joints worth judging: not the root, not those that stand where their parent stands.
-std::vector<int> distinct_joints(const Skeleton& skeleton, int root) {
-  std::vector<int> joints;
-  const TrackFeatures tracked = TrackFeatures::for_skeleton(skeleton, root);
-  for (const std::string& name : tracked.joint_names()) joints.push_back(skeleton.find(name));
-  return joints;
+/// Joints worth judging, the root first: none that stands where its parent stands.
+std::vector<std::string> judged_joints(const Skeleton& skeleton, int root) {
+  std::vector<std::string> names = TrackFeatures::for_skeleton(skeleton, root).joint_names();
+  names.insert(names.begin(), skeleton.joints[static_cast<std::size_t>(root)].name);
+  return names;
 }
 
-/// Root first, then the distinct joints, root-relative in mm. @return [frames x 3·joints]
-MatrixD judged_positions(const Motion& motion, int root) {
-  const MatrixD all = root_relative_positions_mm(motion, root);
-  const std::vector<int> joints = distinct_joints(motion.skeleton, root);
-  MatrixD positions(all.rows(), 3 * static_cast<Eigen::Index>(joints.size() + 1));
-  positions.leftCols(3) = all.middleCols(3 * root, 3);
+/// Relative to the first joint, in mm. An answer may stand on another body, on which other joints
+/// stand where their parents do: the truth's are judged.
+/// @return [frames x 3·joints]
+MatrixD judged_positions(const Motion& motion, const std::vector<std::string>& joints) {
+  const MatrixD all = root_relative_positions_mm(motion, motion.skeleton.find(joints.front()));
+  MatrixD positions(all.rows(), 3 * std::ssize(joints));
   for (std::size_t i = 0; i < joints.size(); ++i)
-    positions.middleCols(3 * static_cast<Eigen::Index>(i + 1), 3) =
-        all.middleCols(3 * joints[i], 3);
+    positions.middleCols(3 * static_cast<Eigen::Index>(i), 3) =
+        all.middleCols(3 * motion.skeleton.find(joints[i]), 3);
   return positions;
 }
 
@@ -95,7 +94,11 @@ class Progress {
 
 ClipPlacement placement_of(const EncodedClip& truth, const TestRunOptions& options) {
   ClipPlacement placement;
-  if (options.camera_known) placement.camera = truth.camera;
+  if (options.camera_known) {
+    placement.camera = truth.camera;
+    // The answer may stand on a skeleton of other units.
+    placement.camera->unit_m = 1.0 / file_units_per_metre(truth.motion.skeleton);
+  }
   if (!options.detector) placement.skeleton = truth.motion.skeleton;
   placement.fit = options.fit;
   return placement;
@@ -206,8 +209,9 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
 ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                      const std::string& root_name) {
   const int root = truth.motion.skeleton.find(root_name);
-  const MatrixD real = judged_positions(truth.motion, root),
-                other = judged_positions(regenerated, root);
+  const std::vector<std::string> judged = judged_joints(truth.motion.skeleton, root);
+  const MatrixD real = judged_positions(truth.motion, judged),
+                other = judged_positions(regenerated, judged);
   ClipScore score;
   // The root's own columns are zero on both sides: they would flatter the flattened figure.
   const auto joints = real.cols() - 3;
@@ -219,9 +223,12 @@ ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                                           turned(other.rightCols(joints), axes));
   score.error = joint_error(real, other, truth.motion.fps(), 0);
   score.limbs = limb_error(limb_positions_mm(truth.motion), limb_positions_mm(regenerated));
+  const auto mm = [](const Motion& motion) {
+    return 1000.0 / file_units_per_metre(motion.skeleton);
+  };
   const MatrixD path = joint_positions(regenerated).middleCols(3 * root, 3);
-  const double mm = 1000.0 / file_units_per_metre(truth.motion.skeleton);
-  score.root_mm = mm * (path - truth.root_position).rowwise().norm().mean();
+  score.root_mm =
+      (mm(regenerated) * path - mm(truth.motion) * truth.root_position).rowwise().norm().mean();
   const MatrixD world = world_positions_mm(regenerated);
   score.foot_slide = foot_slide(world_positions_mm(truth.motion), world,
                                 foot_joints(truth.motion.skeleton), truth.motion.fps());

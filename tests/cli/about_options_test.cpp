@@ -67,6 +67,19 @@ std::vector<BenchRow> bench_rows() {
     for (const auto& [m, k] : {std::pair(100, 96), {100, 480}, {100, 1500}, {1024, 1500}})
       rows.push_back({{{"layer", "gemm"}, {"m", m}, {"n", 300}, {"k", k}, {"backend", backend}},
                       300.0 * m * k});
+  const auto direction = [](double seen, double absent) {
+    // Values and weights of what is seen; of what is not, errors too. Two steps of the mean field,
+    // of which the first starts from zeros: two products down and one up.
+    const double up = 2 * (1 + 10) * seen * 768, down = 3 * (768 * absent + 10 * absent * absent),
+                 shared = 3 * (1 + 3) * 768.0 * 512;
+    return 48 * (34 - 10) * (up + down + shared);
+  };
+  for (const int directions : {1, 2})
+    rows.push_back({{{"layer", "fine_tuning"},
+                     {"windows", 48},
+                     {"window_frames", 34},
+                     {"directions", directions}},
+                    direction(43, 154) + (directions - 1) * direction(154, 43)});
   for (const int temperature : {0, 1})
     rows.push_back({{{"layer", "regeneration"},
                      {"frames", 1000},

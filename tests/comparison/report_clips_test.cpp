@@ -102,6 +102,41 @@ TEST_CASE("a clip's score: every figure by hand") {
   CHECK(perfect.root_mm < 1e-9);
 }
 
+TEST_CASE("a clip's score: an answer on another body is judged at the truth's joints") {
+  const Motion motion = swinging(small_body(), 40);
+  Motion other = motion;
+  // Here it stands where its parent does, there it does not.
+  other.skeleton.joints[static_cast<std::size_t>(motion.skeleton.find("LHip"))].offset.x() += 2;
+  const ClipScore score = score_clip(truth_of(motion, "x.bvh"), other, "Hips");
+  const auto names = judged_joints();
+  const auto places = [&](const Motion& one) -> MatrixD {
+    return 1000.0 / file_units_per_metre(one.skeleton) * joints_about(one, names, "Hips");
+  };
+  const MatrixD off = places(other) - places(motion);
+  double distances = 0;
+  for (Eigen::Index t = 0; t < 40; ++t)
+    for (Eigen::Index c = 0; c < off.cols(); c += 3) distances += off.block<1, 3>(t, c).norm();
+  CHECK(distances > 0);
+  CHECK(score.error.mpjpe_mm ==
+        doctest::Approx(distances / (40.0 * static_cast<double>(names.size()))));
+}
+
+TEST_CASE("a clip's score: an answer in other units is as far off") {
+  const Motion motion = swinging(small_body(), 40);
+  Motion other = changed(motion, 40, {3, 0, -4});
+  const EncodedClip truth = truth_of(motion, "x.bvh");
+  const ClipScore same = score_clip(truth, other, "Hips");
+  for (Joint& joint : other.skeleton.joints) joint.offset *= 10;
+  for (int joint = 0, column = 0; joint < other.skeleton.joint_count(); ++joint)
+    for (const Channel channel : other.skeleton.joints[static_cast<std::size_t>(joint)].channels) {
+      if (!is_rotation(channel)) other.channels.col(column) *= 10;
+      ++column;
+    }
+  const ClipScore score = score_clip(truth, other, "Hips");
+  CHECK(score.root_mm == doctest::Approx(same.root_mm));
+  CHECK(score.error.mpjpe_mm == doctest::Approx(same.error.mpjpe_mm));
+}
+
 TEST_CASE("what a report is told of a clip") {
   const Motion motion = swinging(small_body(), 6);
   on_every_device([&](Device& device) {
