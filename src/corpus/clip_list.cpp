@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/text_file.hpp"
+#include "formats/toml_texts.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
 
@@ -18,30 +19,10 @@ namespace {
 
 constexpr const char* kExample = "give tables such as [[clip]] with file = \"walk/02_01.bvh\"";
 
-[[noreturn]] void fail(const fs::path& path, const toml::source_region& source,
-                       const std::string& what) {
-  throw InputError(fmt::format("{}:{}: {}", path.string(), source.begin.line, what));
-}
-
-toml::table parsed(const fs::path& path) {
-  try {
-    return toml::parse(read_text_file(path), path.string());
-  } catch (const toml::parse_error& error) {
-    fail(path, error.source(), fmt::format("not TOML; {}", kExample));
-  }
-}
-
-std::string text_of(const fs::path& path, std::string_view key, const toml::node& node) {
-  const auto* text = node.as_string();
-  if (text == nullptr || text->get().empty())
-    fail(path, node.source(), fmt::format("{}: give a text, in quotes", key));
-  return text->get();
-}
-
 ListedClip clip_from(const fs::path& path, const toml::table& table) {
   ListedClip clip{fs::path()};
   for (const auto& [key, node] : table) {
-    const std::string text = text_of(path, key.str(), node);
+    const std::string text = text_of(path, key.str(), node, "a text");
     if (key == "file")
       clip.file = path.parent_path() / text;
     else if (key == "person")
@@ -49,13 +30,13 @@ ListedClip clip_from(const fs::path& path, const toml::table& table) {
     else if (key == "action")
       clip.action = text;
     else
-      fail(path, key.source(),
-           fmt::format("no key {} is known; a clip has file, person and action", key.str()));
+      fail_at(path, key.source(),
+              fmt::format("no key {} is known; a clip has file, person and action", key.str()));
   }
   if (clip.file.empty())
-    fail(path, table.source(), fmt::format("a clip without file; {}", kExample));
+    fail_at(path, table.source(), fmt::format("a clip without file; {}", kExample));
   if (!fs::is_regular_file(clip.file))
-    fail(path, table.source(), fmt::format("{}: no such file", clip.file.string()));
+    fail_at(path, table.source(), fmt::format("{}: no such file", clip.file.string()));
   return clip;
 }
 
@@ -72,12 +53,12 @@ std::string quoted(const std::string& text) {
 }  // namespace
 
 std::vector<ListedClip> read_clip_list(const fs::path& path) {
-  const toml::table content = parsed(path);
+  const toml::table content = read_toml(path, kExample);
   std::vector<ListedClip> clips;
   for (const auto& [key, node] : content) {
     const auto* tables = node.as_array();
     if (key != "clip" || tables == nullptr || !tables->is_array_of_tables())
-      fail(path, key.source(), fmt::format("no list of clips; {}", kExample));
+      fail_at(path, key.source(), fmt::format("no list of clips; {}", kExample));
     for (const toml::node& table : *tables) clips.push_back(clip_from(path, *table.as_table()));
   }
   if (clips.empty()) throw InputError(fmt::format("{}:1: no clips; {}", path.string(), kExample));
