@@ -2,9 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <regex>
 
 namespace mcdbn {
+namespace {
+
+/// What the first pattern that the whole of a file's name fits has in brackets.
+std::optional<std::string> told_by_name(const std::filesystem::path& file, const std::regex& first,
+                                        const std::regex& second) {
+  const std::string name = file.stem().string();
+  std::smatch found;
+  if (!std::regex_match(name, found, first) && !std::regex_match(name, found, second)) return {};
+  return found[1].str();
+}
+
+}  // namespace
 
 std::size_t PeopleCount::number_of(const Skeleton& skeleton, const std::string& said) {
   Person person{said, {}};
@@ -24,20 +37,13 @@ std::size_t PeopleCount::number_of(const Skeleton& skeleton, const std::string& 
 
 std::string person_of(const std::filesystem::path& file) {
   static const std::regex cmu("(\\d+)_\\d+.*"), synthesized(".*_(s\\d+)_\\d+");
-  const std::string name = file.stem().string();
-  std::smatch found;
-  const bool tells =
-      std::regex_match(name, found, cmu) || std::regex_match(name, found, synthesized);
-  return tells ? found[1].str() : "";
+  return told_by_name(file, cmu, synthesized).value_or("");
 }
 
 std::string action_of(const std::filesystem::path& file) {
   static const std::regex bandai("dataset-\\d+_(.+)_[^_]+_\\d+"), synthesized("(.+)_s\\d+_\\d+");
-  const std::string name = file.stem().string();
-  std::smatch found;
-  const bool tells =
-      std::regex_match(name, found, bandai) || std::regex_match(name, found, synthesized);
-  return tells ? found[1].str() : std::filesystem::absolute(file).parent_path().filename().string();
+  return told_by_name(file, bandai, synthesized)
+      .value_or(std::filesystem::absolute(file).parent_path().filename().string());
 }
 
 }  // namespace mcdbn
