@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "base/upper_median.hpp"
 #include "corpus/people.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/motion_file.hpp"
@@ -71,12 +73,6 @@ void add_spikes_and_jumps(const MatrixD& places, double fps, const SurveyLimits&
                                                  frames_text(jumps))});
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The ground is where the lowest foot is at its lowest in a usual second.
 void add_ground(const Motion& motion, const SkeletonRoles& roles, const SurveyLimits& limits,
                 std::vector<ClipProblem>& problems) {
@@ -89,7 +85,7 @@ void add_ground(const Motion& motion, const SkeletonRoles& roles, const SurveyLi
     std::vector<double> lows;
     for (Eigen::Index t = 0; t < heights.size(); t += second)
       lows.push_back(heights.segment(t, std::min(second, heights.size() - t)).minCoeff());
-    lowest_m = std::min(lowest_m, heights.minCoeff() - median(lows));
+    lowest_m = std::min(lowest_m, heights.minCoeff() - upper_median(std::move(lows)));
   }
   if (lowest_m < -limits.below_ground_m)
     problems.push_back(
@@ -152,8 +148,7 @@ void describe(Motion motion, const SurveyLimits& limits, Seen& seen, SurveyedCli
     motion = without_first_frame(motion);
   }
   try {
-    const HumanoidRig rig(motion);
-    require_person(rig);
+    const HumanoidRig rig = rig_of_person(motion);
     result.error = retarget_error(rig, motion);
     for (ClipProblem& problem : motion_problems(motion, rig.roles(), limits))
       result.problems.push_back(std::move(problem));

@@ -59,8 +59,7 @@ void bring_onto_humanoid(std::vector<LoadedClip>& clips, std::vector<std::string
       clip.person = fmt::format("person {}", people.number_of(clip.motion.skeleton));
     if (is_humanoid(clip.motion.skeleton)) continue;
     try {
-      const HumanoidRig rig(clip.motion);
-      require_person(rig);
+      const HumanoidRig rig = rig_of_person(clip.motion);
       if (notices) losses.add(clip.clip.path, retarget_error(rig, clip.motion));
       clip.motion = rig.to_humanoid(clip.motion);
     } catch (const InputError& error) {
@@ -99,9 +98,7 @@ std::vector<LoadedClip> load_training_clips(const std::vector<ListedClip>& files
 
 Motion for_skeleton(Motion clip, const Skeleton& model) {
   if (!is_humanoid(model) || is_humanoid(clip.skeleton)) return clip;
-  const HumanoidRig rig(clip);
-  require_person(rig);
-  return rig.to_humanoid(clip);
+  return rig_of_person(clip).to_humanoid(clip);
 }
 
 }  // namespace mcdbn

@@ -310,7 +310,8 @@ std::vector<int> HumanoidRig::kept_joints() const {
   return joints;
 }
 
-void require_person(const HumanoidRig& rig) {
+HumanoidRig rig_of_person(const Motion& motion) {
+  HumanoidRig rig(motion);
   std::vector<std::string_view> lacking;
   for (const JointRole left :
        {left_hip, left_knee, left_ankle, left_shoulder, left_elbow, left_wrist})
@@ -322,6 +323,7 @@ void require_person(const HumanoidRig& rig) {
         "no joint is known to be {}: this cannot be brought onto the humanoid; name its joints in "
         "a joint map, or leave the file out",
         fmt::join(lacking, ", ")));
+  return rig;
 }
 
 }  // namespace mcdbn

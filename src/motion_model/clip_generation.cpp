@@ -31,8 +31,7 @@ std::vector<Motion> generate_clip(const Model& model, const Motion& seed,
                                   const GenerationOptions& options, GenerationHealth* health) {
   const Modalities& modalities = model.modalities;
   if (is_humanoid(modalities.pose_features.skeleton()) && !is_humanoid(seed.skeleton)) {
-    const HumanoidRig rig(seed);
-    require_person(rig);
+    const HumanoidRig rig = rig_of_person(seed);
     std::vector<Motion> motions = generate_clip(model, rig.to_humanoid(seed), options, health);
     for (Motion& motion : motions) motion = rig.from_humanoid(motion);
     return motions;

@@ -150,8 +150,7 @@ TEST_CASE("a rig: what a skeleton lacks is as the joint above, and of usual leng
     other.channels = channels;
     other.skeleton.joints.erase(other.skeleton.joints.begin() + joint);
   }
-  const HumanoidRig rig(other);
-  require_person(rig);
+  const HumanoidRig rig = rig_of_person(other);
   const Motion there = rig.to_humanoid(other);
   const RetargetError error = retarget_error(rig, other);
   CHECK(error.worst_turned().worst_deg < 1e-4);
@@ -211,7 +210,7 @@ TEST_CASE("a rig: what is no person is refused in words") {
   motion.skeleton.joints[humanoid_roles().joint(left_knee)].name = "spam";
   motion.skeleton.joints[humanoid_roles().joint(neck)].name = "eggs";
   motion.skeleton.joints[humanoid_roles().joint(head)].name = "ham";
-  CHECK_THROWS_WITH_AS(require_person(HumanoidRig(motion)),
+  CHECK_THROWS_WITH_AS(rig_of_person(motion),
                        doctest::Contains("no joint is known to be left_knee, neck or head"),
                        InputError);
   motion.skeleton.joints[0].name = "nothing";
@@ -242,8 +241,7 @@ TEST_CASE("rigs of recorded motion: there and back") {
     if (!test::have_shared_data(file, "rigs of recorded motion")) continue;
     Motion motion = read_motion(test::shared_data() / file);
     if (has_leading_calibration_pose(motion)) motion = without_first_frame(motion);
-    const HumanoidRig rig(motion);
-    require_person(rig);
+    const HumanoidRig rig = rig_of_person(motion);
     const RetargetError error = retarget_error(rig, motion);
     CHECK(error.mean_deg() < mean_deg);
     CHECK(error.mean_mm() < mean_mm);

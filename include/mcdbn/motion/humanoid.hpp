@@ -5,10 +5,9 @@
 namespace mcdbn {
 
 /// The canonical humanoid, onto which skeletons of every make are brought: a joint for each role,
-/// called by the role's name. At rest it stands in a T-pose: up
-/// is +y, it faces +z, its left is +x, palms down, thumbs forward. The root is the pelvis, the only
-/// joint with position channels; every joint turns by ZXY. It is 170 units tall, so that one is a
-/// centimetre.
+/// called by the role's name. At rest it stands in a T-pose: up is +y, it faces +z, its left is +x,
+/// palms down, thumbs forward. The root is the pelvis, the only joint with position channels; every
+/// joint turns by ZXY. It is 170 units tall, so that one is a centimetre.
 ///
 /// Heights and lengths are shares of stature of Drillis and Contini (1966), as in Winter,
 /// Biomechanics and Motor Control of Human Movement, fig. 4.1: hip 0.530, knee 0.285, ankle 0.039,

@@ -17,8 +17,7 @@ namespace mcdbn {
 class HumanoidRig {
  public:
   /// @param motion tells how the joints are turned where the rest pose is nobody's
-  /// (docs/joints.md);
-  ///        one without frames has its rest pose alone
+  ///        (docs/joints.md); one without frames has its rest pose alone
   /// @throws InputError if nothing tells the pelvis
   HumanoidRig(const Motion& motion, const SkeletonRoles& roles);
   explicit HumanoidRig(const Motion& motion);
@@ -67,9 +66,10 @@ class HumanoidRig {
   std::vector<Eigen::Vector3d> local_;
 };
 
-/// @throws InputError naming the joints of a person that the skeleton has not: hips, knees, ankles,
-///         shoulders, elbows and wrists of both sides, neck or head
-void require_person(const HumanoidRig& rig);
+/// The rig of a motion that is a person's, whose joints' names tell their roles.
+/// @throws InputError as the rig does; or naming the joints of a person that the skeleton has not:
+///         hips, knees, ankles, shoulders, elbows and wrists of both sides, neck or head
+HumanoidRig rig_of_person(const Motion& motion);
 
 /// What is lost of a motion that goes to the humanoid and comes back.
 struct RetargetError {
