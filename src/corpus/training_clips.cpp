@@ -80,6 +80,7 @@ std::vector<LoadedClip> load_training_clips(const std::vector<ListedClip>& files
         "`augment.leaning` and `augment.turning-round` are of the canonical humanoid; leave the "
         "skeletons' own out");
   std::vector<std::filesystem::path> paths;
+  paths.reserve(files.size());
   for (const ListedClip& listed : files) paths.push_back(listed.file);
   std::vector<LoadedClip> clips = load_clips(paths, settings.keep_first_frame, notices);
   for (std::size_t i = 0; i < clips.size(); ++i) {
