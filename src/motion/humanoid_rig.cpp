@@ -160,6 +160,7 @@ HumanoidRig::HumanoidRig(const Motion& motion, const SkeletonRoles& roles)
   const std::vector<int> frames = spread_frames(motion, axes.from_rest ? 0 : kMostFrames);
   parent_from_joint_ = mean_turns(motion, frames);
   std::vector<WorldPose> poses;
+  poses.reserve(std::max<std::size_t>(1, frames.size()));
   for (const int t : frames) poses.push_back(forward_kinematics(skeleton_, motion.channels.row(t)));
   if (poses.empty()) poses.push_back(rest_pose(skeleton_, local_));
   measure(poses);
@@ -317,7 +318,7 @@ HumanoidRig rig_of_person(const Motion& motion) {
        {left_hip, left_knee, left_ankle, left_shoulder, left_elbow, left_wrist})
     for (const JointRole role : {left, other_side(left)})
       if (!rig.roles().has(role)) lacking.push_back(name_of(role));
-  if (!rig.roles().has(neck) && !rig.roles().has(head)) lacking.push_back("neck or head");
+  if (!rig.roles().has(neck) && !rig.roles().has(head)) lacking.emplace_back("neck or head");
   if (!lacking.empty())
     throw InputError(fmt::format(
         "no joint is known to be {}: this cannot be brought onto the humanoid; name its joints in "
