@@ -13,6 +13,7 @@
 #include "learning/bench_steps.hpp"
 #include "mcdbn/learning/settings.hpp"
 #include "roofline.hpp"
+#include "setting_flags.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -149,14 +150,15 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
                     "First find what suits the device best and keep it in the user's cache folder");
   command->add_flag("--roofline", options->roofline,
                     "Also each kernel's arithmetic and bytes against what the device can do");
-  command
-      ->add_option("--trace", options->trace,
-                   "Writes one run's launches of each step, for chrome://tracing or Perfetto")
+  mark_output(command->add_option("--trace", options->trace,
+                                  "Writes one run's launches of each step, for chrome://tracing or "
+                                  "Perfetto"),
+              context)
       ->type_name("FILE.json");
   command
       ->add_option("--seconds", options->seconds,
                    "Time for each measurement; 0: one try, to see that it runs")
-      ->check(CLI::Range(0.0, kLongest_s))
+      ->check(in_range(within(0, kLongest_s)))
       ->capture_default_str();
   add_device_options(*command, context);
   add_json_option(*command, context);

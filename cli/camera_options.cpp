@@ -26,7 +26,7 @@ Camera read_camera_with_notices(const std::filesystem::path& file) {
   if (camera.unit_m)
     assumed.push_back(fmt::format("{}: its units of {:g} m meet the motion's by a body of 1.7 m",
                                   file.string(), *camera.unit_m));
-  for (const std::string& line : assumed) spdlog::info(line);
+  for (const std::string& line : assumed) spdlog::warn("{}", line);
   return camera;
 }
 
@@ -75,7 +75,7 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
   placed(command
              .add_option("--camera-distance", placement.distance,
                          "In the file's units (default: the whole clip just fits in view)")
-             ->check(CLI::PositiveNumber));
+             ->check(in_range(above(0))));
   placed(command
              .add_option_function<std::pair<int, int>>(
                  "--image-size",
@@ -83,7 +83,7 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
                    std::tie(placement.width_px, placement.height_px) = size_px;
                  },
                  "Width and height in pixels (default: 1920 1080)")
-             ->check(CLI::PositiveNumber)
+             ->check(in_range(Camera::kImage_px))
              ->type_name("WIDTH HEIGHT"));
 }
 

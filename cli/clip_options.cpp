@@ -2,13 +2,14 @@
 
 #include <spdlog/spdlog.h>
 
+#include "mcdbn/motion/frame_rate.hpp"
 #include "setting_flags.hpp"
 
 namespace mcdbn::cli {
 
 void add_clip_options(CLI::App& command, ClipOptions& options) {
   command.add_option("--fps", options.fps, "Resample clips to this rate; 0 keeps the file's own")
-      ->check(CLI::NonNegativeNumber)
+      ->check(in_range(within(0, kFrameRate_hz.most)))
       ->capture_default_str();
   command.add_flag("--keep-first-frame", options.keep_first_frame,
                    "Keep a leading calibration pose");
@@ -17,7 +18,7 @@ void add_clip_options(CLI::App& command, ClipOptions& options) {
 Motion load_clip_with_notices(const std::filesystem::path& path, const ClipOptions& options) {
   std::vector<std::string> notices;
   Motion motion = load_clip(path, options, &notices);
-  for (const std::string& notice : notices) spdlog::info("{}", with_flags(notice));
+  for (const std::string& notice : notices) spdlog::warn("{}", with_flags(notice));
   return motion;
 }
 

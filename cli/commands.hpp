@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 namespace mcdbn::cli {
 
@@ -16,6 +17,7 @@ struct CommandContext {
   std::uint64_t seed = 1;
   bool quiet = false;
   bool json = false;
+  std::vector<CLI::Option*> outputs;  ///< files to write: mark_output
   std::function<void()> run;
 };
 
@@ -23,6 +25,14 @@ void add_device_options(CLI::App& command, CommandContext& context);  ///< --pla
 void add_seed_option(CLI::App& command, CommandContext& context);     ///< --seed
 void add_quiet_option(CLI::App& command, CommandContext& context);    ///< --quiet
 void add_json_option(CLI::App& command, CommandContext& context);     ///< --json
+
+/// The option names a file to write: it is looked at before the command runs, as check_output does,
+/// and must be none that another option reads.
+CLI::Option* mark_output(CLI::Option* option, CommandContext& context);
+
+/// JSON as text; bytes of names in files that are no text become U+FFFD.
+/// @param indent of lines; -1: one line
+std::string json_text(const nlohmann::json& value, int indent = -1);
 
 /// Writes one JSON object and a newline to stdout.
 void print_json(const nlohmann::json& value);

@@ -20,20 +20,30 @@ void add_device_options(CLI::App& command, CommandContext& context) {
 }
 
 void add_seed_option(CLI::App& command, CommandContext& context) {
-  add_setting_flag(command, "--seed", {"seed", at_least(0), "", "Seed of everything random"},
+  add_setting_flag(command, "--seed", {"seed", any_seed(), "", "Seed of everything random"},
                    context.seed);
 }
 
 void add_quiet_option(CLI::App& command, CommandContext& context) {
-  command.add_flag("--quiet", context.quiet, "Print warnings and errors only");
+  command.add_flag("--quiet", context.quiet,
+                   "No progress and no results in words: warnings and errors alone");
 }
 
 void add_json_option(CLI::App& command, CommandContext& context) {
   command.add_flag("--json", context.json, "Print one JSON object to stdout");
 }
 
+CLI::Option* mark_output(CLI::Option* option, CommandContext& context) {
+  context.outputs.push_back(option);
+  return option;
+}
+
+std::string json_text(const nlohmann::json& value, int indent) {
+  return value.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 void print_json(const nlohmann::json& value) {
-  std::cout << value.dump(2) << '\n';
+  std::cout << json_text(value, 2) << '\n';
 }
 
 }  // namespace mcdbn::cli

@@ -131,10 +131,11 @@ void add_corpus_command(CLI::App& app, CommandContext& context) {
                    "BVH or AMC files, folders that hold some, or lists of them")
       ->required()
       ->type_name("PATH");
-  command
-      ->add_option("-o,--output", options->list,
-                   "Also write a list that `train` takes, TOML: the clips that can be brought onto "
-                   "the canonical humanoid, with person and action, which may be changed there")
+  mark_output(command->add_option(
+                  "-o,--output", options->list,
+                  "Also write a list that `train` takes, TOML: the clips that can be brought onto "
+                  "the canonical humanoid, with person and action, which may be changed there"),
+              context)
       ->type_name("FILE");
   add_json_option(*command, context);
   add_quiet_option(*command, context);

@@ -4,9 +4,8 @@
 
 namespace mcdbn::cli {
 
-EpochObserver shown_on(ProgressLine& progress, const InterruptGuard& interrupt) {
+EpochObserver shown_on(ProgressLine& progress) {
   return [&](const EpochReport& report) {
-    interrupt.check();
     progress.show(fmt::format("{} epoch {}/{}  loss {:.4f}  {:.0f} windows/s", report.stage,
                               report.epoch, report.epochs, report.loss, report.windows_per_s),
                   report.overall_progress);

@@ -1,12 +1,11 @@
 #pragma once
 
-#include "interrupt.hpp"
 #include "mcdbn/learning/epoch_report.hpp"
 #include "progress.hpp"
 
 namespace mcdbn::cli {
 
-/// Shows each epoch, and stops the training on SIGINT.
-EpochObserver shown_on(ProgressLine& progress, const InterruptGuard& interrupt);
+/// Shows each epoch.
+EpochObserver shown_on(ProgressLine& progress);
 
 }  // namespace mcdbn::cli

@@ -5,13 +5,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/interruption.hpp"
 #include "camera_options.hpp"
 #include "commands.hpp"
 #include "comparison/training_views.hpp"
+#include "default_model.hpp"
 #include "detector_options.hpp"
 #include "evaluation/report_page.hpp"
 #include "fit_option.hpp"
-#include "interrupt.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "progress.hpp"
 #include "sampling_options.hpp"
@@ -94,14 +95,14 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   apply_protocol(options);
   choose_tracks(options);
   Device device = Device::open({context.platform, context.device});
-  const Model model = load_model(device, options.model);
-  const InterruptGuard interrupt;
+  const std::filesystem::path model_file = model_or_default(options.model);
+  const Model model = load_model(device, model_file);
   EvaluationReport report;
   {
     ProgressLine progress(context.quiet);
     const auto show = [&](double from, double to) {
       return [&, from, to](const std::string& what, double fraction) {
-        interrupt.check();
+        check_interruption();
         progress.show(what, from + (to - from) * fraction);
       };
     };
@@ -118,7 +119,7 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
                                 options.actions == "by-folder");
     report.actions = analyse_actions(report.clips, context.seed, show(kTestShare, 1.0));
   }
-  report.model = options.model.filename().string();
+  report.model = model_file.filename().string();
   report.protocol = options.protocol;
   report.fit = options.fit;
   report.tracks = options.tracks == kDetector ? options.like : options.tracks;
@@ -135,7 +136,7 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
 }
 
 void add_test_options(CLI::App& command, EvaluateOptions& options) {
-  command.add_option("--model", options.model, "Trained model")->required()->type_name("FILE");
+  add_model_option(command, options.model);
   command.add_option("--test", options.test, "BVH files, or folders that hold some")
       ->required()
       ->type_name("PATH");

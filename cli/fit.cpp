@@ -7,11 +7,14 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/output_file.hpp"
+#include "base/utf8.hpp"
 #include "commands.hpp"
 #include "epoch_progress.hpp"
 #include "learning/metrics_log.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/learning/machine_fit.hpp"
+#include "mcdbn/machines/size_limits.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "modality_options.hpp"
 #include "setting_flags.hpp"
@@ -132,11 +135,11 @@ ColumnScale prepare(std::vector<MatrixF>& data, const MatrixInput& input, Visibl
 template <typename Fit>
 void fit_and_save(const CommandContext& context, const FitOptions& options, Fit&& fit) {
   Device device = Device::open({context.platform, context.device});
-  std::filesystem::path metrics_file = options.output;
-  MetricsLog metrics(metrics_file.replace_extension(".metrics.jsonl"));
-  const InterruptGuard interrupt;
+  std::filesystem::path metrics_path = options.output;
+  OutputFile metrics_file(metrics_path.replace_extension(".metrics.jsonl"));
+  MetricsLog metrics(metrics_file.temporary());
   ProgressLine progress(context.quiet);
-  const EpochObserver show = shown_on(progress, interrupt);
+  const EpochObserver show = shown_on(progress);
   SavedMachine saved = fit(device, [&](const EpochReport& report) {
     metrics.add(report);
     show(report);
@@ -146,6 +149,8 @@ void fit_and_save(const CommandContext& context, const FitOptions& options, Fit&
   if (!options.widths.empty()) saved.config["widths"] = options.widths;
   if (!options.orders.empty()) saved.config["orders"] = options.orders;
   save_machine(options.output, saved);
+  metrics.finish();
+  metrics_file.put_in_place();
   spdlog::info("{}: fitted in {:.1f} s", options.output.string(), progress.elapsed_s());
 }
 
@@ -158,6 +163,7 @@ void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
   std::vector<Modality> modalities;
   std::vector<ColumnScale> scales;
   for (ModalityData& input : inputs) {
+    require_utf8(input.name, "--modality: a name");
     const bool is_gaussian = std::ranges::count(options.gaussian, input.name) > 0;
     modalities.push_back(
         {.name = input.name, .kind = is_gaussian ? VisibleKind::gaussian : VisibleKind::binary});
@@ -243,11 +249,11 @@ void add_layer_options(CLI::App& command, FitOptions& options) {
   };
   options.each_width =
       add("--widths", options.widths, "Hidden units of each layer of a stack, from below: 300,150",
-          CLI::PositiveNumber, "UNITS,…")
+          in_range(size_limits::kUnits), "UNITS,…")
           ->excludes(command.get_option("--hidden"));
   options.each_order =
       add("--orders", options.orders, "History of each layer of a stack, from below: 5,3",
-          CLI::NonNegativeNumber, "FRAMES,…")
+          in_range(size_limits::kHistory), "FRAMES,…")
           ->excludes(command.get_option("--order"));
 }
 
@@ -273,9 +279,10 @@ void add_fit_command(CLI::App& app, CommandContext& context) {
           "of several modalities")
       ->required()
       ->check(CLI::IsMember(kind_names()));
-  command
-      ->add_option("-o,--output", options->output,
-                   "File to write, machine.safetensors; beside it machine.metrics.jsonl")
+  mark_output(
+      command->add_option("-o,--output", options->output,
+                          "File to write, machine.safetensors; beside it machine.metrics.jsonl"),
+      context)
       ->required()
       ->type_name("FILE");
   command->add_flag("--standardize", options->standardize,

@@ -6,11 +6,14 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "default_model.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/machines/size_limits.hpp"
 #include "mcdbn/motion_model/clip_generation.hpp"
 #include "sample_path.hpp"
+#include "setting_flags.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -44,7 +47,7 @@ void report(const GenerationHealth& health) {
 
 void run_generate(const CommandContext& context, const GenerateOptions& options) {
   Device device = Device::open({context.platform, context.device});
-  const Model model = load_model(device, options.model);
+  const Model model = load_model(device, model_or_default(options.model));
   GenerationOptions generation = options.generation;
   generation.seed = context.seed;
   GenerationHealth health;
@@ -61,40 +64,41 @@ void run_generate(const CommandContext& context, const GenerateOptions& options)
 }  // namespace
 
 void add_generate_command(CLI::App& app, CommandContext& context) {
-  constexpr std::size_t kMostFrames = 1'000'000, kMostSamples = 1000, kMostSteps = 1000;
-  constexpr double kHottest = 10.0;
+  constexpr double kMostFrames = 1e6, kMostSamples = 1000, kHottest = 10;
   auto options = std::make_shared<GenerateOptions>();
   GenerationOptions& generation = options->generation;
   CLI::App* command = app.add_subcommand(
       "generate", "Goes on where a clip ends: new 3D motion, as BVH, without any track");
-  command->add_option("--model", options->model, "Trained model")->required()->type_name("FILE");
+  add_model_option(*command, options->model);
   command
       ->add_option("--seed-clip", options->seed_clip,
                    "BVH clip to go on from: its last frames and its person")
       ->required()
       ->type_name("FILE");
-  command->add_option("-o,--output", options->output, "BVH file to write: the new frames")
+  mark_output(
+      command->add_option("-o,--output", options->output, "BVH file to write: the new frames"),
+      context)
       ->required()
       ->type_name("FILE");
   command->add_option("--frames", generation.frames, "New frames, at the model's rate")
-      ->check(CLI::Range(std::size_t{1}, kMostFrames))
+      ->check(in_range(within(1, kMostFrames)))
       ->capture_default_str();
   command
       ->add_option("--samples", generation.samples,
                    "Variations; several are written as out_01.bvh …")
-      ->check(CLI::Range(std::size_t{1}, kMostSamples))
+      ->check(in_range(within(1, kMostSamples)))
       ->capture_default_str();
   command
       ->add_option(
           "--temperature", generation.temperature,
           "How far hidden units are drawn from their mean: 0 draws nothing, 1 as the model "
           "has it")
-      ->check(CLI::Range(0.0, kHottest))
+      ->check(in_range(within(0, kHottest)))
       ->capture_default_str();
   command
       ->add_option("--gibbs-steps", generation.gibbs_steps,
                    "Drawn steps of the top layer in each frame (k of Algorithm 4)")
-      ->check(CLI::Range(std::size_t{0}, kMostSteps))
+      ->check(in_range(size_limits::kGibbsSteps))
       ->capture_default_str();
   add_seed_option(*command, context);
   add_device_options(*command, context);

@@ -8,8 +8,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/shown.hpp"
 #include "clip_options.hpp"
 #include "commands.hpp"
+#include "default_model.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/track_summary.hpp"
 #include "mcdbn/formats/camera_file.hpp"
@@ -133,8 +135,8 @@ json describe(const fs::path& path, const TrackReadOptions& options) {
 
 void print_value(const std::string& key, const json& value, const std::string& indent) {
   const std::string text = value.is_number_float() ? fmt::format("{:.6g}", value.get<double>())
-                           : value.is_string()     ? value.get<std::string>()
-                                                   : value.dump();
+                           : value.is_string()     ? printable(value.get<std::string>())
+                                                   : json_text(value);
   std::cout << fmt::format("{}{:<21} {}\n", indent, key, text);
 }
 
@@ -150,10 +152,12 @@ void print_for_people(const json& description) {
     std::cout << fmt::format("{:<22}{}\n", key, value.size());
     for (std::size_t i = 0; i < value.size(); ++i) {
       if (!value[i].is_object()) {
-        const auto name = value[i].get<std::string>();
+        const std::string name =
+            value[i].is_string() ? value[i].get<std::string>() : value[i].dump();
         const json role = roles.value(name, json());
-        std::cout << (role.is_null() ? fmt::format("  {}\n", name)
-                                     : fmt::format("  {:<20}{}\n", name, role.get<std::string>()));
+        std::cout << (role.is_null()
+                          ? fmt::format("  {}\n", printable(name))
+                          : fmt::format("  {:<20}{}\n", printable(name), role.get<std::string>()));
         continue;
       }
       std::cout << fmt::format("  {}\n", i + 1);
@@ -171,15 +175,15 @@ void add_info_command(CLI::App& app, CommandContext& context) {
       "info", "Describes a clip, a 2D track, cameras, a trained model or a machine");
   command
       ->add_option("file", *path,
-                   "BVH, AMC, track (a file or a folder), calibration, model or machine")
-      ->required()
+                   "BVH, AMC, track (a file or a folder), calibration, model or machine; left "
+                   "out, the model that comes with the program")
       ->type_name("FILE");
   add_track_options(*command, *options);
   add_json_option(*command, context);
   command->footer("Example:\n  mcdbn-cl info walk.bvh\n  mcdbn-cl info openpose_json/");
   command->callback([&context, path, options] {
     context.run = [&context, path, options] {
-      const json description = describe(*path, *options);
+      const json description = describe(path->empty() ? model_or_default({}) : *path, *options);
       if (context.json) {
         print_json(description);
       } else {

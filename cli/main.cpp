@@ -1,18 +1,27 @@
 #include <fmt/ranges.h>
 #include <spdlog/cfg/env.h>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <iostream>
+#include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
+#include "base/output_file.hpp"
+#include "base/shown.hpp"
 #include "commands.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "setting_flags.hpp"
+#include "signals.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -42,11 +51,29 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 ok, 1 failure, 2 usage or configuration, 3 bad input, 4 no device, 130 "
     "interrupted.";
 
+/// Lines as the pattern says, with nothing in them that a terminal would obey: names in messages
+/// come out of files.
+class PrintableLines : public spdlog::formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
+    spdlog::details::log_msg clean = message;
+    const std::string text = printable({message.payload.data(), message.payload.size()});
+    clean.payload = text;
+    pattern_.format(clean, line);
+  }
+  std::unique_ptr<spdlog::formatter> clone() const override {
+    return std::make_unique<PrintableLines>();
+  }
+
+ private:
+  spdlog::pattern_formatter pattern_{"mcdbn-cl: %l: %v"};
+};
+
 /// People read stderr, programs read stdout: all messages go to stderr as plain lines.
 /// SPDLOG_LEVEL=debug shows more.
 void set_up_messages() {
   spdlog::set_default_logger(spdlog::stderr_logger_st("mcdbn-cl"));
-  spdlog::set_pattern("mcdbn-cl: %l: %v");
+  spdlog::set_formatter(std::make_unique<PrintableLines>());
   spdlog::cfg::load_env_levels();
 }
 
@@ -78,6 +105,30 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
                      chosen.empty() ? "" : chosen.front()->get_name() + " ");
 }
 
+/// What the command line names beside its outputs: files, folders, and what is none.
+std::vector<std::filesystem::path> inputs_of(const CLI::App& command,
+                                             const CommandContext& context) {
+  std::vector<std::filesystem::path> inputs;
+  for (const CLI::Option* option : command.get_options()) {
+    if (std::ranges::count(context.outputs, option) > 0) continue;
+    for (const std::string& said : option->results()) {
+      inputs.emplace_back(said);
+      if (const auto name_end = said.find('='); name_end != std::string::npos)
+        inputs.emplace_back(said.substr(name_end + 1));  // --modality NAME=FILE
+    }
+  }
+  return inputs;
+}
+
+/// The command's outputs come all or none, and replace nothing that it reads.
+void run_command(const CLI::App& command, const CommandContext& context) {
+  OutputBatch outputs(inputs_of(command, context));
+  for (const CLI::Option* option : context.outputs)
+    if (!option->empty()) check_output(option->as<std::string>());
+  context.run();
+  outputs.put_in_place();
+}
+
 int parse_and_run(CLI::App& app, CommandContext& context, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -88,7 +139,7 @@ int parse_and_run(CLI::App& app, CommandContext& context, int argc, char** argv)
     return kUsage;
   }
   if (context.quiet) spdlog::set_level(spdlog::level::warn);
-  context.run();
+  run_command(*app.get_subcommands().front(), context);
   if (!std::cout.flush() || std::fflush(stdout) != 0)
     throw Error("standard output: cannot be written; is the disk full?");
   return kOk;
@@ -96,6 +147,7 @@ int parse_and_run(CLI::App& app, CommandContext& context, int argc, char** argv)
 
 int run_program(int argc, char** argv) {
   try {
+    heed_signals(kInterrupted);
     set_up_messages();
     CLI::App app{kDescription, "mcdbn-cl"};
     app.set_version_flag("--version", "mcdbn-cl " MCDBN_VERSION);
@@ -105,13 +157,17 @@ int run_program(int argc, char** argv) {
     for (const auto add_command : kCommands) add_command(app, context);
     return parse_and_run(app, context, argc, argv);
   } catch (const Interrupted& error) {
-    return report(error, kInterrupted);
+    // At once: a driver may still be at work for us on a thread of its own.
+    std::_Exit(report(error, kInterrupted));
   } catch (const InputError& error) {
     return report(error, kBadInput);
   } catch (const ConfigError& error) {
     return report(error, kUsage);
   } catch (const DeviceError& error) {
     return report(error, kNoDevice);
+  } catch (const std::bad_alloc&) {
+    return report(Error("out of memory; give fewer or shorter clips, or smaller settings"),
+                  kFailure);
   } catch (const std::exception& error) {
     return report(error, kFailure);
   }

@@ -35,8 +35,9 @@ CLI::Option* add_matrix_input(CLI::App& command, MatrixInput& input, const std::
   return command.add_option(name, input.files, help)->type_name("FILE");
 }
 
-void add_matrix_output(CLI::App& command, std::filesystem::path& output, const char* help) {
-  command.add_option("-o,--output", output, help)->type_name("FILE");
+void add_matrix_output(CLI::App& command, CommandContext& context, std::filesystem::path& output,
+                       const char* help) {
+  mark_output(command.add_option("-o,--output", output, help), context)->type_name("FILE");
 }
 
 void check_matrix_output(const std::filesystem::path& output) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
 #include "mcdbn/base/matrices.hpp"
 #include "mcdbn/machines/machine_file.hpp"
 
@@ -23,7 +24,8 @@ CLI::Option* add_matrix_input(CLI::App& command, MatrixInput& input, const std::
                               const std::string& help);
 
 /// -o,--output: a file, or CSV on standard output.
-void add_matrix_output(CLI::App& command, std::filesystem::path& output, const char* help);
+void add_matrix_output(CLI::App& command, CommandContext& context, std::filesystem::path& output,
+                       const char* help);
 /// @throws ConfigError for a file of a kind that cannot be written, before any work
 void check_matrix_output(const std::filesystem::path& output);
 void put_matrix(const std::filesystem::path& output, const MatrixF& values);

@@ -55,16 +55,18 @@ void add_project_command(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("project", "Projects a BVH clip through a camera to a 2D joint track");
   command->add_option("clip", options->clip, "BVH file")->required()->type_name("FILE");
-  command->add_option("-o,--output", options->output, "Track to write, a file or a folder")
+  mark_output(
+      command->add_option("-o,--output", options->output, "Track to write, a file or a folder"),
+      context)
       ->required()
       ->type_name("FILE");
   add_format_option(*command, options->format,
                     "Of the track that is written; those of detectors have room for a detector's "
                     "joints (--like) alone")
       ->capture_default_str();
-  command
-      ->add_option("--write-camera", options->camera_output,
-                   "Also write the camera that was used, as OpenCV YAML")
+  mark_output(command->add_option("--write-camera", options->camera_output,
+                                  "Also write the camera that was used, as OpenCV YAML"),
+              context)
       ->type_name("FILE");
   command
       ->add_option("--like", options->like,

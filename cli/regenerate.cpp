@@ -12,6 +12,7 @@
 #include "clip_options.hpp"
 #include "commands.hpp"
 #include "comparison/fitted_baseline.hpp"
+#include "default_model.hpp"
 #include "fit_option.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
@@ -60,27 +61,30 @@ void report(const std::filesystem::path& path, int frames, double fps) {
   spdlog::info("{}: {} frames at {:.4g} fps", path.string(), frames, fps);
 }
 
-/// What is taken for granted of a camera that nobody calibrated.
-void report_assumed(const Camera& camera, const AssumedView& view) {
-  const double fov_deg = 2 * std::atan(0.5 * camera.height_px / camera.fy_px) * 180 / EIGEN_PI;
-  const double pitch_deg = std::asin(-camera.camera_from_world(2, 1)) * 180 / EIGEN_PI;
-  spdlog::info(
-      "no --camera: taken to look down by {:.4g} degrees, to be turned by {:.4g}, and to see "
+/// What is taken for granted of a camera that nobody calibrated, pitch and roll as its clip told
+/// them.
+void report_assumed(const Camera& camera, bool found) {
+  const Eigen::Vector3d up = camera.camera_from_world.col(1);
+  const auto deg = [](double angle) { return std::round(angle * 1800 / EIGEN_PI) / 10 + 0.0; };
+  spdlog::warn(
+      "no --camera: taken to look down by {:g} degrees and to be turned by {:g}{}, and to see "
       "{:.4g} degrees from the image's top to its bottom; say what is known by --camera-pitch, "
       "--camera-roll, --camera-fov",
-      std::abs(pitch_deg) < 1e-9 ? 0.0 : pitch_deg, view.roll_deg.value_or(0), fov_deg);
+      deg(std::asin(std::clamp(-up.z(), -1.0, 1.0))), deg(std::atan2(-up.x(), -up.y())),
+      found ? ", as feet on level ground tell" : "",
+      2 * std::atan(0.5 * camera.height_px / camera.fy_px) * 180 / EIGEN_PI);
 }
 
 /// What was missing in the track and what was wrong with it.
 void report(const std::filesystem::path& path, const TrackFindings& findings) {
   const TrackFeatures::FillCount& filled = findings.filled;
   if (!findings.swaps.empty())
-    spdlog::info("{}: {}; put right", path.string(), described(findings.swaps));
+    spdlog::warn("{}: {}; put right", path.string(), described(findings.swaps));
   if (!filled.unseen.empty())
-    spdlog::info("{}: {} are in no column: inferred", path.string(),
+    spdlog::warn("{}: {} are in no column: inferred", path.string(),
                  fmt::join(filled.unseen, ", "));
   if (filled.interpolated + filled.missing > 0)
-    spdlog::info("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
+    spdlog::warn("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
                  path.string(), filled.interpolated, filled.missing);
 }
 
@@ -97,7 +101,8 @@ std::vector<Motion> regenerate_named(const std::filesystem::path& input, const M
     const auto single = [&](const MatrixF& features) { return simpler->predict(features); };
     return regenerate_clip(
         model.modalities, track, placement, single,
-        [&](const MatrixF& features) { return std::vector{single(features)}; }, &findings);
+        [&](const MatrixF& features) { return std::vector<PosePrior>{single(features)}; },
+        &findings);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", input.string(), error.what()));
   }
@@ -133,8 +138,6 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
   TrackReadOptions reading = options.track;
   if (camera && !reading.image_size) reading.image_size = {camera->width_px, camera->height_px};
   const std::vector<Track2d> people = read_tracks_with_notices(options.input, reading).people;
-  if (!camera)
-    report_assumed(placement.camera_of(people.front(), model.modalities), placement.view);
   const std::unique_ptr<Baseline> simpler =
       options.method == kModel ? nullptr
                                : fitted_baseline(options.method, model, all_lessons(model));
@@ -143,6 +146,7 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
     const auto motions = regenerate_named(options.input, model, simpler.get(), people[person],
                                           placement, regeneration, findings);
     report(options.input, findings);
+    if (!camera) report_assumed(findings.camera, finds_view(model.modalities, placement));
     if (!options.write_camera.empty())
       write_camera(person_path(options.write_camera, person, people.size()), findings.camera);
     const auto output = person_path(options.output, person, people.size());
@@ -169,7 +173,7 @@ void regenerate_tracks(const Model& model, const RegenerateOptions& options,
 void run_regenerate(const CommandContext& context, const RegenerateOptions& options) {
   check_direction(options);
   Device device = Device::open({context.platform, context.device});
-  const Model model = load_model(device, options.model);
+  const Model model = load_model(device, model_or_default(options.model));
   const std::optional<Camera> camera = options.seen_by.camera();
   const RegenerationOptions regeneration =
       options.sampling.regeneration(model.network, context.seed);
@@ -185,15 +189,15 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<RegenerateOptions>();
   CLI::App* command = app.add_subcommand(
       "regenerate", "Regenerates 3D motion, as BVH, from a 2D track; or a track from motion");
-  command->add_option("--model", options->model, "Trained model")->required()->type_name("FILE");
+  add_model_option(*command, options->model);
   command
       ->add_option("--input", options->input,
                    "2D track, a file or a folder; with --to track a BVH clip")
       ->required()
       ->type_name("FILE");
-  command
-      ->add_option("-o,--output", options->output,
-                   "BVH file to write; with --to track a 2D track, CSV")
+  mark_output(command->add_option("-o,--output", options->output,
+                                  "BVH file to write; with --to track a 2D track, CSV"),
+              context)
       ->required()
       ->type_name("FILE");
   command
@@ -221,10 +225,11 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
                    "training clips, which must still be where they were")
       ->check(CLI::IsMember(methods))
       ->capture_default_str();
-  command
-      ->add_option("--write-camera", options->write_camera,
-                   "Also write the camera that sees the motion as the track shows it, given or "
-                   "assumed, as OpenCV YAML: for render --over")
+  mark_output(command->add_option(
+                  "--write-camera", options->write_camera,
+                  "Also write the camera that sees the motion as the track shows it, given or "
+                  "assumed, as OpenCV YAML: for render --over"),
+              context)
       ->type_name("FILE");
   add_track_options(*command, options->track);
   add_sampling_options(*command, options->sampling,

@@ -10,6 +10,7 @@
 #include "camera_options.hpp"
 #include "clip_options.hpp"
 #include "commands.hpp"
+#include "setting_flags.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -47,9 +48,9 @@ void add_render_command(CLI::App& app, CommandContext& context) {
                    "BVH files, shown side by side (in a sheet, row by row)")
       ->required()
       ->type_name("FILE...");
-  command
-      ->add_option("-o,--output", options->output,
-                   "What to write: .mp4 is a video, .png a contact sheet")
+  mark_output(command->add_option("-o,--output", options->output,
+                                  "What to write: .mp4 is a video, .png a contact sheet"),
+              context)
       ->required()
       ->type_name("FILE");
   command
@@ -57,17 +58,19 @@ void add_render_command(CLI::App& app, CommandContext& context) {
                    "Film to draw over, through --camera, from --over-from on")
       ->type_name("FILE");
   command->add_option("--over-from", render.over_from, "Frame of the film where the clips begin")
-      ->check(CLI::NonNegativeNumber)
+      ->check(in_range(within(0, 1e7)))
       ->capture_default_str();
   command->add_flag("--overlay", render.overlay, "All clips in one picture");
   command->add_flag("--orbit", render.orbit, "The camera goes round the figure");
   command->add_option("--orbit-speed", render.orbit_deg_per_s, "Of the camera, degrees a second")
+      ->check(in_range(within(-3600, 3600)))
       ->capture_default_str();
   command->add_flag("!--still-camera", render.follow_root,
                     "The camera sees the whole path instead of going with the figure");
   command->add_option("--video-fps", render.fps, "Frames a second of a video (default: the clip's)")
-      ->check(CLI::Range(1.0, 240.0));
+      ->check(in_range(within(1, 240)));
   command->add_option("--columns", render.sheet_columns, "Frames in a row of a contact sheet")
+      ->check(in_range(within(1, 64)))
       ->capture_default_str();
   add_clip_options(*command, options->preparation);
   add_camera_options(*command, options->camera);

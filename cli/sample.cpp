@@ -104,7 +104,7 @@ void add_sample_command(CLI::App& app, CommandContext& context) {
       {"count", within(1, 1e6), "samples", "Free chains, or draws for all that is given"},
       options->count);
   add_setting_flags(*command, options->chains);
-  add_matrix_output(*command, options->output,
+  add_matrix_output(*command, context, options->output,
                     "File to write, .npy, .csv or .safetensors: a row a sample, or the rows of "
                     "all that was given (default: CSV on standard output)");
   add_device_options(*command, context);

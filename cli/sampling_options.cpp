@@ -1,5 +1,7 @@
 #include "sampling_options.hpp"
 
+#include "setting_flags.hpp"
+
 namespace mcdbn::cli {
 namespace {
 
@@ -28,24 +30,24 @@ RegenerationOptions SamplingOptions::regeneration(const Mcdbn& network, std::uin
 }
 
 void add_sampling_options(CLI::App& command, SamplingOptions& options, const char* samples_help) {
-  command.add_option("--samples", options.samples, samples_help)->check(CLI::Range(1, kMost));
+  command.add_option("--samples", options.samples, samples_help)->check(in_range(within(1, kMost)));
   command
       .add_option(
           "--temperature", options.temperature,
           "0: the mean-field answer; towards 1: sampled variations (default: 1 with several "
           "samples, or if the model was trained to be sampled, else 0)")
-      ->check(CLI::Range(0.0, kHottest));
+      ->check(in_range(within(0, kHottest)));
   command
       .add_option(
           "--gibbs-steps", options.gibbs_steps,
           "Draw every frame anew, with k steps in the decoder (Algorithm 5; default: as the "
           "model was trained for)")
-      ->check(CLI::Range(0, kMost));
+      ->check(in_range(within(0, kMost)));
   command
       .add_option("--mrbm-gibbs-steps", options.mrbm_gibbs_steps,
                   "Draw every frame anew, with k steps of the chain that infers each sample's 3D "
                   "code")
-      ->check(CLI::Range(0, kMost));
+      ->check(in_range(within(0, kMost)));
 }
 
 }  // namespace mcdbn::cli

@@ -172,7 +172,7 @@ void add_score_command(CLI::App& app, CommandContext& context) {
                     "Estimate log Z of an RBM by annealed importance sampling, and with it the "
                     "log-likelihood");
   add_setting_flags(*command, options->annealing);
-  add_matrix_output(*command, options->output,
+  add_matrix_output(*command, context, options->output,
                     "File to write, .npy, .csv or .safetensors: a row for each row that has a "
                     "history, its columns what is printed, in that order");
   add_json_option(*command, context);

@@ -1,5 +1,7 @@
 #include "setting_flags.hpp"
 
+#include "base/shown.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,6 +37,15 @@ std::string with_flags(const std::string& text) {
     rest = (*found)[0].second;
   }
   return result.append(rest, text.end());
+}
+
+CLI::Validator in_range(const Range& range) {
+  const auto check = [range](const std::string& text) -> std::string {
+    const nlohmann::json value = number_in(text);
+    if (value.is_number() && range.contains(value.get<double>())) return {};
+    return fmt::format("must be {}, not {}", range.text(), shown(text));
+  };
+  return {check, range.text()};
 }
 
 CLI::Option* add_number_flag(CLI::App& command, const std::string& flag, const Setting& setting,

@@ -17,6 +17,9 @@ std::string flag_of(const std::string& setting);
 /// --gaussian-rate.
 std::string with_flags(const std::string& text);
 
+/// What an option that is no setting may be, for its check(): NaN is in no range.
+CLI::Validator in_range(const Range& range);
+
 /// Adds a flag for a number, with the setting's unit, help and range.
 /// @param set gets what was said and throws ConfigError if it will not do
 CLI::Option* add_number_flag(CLI::App& command, const std::string& flag, const Setting& setting,

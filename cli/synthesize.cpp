@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "base/interruption.hpp"
 #include "base/text_file.hpp"
 #include "commands.hpp"
 #include "mcdbn/formats/bvh.hpp"
+#include "setting_flags.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -33,6 +35,7 @@ void run_synthesize(const CommandContext& context, const SynthesizeOptions& opti
   clip.fps = options.fps;
   clip.seconds = options.seconds;
   for (int i = 0; i < options.clips; ++i) {
+    check_interruption();
     clip.subject = 1 + i % options.subjects;
     clip.clip = 1 + i / options.subjects;
     const Motion motion = synthesize(clip);
@@ -55,6 +58,7 @@ std::vector<std::string> action_names() {
 }  // namespace
 
 void add_synthesize_command(CLI::App& app, CommandContext& context) {
+  constexpr double kMostFiles = 1e5;
   auto options = std::make_shared<SynthesizeOptions>();
   CLI::App* command =
       app.add_subcommand("synthesize", "Writes clips of parametric human motion as BVH");
@@ -62,12 +66,12 @@ void add_synthesize_command(CLI::App& app, CommandContext& context) {
       ->required()
       ->check(CLI::IsMember(action_names()));
   command->add_option("--clips", options->clips, "How many clips")
-      ->check(CLI::PositiveNumber)
+      ->check(in_range(within(1, kMostFiles)))
       ->capture_default_str();
   command
       ->add_option("--subjects", options->subjects,
                    "By how many people; a person's body and style are the same in every action")
-      ->check(CLI::PositiveNumber)
+      ->check(in_range(within(1, kMostFiles)))
       ->capture_default_str();
   command->add_option("--seconds", options->seconds, "Length of a clip")->capture_default_str();
   command->add_option("--fps", options->fps, "Frames a second")->capture_default_str();

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "mcdbn/camera/camera.hpp"
+#include "mcdbn/motion/frame_rate.hpp"
 #include "setting_flags.hpp"
 
 namespace mcdbn::cli {
@@ -36,7 +38,7 @@ void add_track_options(CLI::App& command, TrackReadOptions& options) {
       .add_option_function<double>(
           "--fps", [&options](double fps) { options.fps = fps; },
           "Frames a second (default: the file's, else 30)")
-      ->check(CLI::PositiveNumber)
+      ->check(in_range(kFrameRate_hz))
       ->group(kGroup);
   command
       .add_option_function<std::pair<int, int>>(
@@ -45,7 +47,7 @@ void add_track_options(CLI::App& command, TrackReadOptions& options) {
             options.image_size = ImageSize{size_px.first, size_px.second};
           },
           "Width and height in pixels (default: the file's, else guessed)")
-      ->check(CLI::PositiveNumber)
+      ->check(in_range(Camera::kImage_px))
       ->type_name("WIDTH HEIGHT")
       ->group(kGroup);
 }
@@ -54,7 +56,7 @@ TrackReading read_tracks_with_notices(const std::filesystem::path& path,
                                       const TrackReadOptions& options) {
   TrackReading reading = read_tracks(path, options);
   for (const std::string& notice : reading.notices)
-    spdlog::info("{}: {}", path.string(), with_flags(notice));
+    spdlog::warn("{}: {}", path.string(), with_flags(notice));
   return reading;
 }
 

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -8,7 +10,9 @@
 #include "commands.hpp"
 #include "comparison/sweep.hpp"
 #include "epoch_progress.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
+#include "mcdbn/motion_model/settings_record.hpp"
 #include "mcdbn/motion_model/training_run.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
 #include "setting_flags.hpp"
@@ -19,36 +23,85 @@ namespace {
 
 struct TrainOptions {
   std::vector<std::filesystem::path> data;
-  std::filesystem::path run;
+  std::filesystem::path run, resume;
   std::filesystem::path sweep;
+  bool force = false, print_settings = false;
   TrainingOptions settings;
+  CheckpointSettings checkpoints;
 };
 
 std::vector<LoadedClip> read_clips(const std::vector<ListedClip>& files,
                                    const TrainingConfig& config) {
   std::vector<std::string> notices;
   std::vector<LoadedClip> clips = load_training_clips(files, config, &notices);
-  for (const std::string& notice : notices) spdlog::info("{}", with_flags(notice));
+  for (const std::string& notice : notices) spdlog::warn("{}", with_flags(notice));
   return clips;
 }
 
-void train_once(const CommandContext& context, Device& device, const TrainOptions& options,
-                const std::vector<ListedClip>& files, const TrainingConfig& config) {
-  std::vector<LoadedClip> clips = read_clips(files, config);
+/// What stops a training that can go on is said with how; one that never began leaves nothing.
+template <typename Train>
+void resumable(RunFolder& run, const Train& train) {
+  const auto advice = [&](const char* what) {
+    return fmt::format("{}; `mcdbn-cl train --resume {}` goes on from the last checkpoint", what,
+                       run.model().parent_path().string());
+  };
+  try {
+    train();
+  } catch (const Interrupted& error) {
+    throw Interrupted(advice(error.what()));
+  } catch (const DeviceError& error) {
+    if (run.take_back()) throw;
+    throw DeviceError(advice(error.what()));
+  } catch (...) {
+    run.take_back();
+    throw;
+  }
+}
+
+void train_run(const CommandContext& context, Device& device, const TrainOptions& options,
+               RunFolder& run) {
+  const TrainingConfig& config = run.config();
+  std::vector<LoadedClip> clips = read_clips(run.clips(), config);
   const TrainingSet data = make_training_set(clips, config);
   spdlog::info("{} clips, {} frames at {:g} fps on {}; 3D {} values a frame, 2D {}",
                data.clips.size(), data.frames(), config.fps, device.info().name,
                data.modalities.pose_scale.output_dimension(),
                data.modalities.track_scale.output_dimension());
-  const InterruptGuard interrupt;
   ProgressLine progress(context.quiet);
-  const TrainedRun trained = train_to_folder(device, data, std::move(clips), config, options.run,
-                                             shown_on(progress, interrupt));
+  const TrainedRun trained = train_to_folder(
+      device, data, std::move(clips), run, options.checkpoints,
+      {shown_on(progress), [](const std::string& text) { spdlog::warn("{}", with_flags(text)); }});
   if (const auto& stopped = trained.model.early_stopping)
     spdlog::info("{} kept out to stop early: stopped after {} of {} mini-batches",
                  fmt::join(stopped->held_out, ", "), stopped->steps, config.fine_tuning.steps);
-  spdlog::info("{}: trained in {:.1f} s", (options.run / "model.safetensors").string(),
-               trained.training_s);
+  spdlog::info("{}: trained in {:.1f} s", run.model().string(), trained.training_s);
+}
+
+void train_once(const CommandContext& context, Device& device, const TrainOptions& options,
+                RunFolder run) {
+  resumable(run, [&] { train_run(context, device, options, run); });
+}
+
+/// What a training is was said when it was begun. @throws ConfigError naming an option that says it
+void check_resume(const CLI::App& command) {
+  constexpr std::array kAllowed{"--resume", "--checkpoint-minutes", "--platform", "--device",
+                                "--quiet"};
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0 && std::ranges::count(kAllowed, option->get_name()) == 0)
+      throw ConfigError(fmt::format(
+          "--resume goes on with the clips and settings that the training was begun with; leave {} "
+          "out",
+          option->get_name()));
+}
+
+void resume(const CommandContext& context, const TrainOptions& options) {
+  RunFolder run = RunFolder::resume(options.resume);
+  if (run.is_complete()) {
+    spdlog::info("{}: is trained to its end", run.model().string());
+    return;
+  }
+  Device device = Device::open({context.platform, context.device});
+  train_once(context, device, options, std::move(run));
 }
 
 void print_record(const nlohmann::ordered_json& record) {
@@ -63,11 +116,10 @@ void print_record(const nlohmann::ordered_json& record) {
 
 void train_sweep(const CommandContext& context, Device& device, const TrainOptions& options,
                  const std::vector<ListedClip>& clips, const SweepFile& file) {
-  const InterruptGuard interrupt;
   std::optional<ProgressLine> progress;
   const auto watch = [&](bool counts) {
     progress.emplace(context.quiet || !counts);
-    return shown_on(*progress, interrupt);
+    return shown_on(*progress);
   };
   const auto resolve = [&](const SweepConfiguration& varied) {
     return options.settings.resolve(varied);
@@ -87,7 +139,18 @@ void train_sweep(const CommandContext& context, Device& device, const TrainOptio
   for (const nlohmann::ordered_json& record : records) print_record(record);
 }
 
-void run_train(const CommandContext& context, const TrainOptions& options) {
+void run_train(const CommandContext& context, const TrainOptions& options,
+               const CLI::App& command) {
+  if (!options.resume.empty()) {
+    check_resume(command);
+    return resume(context, options);
+  }
+  if (options.print_settings) {
+    fmt::print("{}", settings_toml(options.settings.resolve()));
+    return;
+  }
+  if (options.data.empty() || options.run.empty())
+    throw ConfigError("clips to train on and --output RUN are wanted, or --resume RUN");
   const TrainingConfig config = options.settings.resolve();
   const auto clips = find_listed_clips(options.data);
   std::optional<SweepFile> sweep;
@@ -96,7 +159,8 @@ void run_train(const CommandContext& context, const TrainOptions& options) {
   if (sweep)
     train_sweep(context, device, options, clips, *sweep);
   else
-    train_once(context, device, options, clips, config);
+    train_once(context, device, options,
+               RunFolder::begin(options.run, config, clips, options.force));
 }
 
 }  // namespace
@@ -107,13 +171,13 @@ void add_train_command(CLI::App& app, CommandContext& context) {
   command
       ->add_option("data", options->data,
                    "BVH or AMC files, folders that hold some, or lists that `corpus` wrote")
-      ->required()
       ->type_name("PATH");
   command
       ->add_option("-o,--output", options->run,
                    "Run folder to write: model.safetensors, metrics.jsonl, config.toml")
-      ->required()
       ->type_name("RUN");
+  command->add_flag("--force", options->force,
+                    "Train anew in a run folder that holds a training already");
   command
       ->add_option(
           "--sweep", options->sweep,
@@ -121,17 +185,28 @@ void add_train_command(CLI::App& app, CommandContext& context) {
           "and sweep.jsonl. Run again, it goes on where it stopped")
       ->type_name("FILE");
   options->settings.add_to(*command);
+  command->add_flag("--print-settings", options->print_settings,
+                    "Print every setting as it would be, in a file for --config, and do no more");
+  command
+      ->add_option(
+          "--resume", options->resume,
+          "Run folder of a training that was interrupted: goes on from its last checkpoint, "
+          "to the same model, with the clips and settings that it was begun with")
+      ->type_name("RUN");
+  add_setting_flags(*command, options->checkpoints);
   add_device_options(*command, context);
   add_quiet_option(*command, context);
   command->footer(
       "Example:\n  mcdbn-cl train walks/ -o run\n"
       "  mcdbn-cl train walks/ -o run --hidden 200 --gaussian-epochs 50 --platform Portable\n"
+      "  mcdbn-cl train --resume run\n"
       "  mcdbn-cl train walks/ -o sweep --sweep sweep.toml\n"
       "A sweep file: test = ['held_out/'] and [grid] with order = [3, 5], hidden = [100, 300] …, "
       "all\n"
       "combinations, or [[configuration]] tables of settings.");
-  command->callback(
-      [&context, options] { context.run = [&context, options] { run_train(context, *options); }; });
+  command->callback([&context, options, command] {
+    context.run = [&context, options, command] { run_train(context, *options, *command); };
+  });
 }
 
 }  // namespace mcdbn::cli

@@ -71,7 +71,7 @@ void add_transform_command(CLI::App& app, CommandContext& context) {
   command->add_flag("--inverse", options->inverse,
                     "Up and down again: the mean-field reconstruction of the data");
   add_setting_flag(*command, "--steps",
-                   {"steps", at_least(1), "steps",
+                   {"steps", within(1, 1000), "steps",
                     "Up and down so often, at the top of a stack (default: once), or mean-field "
                     "steps of --infer (default: 10)"},
                    options->steps);
@@ -80,7 +80,7 @@ void add_transform_command(CLI::App& app, CommandContext& context) {
                    "Modality of an MRBM to infer, by mean field, from those that --modality gives")
       ->type_name("NAME");
   add_modality_option(*command, options->modalities, "What is given of an MRBM's modalities");
-  add_matrix_output(*command, options->output,
+  add_matrix_output(*command, context, options->output,
                     "File to write, .npy, .csv or .safetensors: the rows of all data that have a "
                     "history (default: CSV on standard output)");
   add_device_options(*command, context);

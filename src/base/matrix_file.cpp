@@ -14,6 +14,7 @@
 
 #include "base/npy.hpp"
 #include "base/safetensors.hpp"
+#include "base/shown.hpp"
 #include "base/text_file.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -83,8 +84,8 @@ class CsvReader {
         return;
       }
       if (!value)
-        throw InputError(
-            fmt::format("{}:{}: '{}' in column {} is no number", name_, line, cell, column + 1));
+        throw InputError(fmt::format("{}:{}: {} in column {} is no number", name_, line,
+                                     shown(cell), column + 1));
       values_.push_back(*value);
       if (!last) text.remove_prefix(comma + 1);
     }

@@ -1,4 +1,5 @@
 #include "base/npy.hpp"
+#include "base/shown.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,7 +22,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are read as they are stored");
 
 constexpr std::string_view kMagic = "\x93NUMPY";
-constexpr std::string_view kSpace = " \t\n";
+constexpr std::string_view kHeaderSpace = " \t\n";
 constexpr std::size_t kAlignment = 64;  // of the data, header included
 
 [[noreturn]] void fail(const std::string& what) {
@@ -34,7 +35,7 @@ std::string_view value_of(std::string_view header, std::string_view key) {
   const auto colon = found == std::string_view::npos ? found : header.find(':', found);
   if (colon == std::string_view::npos) fail(fmt::format("its header has no '{}'", key));
   header.remove_prefix(colon + 1);
-  const auto first = header.find_first_not_of(kSpace);
+  const auto first = header.find_first_not_of(kHeaderSpace);
   return first == std::string_view::npos ? std::string_view() : header.substr(first);
 }
 
@@ -103,9 +104,9 @@ const NumberType& number_type_of(const std::string& name) {
   for (const NumberType& type : kNumberTypes)
     if (type.name == name) return type;
   fail(fmt::format(
-      "numbers of type '{}'; read are floats of 32 and 64 bits, whole numbers and truth values, "
+      "numbers of type {}; read are floats of 32 and 64 bits, whole numbers and truth values, "
       "little endian",
-      name));
+      shown(name)));
 }
 
 struct Parts {

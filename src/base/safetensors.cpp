@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/json_place.hpp"
+#include "base/shown.hpp"
 #include "base/text_file.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -17,41 +20,99 @@ static_assert(std::endian::native == std::endian::little, "safetensors is little
 
 constexpr std::size_t kLengthBytes = 8;
 
-std::size_t element_count(const std::vector<std::size_t>& shape) {
-  std::size_t count = 1;
-  for (const std::size_t extent : shape) count *= extent;
-  return count;
+/// Where a tensor's numbers stand behind the header.
+struct Extent {
+  std::size_t begin, end;  ///< bytes
+  std::string name;
+};
+
+/// Whether numbers of that shape take so many bytes. Divided, not multiplied: the product of a
+/// wrong shape may be any number.
+bool fills(const std::vector<std::size_t>& shape, std::size_t bytes, std::size_t number_bytes) {
+  if (bytes % number_bytes != 0) return false;
+  std::size_t left = bytes / number_bytes;
+  if (std::ranges::count(shape, 0U) > 0) return left == 0;
+  for (const std::size_t extent : shape) {
+    if (left % extent != 0) return false;
+    left /= extent;
+  }
+  return left == 1;
 }
 
-Safetensors::Tensor read_tensor(const nlohmann::json& entry, std::string_view data) {
-  if (entry.at("dtype") != "F32") throw std::runtime_error("a tensor that is not F32");
+template <typename Number>
+std::vector<float> numbers_in(std::string_view bytes) {
+  std::vector<Number> numbers(bytes.size() / sizeof(Number));
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size());
+  return {numbers.begin(), numbers.end()};
+}
+
+template <typename Number>
+std::string bytes_of(const std::vector<float>& values) {
+  const std::vector<Number> numbers(values.begin(), values.end());
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)};
+}
+
+Safetensors::Tensor read_tensor(const JsonPlace& entry, std::string_view data, Extent& extent) {
+  const JsonPlace dtype = entry["dtype"];
+  const bool half = dtype.text() == "F16";
+  if (!half && dtype.text() != "F32")
+    dtype.fail(fmt::format("{}; only F32 and F16 are read", shown(dtype.text())));
+  const Range bytes = within(0, static_cast<double>(data.size()));
+  const JsonPlace offsets = entry["data_offsets"];
+  extent.begin = offsets.at(0).count(bytes);
+  extent.end = offsets.at(1).count(bytes);
+  if (offsets.size() != 2 || extent.begin > extent.end)
+    offsets.fail("two numbers are wanted, the second not below the first");
   Safetensors::Tensor tensor;
-  tensor.shape = entry.at("shape").get<std::vector<std::size_t>>();
-  const auto [begin, end] = entry.at("data_offsets").get<std::pair<std::size_t, std::size_t>>();
-  if (begin > end || end > data.size())
-    throw std::runtime_error("a tensor that reaches past the file's end");
-  if (end - begin != element_count(tensor.shape) * sizeof(float))
-    throw std::runtime_error("a tensor whose size is not that of its shape");
-  tensor.values.resize((end - begin) / sizeof(float));
-  std::memcpy(tensor.values.data(), data.data() + begin, end - begin);
+  const JsonPlace shape = entry["shape"];
+  for (const JsonPlace& length : shape.list()) tensor.shape.push_back(length.count(any_seed()));
+  const std::string_view numbers = data.substr(extent.begin, extent.end - extent.begin);
+  if (!fills(tensor.shape, numbers.size(), half ? sizeof(Eigen::half) : sizeof(float)))
+    shape.fail("is not that of the numbers that are there");
+  tensor.values = half ? numbers_in<Eigen::half>(numbers) : numbers_in<float>(numbers);
   return tensor;
 }
 
-Safetensors parse(std::string_view bytes) {
+/// Tensors follow each other without a hole, as the format wants it: nothing hides between them.
+void check_places(std::vector<Extent> extents, std::size_t bytes, const std::string& file) {
+  std::ranges::sort(extents, {}, [](const Extent& one) { return std::pair(one.begin, one.end); });
+  std::size_t end = 0;
+  for (const Extent& one : extents) {
+    if (one.begin != end)
+      throw InputError(fmt::format("{}: {}: its numbers {} those before them", file,
+                                   shown(one.name),
+                                   one.begin < end ? "overlap" : "leave a hole to"));
+    end = one.end;
+  }
+  if (end != bytes)
+    throw InputError(fmt::format("{}: {} bytes that belong to no tensor", file, bytes - end));
+}
+
+Safetensors parse(std::string_view bytes, const std::string& file) {
   std::uint64_t header_length = 0;
-  if (bytes.size() < kLengthBytes) throw std::runtime_error("it is shorter than its header");
+  if (bytes.size() < kLengthBytes)
+    throw InputError(file + ": not a readable safetensors file: it is shorter than its header");
   std::memcpy(&header_length, bytes.data(), kLengthBytes);
   if (header_length > bytes.size() - kLengthBytes)
-    throw std::runtime_error("it is shorter than its header");
-  const auto header = nlohmann::json::parse(bytes.substr(kLengthBytes, header_length));
+    throw InputError(file + ": not a readable safetensors file: it is shorter than its header");
+  const auto header =
+      nlohmann::json::parse(bytes.substr(kLengthBytes, header_length), nullptr, false);
+  if (!header.is_object())
+    throw InputError(file + ": not a readable safetensors file: its header is no JSON object");
   const std::string_view data = bytes.substr(kLengthBytes + header_length);
+  const JsonPlace place(header, file);
   Safetensors content;
-  for (const auto& [name, entry] : header.items()) {
-    if (name == "__metadata__")
-      content.metadata = entry.get<std::map<std::string, std::string>>();
-    else
-      content.tensors[name] = read_tensor(entry, data);
+  std::vector<Extent> extents;
+  for (const std::string& name : place.keys()) {
+    if (name == "__metadata__") {
+      for (const std::string& key : place[name].keys())
+        content.metadata[key] = place[name][key].text();
+    } else {
+      extents.push_back({0, 0, name});
+      content.tensors[name] = read_tensor(place[name], data, extents.back());
+    }
   }
+  check_places(std::move(extents), data.size(), file);
   return content;
 }
 
@@ -79,9 +140,11 @@ void write_safetensors(const std::filesystem::path& path, const Safetensors& con
   header["__metadata__"] = content.metadata;
   std::size_t offset = 0;
   for (const auto& [name, tensor] : content.tensors) {
-    const std::size_t bytes = tensor.values.size() * sizeof(float);
-    header[name] = {
-        {"dtype", "F32"}, {"shape", tensor.shape}, {"data_offsets", {offset, offset + bytes}}};
+    const std::size_t bytes =
+        tensor.values.size() * (content.half ? sizeof(Eigen::half) : sizeof(float));
+    header[name] = {{"dtype", content.half ? "F16" : "F32"},
+                    {"shape", tensor.shape},
+                    {"data_offsets", {offset, offset + bytes}}};
     offset += bytes;
   }
   std::string text = header.dump();
@@ -90,19 +153,12 @@ void write_safetensors(const std::filesystem::path& path, const Safetensors& con
   std::string bytes(reinterpret_cast<const char*>(&length), kLengthBytes);
   bytes += text;
   for (const auto& [name, tensor] : content.tensors)
-    bytes.append(reinterpret_cast<const char*>(tensor.values.data()),
-                 tensor.values.size() * sizeof(float));
+    bytes += content.half ? bytes_of<Eigen::half>(tensor.values) : bytes_of<float>(tensor.values);
   write_text_file(path, bytes);
 }
 
 Safetensors read_safetensors(const std::filesystem::path& path) {
-  const std::string bytes = read_text_file(path);
-  try {
-    return parse(bytes);
-  } catch (const std::exception& error) {
-    throw InputError(
-        fmt::format("{}: not a readable safetensors file: {}", path.string(), error.what()));
-  }
+  return parse(read_text_file(path), path.string());
 }
 
 }  // namespace mcdbn

@@ -35,7 +35,7 @@ void assign_value(const std::string& who, const Setting& setting, const nlohmann
   if (!value.is_number_integer()) reject(who, "a whole number", value);
   const auto number = value.get<double>();
   check_range(who, setting.range, number);
-  check_range(who, at_least(0), number);  // before it wraps around
+  check_range(who, Range{.least = 0}, number);  // before it wraps around
   member = value.get<std::size_t>();
 }
 

@@ -1,8 +1,8 @@
 #include "base/text_file.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
 #include <sstream>
 #include <system_error>
@@ -18,6 +18,8 @@ std::string read_text_file(const fs::path& path) {
   if (fs::is_directory(path)) {
     throw InputError(fmt::format("{}: is a folder, name a file in it", path.string()));
   }
+  if (fs::is_character_file(path) || fs::is_block_file(path))
+    throw InputError(fmt::format("{}: is a device, not a file", path.string()));
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
     throw InputError(fmt::format("{}: cannot be opened, check its name and rights", path.string()));
@@ -29,32 +31,16 @@ std::string read_text_file(const fs::path& path) {
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {
-  const fs::path temporary = fmt::format("{}.{}.tmp", path.string(), ::getpid());
-  std::error_code error;
-  {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-    stream.close();
-    if (!stream) {
-      fs::remove(temporary, error);
-      throw InputError(fmt::format(
-          "{}: cannot be written, check that its folder exists and has room", path.string()));
-    }
-  }
-  fs::rename(temporary, path, error);
-  if (error) {
-    const std::string reason = error.message();
-    fs::remove(temporary, error);
-    throw InputError(fmt::format("{}: cannot be replaced: {}", path.string(), reason));
-  }
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
+  OutputFile file(path);
+  errno = 0;
+  std::ofstream stream(file.temporary(), std::ios::binary);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  if (!stream)
     throw InputError(
-        fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
+        fmt::format("{}: cannot be written: {}", path.string(),
+                    errno != 0 ? std::generic_category().message(errno) : "its folder refused it"));
+  file.put_in_place();
 }
 
 }  // namespace mcdbn

@@ -28,18 +28,19 @@ struct DetectorNoise {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"bias", at_least(0), "", "deviation of the part that stays for seconds"},
+    visit(Setting{"bias", within(0, 100), "", "deviation of the part that stays for seconds"},
           self.bias);
     visit(Setting{"bias-time", above(0), "seconds", "how long it stays"}, self.bias_s);
-    visit(Setting{"drift", at_least(0), "", "deviation of the part that comes and goes"},
+    visit(Setting{"drift", within(0, 100), "", "deviation of the part that comes and goes"},
           self.drift);
     visit(Setting{"drift-time", above(0), "seconds", "how long that takes"}, self.drift_s);
-    visit(Setting{"drift-speed", at_least(0), "", "share by which speed 1 adds to it"},
+    visit(Setting{"drift-speed", within(0, 100), "", "share by which speed 1 adds to it"},
           self.drift_speed);
-    visit(Setting{"jitter", at_least(0), "", "deviation of what is new in every frame, at rest"},
+    visit(Setting{"jitter", within(0, 100), "", "deviation of what is new in every frame, at rest"},
           self.jitter);
-    visit(Setting{"jitter-speed", at_least(0), "", "what speed 1 adds to it"}, self.jitter_speed);
-    visit(Setting{"hidden", at_least(0), "",
+    visit(Setting{"jitter-speed", within(0, 100), "", "what speed 1 adds to it"},
+          self.jitter_speed);
+    visit(Setting{"hidden", within(0, 100), "",
                   "deviation of a joint out of sight, beside the rest; it comes and goes as drift"},
           self.hidden);
     visit(
@@ -49,7 +50,7 @@ struct DetectorNoise {
           self.stray_hands);
     visit(Setting{"stray-hidden", share_below_one(), "", "the same out of sight"},
           self.stray_hidden);
-    visit(Setting{"stray-size", above(0), "", "how far, in the middle"}, self.stray_size);
+    visit(Setting{"stray-size", above(0, 100), "", "how far, in the middle"}, self.stray_size);
     visit(Setting{"stray-time", above(0), "seconds", "how long, on average"}, self.stray_s);
     visit(Setting{"lost", share_below_one(), "", "share of the frames in which a joint is missing"},
           self.lost);
@@ -61,7 +62,7 @@ struct DetectorNoise {
     visit(Setting{"swapped-arms", share_below_one(), "", "the same of arms"}, self.swapped_arms);
     visit(Setting{"swap-time", above(0), "seconds", "how long, on average"}, self.swap_s);
     visit(Setting{"confidence", within(0, 1), "", "mean, of a joint in sight"}, self.confidence);
-    visit(Setting{"confidence-spread", at_least(0), "", "its deviation; twice it out of sight"},
+    visit(Setting{"confidence-spread", within(0, 100), "", "its deviation; twice it out of sight"},
           self.confidence_spread);
     visit(Setting{"confidence-hidden", within(0, 1), "", "mean, out of sight"},
           self.confidence_hidden);

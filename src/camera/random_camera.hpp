@@ -30,11 +30,11 @@ struct DetectorCameras {
           self.fov_from_deg);
     visit(Setting{"fov-to", CameraPlacement::kFieldOfView_deg, "degrees", "widest vertical view"},
           self.fov_to_deg);
-    visit(Setting{"distance-from", above(0), "m",
+    visit(Setting{"distance-from", above(0, 1000), "m",
                   "nearest to the middle of the clip, of a 1.7 m body; further away where the clip "
                   "would not fit in view"},
           self.distance_from_m);
-    visit(Setting{"distance-to", above(0), "m", "furthest"}, self.distance_to_m);
+    visit(Setting{"distance-to", above(0, 1000), "m", "furthest"}, self.distance_to_m);
   }
 };
 

@@ -16,8 +16,8 @@ struct TrackDamage {
   double missing_share = 0;
   double hidden_s = 0;
 
-  static constexpr Range kNoise_px = at_least(0), kMissingShare = within(0, 1),
-                         kHidden_s = at_least(0);
+  static constexpr Range kNoise_px = within(0, 1000), kMissingShare = within(0, 1),
+                         kHidden_s = within(0, 3600);
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mcdbn/base/errors.hpp"
+#include "motion/resample.hpp"
 
 namespace mcdbn {
 namespace {
@@ -36,11 +36,9 @@ void resample_joint(const Track2d& track, Eigen::Index joint, double at, double 
 }  // namespace
 
 Track2d resample_track(const Track2d& track, double target_hz) {
-  if (!(target_hz > 0) || !(track.fps > 0)) throw ConfigError("a frame rate must be positive");
-  if (std::abs(track.fps / target_hz - 1.0) < kSameRate || track.frames() == 0) return track;
+  const Eigen::Index frames = frames_at_rate(track.frames(), track.fps, target_hz, 0, kSameRate);
   const double step = track.fps / target_hz;
-  const auto frames =
-      static_cast<Eigen::Index>(std::floor((track.frames() - 1) / step + kSameRate)) + 1;
+  if (std::abs(step - 1.0) < kSameRate || track.frames() == 0) return track;
   Track2d result = track;
   result.fps = target_hz;
   for (MatrixD* values : {&result.x_px, &result.y_px, &result.confidence})

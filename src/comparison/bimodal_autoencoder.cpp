@@ -14,8 +14,11 @@
 namespace mcdbn {
 namespace {
 
-enum RandomPhase : std::uint16_t { kShufflePhase = 0x7000, kWeightPhase = 0x7100 };
-constexpr std::uint16_t kStream = random_streams::kAutoencoder;
+enum AutoencoderPhase : std::uint16_t {
+  kAutoencoderShuffle = 0x7000,
+  kAutoencoderWeights = 0x7100
+};
+constexpr std::uint16_t kAutoencoderStream = random_streams::kAutoencoder;
 
 using Shape = BimodalNetwork::Shape;
 
@@ -30,7 +33,7 @@ std::vector<DenseLayer> pretrained_layers(Device& device, const Shape& shape,
                                           const BimodalAutoencoderSettings& settings) {
   PretrainingSettings pretraining{settings.pretraining_epochs, settings.pretraining_rate,
                                   settings.batch, settings.least_batches};
-  RandomKey key{settings.seed, 0, kStream + 1, 0};
+  RandomKey key{settings.seed, 0, kAutoencoderStream + 1, 0};
   std::array<PretrainedRbm, 2> rbms;
   for (std::size_t m = 0; m < 2; ++m, ++key.stream)
     rbms[m] =
@@ -61,7 +64,7 @@ std::vector<DenseLayer> pretrained_layers(Device& device, const Shape& shape,
 }
 
 std::vector<DenseLayer> random_layers(const Shape& shape, std::uint64_t seed) {
-  RandomKey key{seed, 0, kStream, kWeightPhase};
+  RandomKey key{seed, 0, kAutoencoderStream, kAutoencoderWeights};
   const auto layer = [&](std::size_t inputs, std::size_t outputs) {
     ++key.step;
     return random_dense_layer(inputs, inputs, outputs, key);
@@ -77,10 +80,10 @@ std::vector<DenseLayer> random_layers(const Shape& shape, std::uint64_t seed) {
 }
 
 /// Back-propagation with modalities left out.
-class Trainer {
+class AutoencoderTrainer {
  public:
-  Trainer(BimodalNetwork& network, const BimodalAutoencoderSettings& settings, std::size_t batch,
-          const std::array<MatrixF, 2>& data)
+  AutoencoderTrainer(BimodalNetwork& network, const BimodalAutoencoderSettings& settings,
+                     std::size_t batch, const std::array<MatrixF, 2>& data)
       : network_(network),
         settings_(settings),
         pass_(network.device(), network.shape(), batch),
@@ -140,12 +143,12 @@ void BimodalAutoencoder::fit(const std::vector<MatrixF>& tracks,
   std::vector<std::int32_t> rows(static_cast<std::size_t>(data[0].rows()));
   std::iota(rows.begin(), rows.end(), 0);
   MinibatchSchedule schedule(*device_, rows, settings_.batch, settings_.least_batches);
-  Trainer trainer(*network_, settings_, schedule.batch(), data);
+  AutoencoderTrainer trainer(*network_, settings_, schedule.batch(), data);
   const std::size_t batches = schedule.batch_count(), all = settings_.epochs * batches;
   for (std::size_t i = 0; i < all; ++i) {
     if (i % batches == 0)
-      schedule.shuffle(
-          {settings_.seed, static_cast<std::uint32_t>(i / batches), kStream, kShufflePhase});
+      schedule.shuffle({settings_.seed, static_cast<std::uint32_t>(i / batches), kAutoencoderStream,
+                        kAutoencoderShuffle});
     const double progress = static_cast<double>(i) / static_cast<double>(all);
     trainer.step(schedule.index(), schedule.first_of(i % batches),
                  settings_.rate * std::min(1.0, 2.0 - 1.98 * progress));

@@ -6,6 +6,7 @@
 #include "comparison/dense_network.hpp"
 #include "mcdbn/base/settings.hpp"
 #include "mcdbn/device/device.hpp"
+#include "mcdbn/machines/size_limits.hpp"
 
 namespace mcdbn {
 
@@ -27,37 +28,38 @@ struct BimodalAutoencoderSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"track-hidden", at_least(1), "units", "of the 2D modality's own layer"},
+    visit(Setting{"track-hidden", size_limits::kUnits, "units", "of the 2D modality's own layer"},
           self.track_hidden);
-    visit(Setting{"pose-hidden", at_least(1), "units", "of the 3D modality's own layer"},
+    visit(Setting{"pose-hidden", size_limits::kUnits, "units", "of the 3D modality's own layer"},
           self.pose_hidden);
-    visit(Setting{"shared", at_least(1), "units", "of the layer that both modalities share"},
-          self.shared);
-    visit(Setting{"pretraining-epochs", at_least(0), "epochs",
+    visit(
+        Setting{"shared", size_limits::kUnits, "units", "of the layer that both modalities share"},
+        self.shared);
+    visit(Setting{"pretraining-epochs", within(0, 1e7), "epochs",
                   "rounds of CD-1 for each RBM that a layer starts as; 0 starts from random "
                   "weights"},
           self.pretraining_epochs);
-    visit(Setting{"pretraining-rate", above(0), "", "learning rate of the RBMs"},
+    visit(Setting{"pretraining-rate", above(0, 100), "", "learning rate of the RBMs"},
           self.pretraining_rate);
-    visit(Setting{"epochs", at_least(1), "epochs", "rounds of back-propagation"}, self.epochs);
-    visit(Setting{"least-batches", at_least(1), "mini-batches",
+    visit(Setting{"epochs", within(1, 1e7), "epochs", "rounds of back-propagation"}, self.epochs);
+    visit(Setting{"least-batches", within(1, 1e6), "mini-batches",
                   "of an epoch, at least: few clips are gone over several times in it"},
           self.least_batches);
-    visit(Setting{"batch", at_least(3), "windows",
+    visit(Setting{"batch", within(3, 1e5), "windows",
                   "of a mini-batch: a third with both modalities, a third with each alone"},
           self.batch);
-    visit(Setting{"rate", above(0), "", "Adam's rate; falls in a line over the second half"},
+    visit(Setting{"rate", above(0, 100), "", "Adam's rate; falls in a line over the second half"},
           self.rate);
     visit(
         Setting{
-            "weight-decay", at_least(0), "",
+            "weight-decay", within(0, 1000), "",
             "decoupled decay of the weights, times the rate: what generalizes to unseen people"},
         self.weight_decay);
-    visit(Setting{"pose-weight", above(0), "",
+    visit(Setting{"pose-weight", above(0, 1e6), "",
                   "of a 3D value's squared error where a 2D value's counts once: there are several "
                   "times as many of those"},
           self.pose_weight);
-    visit(Setting{"seed", at_least(0), "", "of every random number"}, self.seed);
+    visit(Setting{"seed", any_seed(), "", "of every random number"}, self.seed);
   }
 };
 

@@ -16,6 +16,7 @@
 #include "motion/body_size.hpp"
 #include "motion/foot_joints.hpp"
 #include "motion/turned_motion.hpp"
+#include "motion_model/pose_priors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -106,17 +107,16 @@ ClipPlacement placement_of(const EncodedClip& truth, const TestRunOptions& optio
 
 /// What a method sees of the clip; what it does not it is left to fill in itself.
 SeenClip seen_by(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
-                 const std::function<MatrixF(const MatrixF&)>& answer) {
+                 const PoseAnswer& answer) {
   return see_clip(model.modalities, truth.track, placement_of(truth, options), answer);
 }
 
 Regeneration answer(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
-                    const Track2d& joints, const MatrixF& pose) {
-  const ClipPlacement placement = placement_of(truth, options);
+                    const SeenClip& seen, const PosePrior& prior) {
+  ClipPlacement placement = placement_of(truth, options);
+  placement.view = seen.view;
   Regeneration result;
-  result.motion =
-      fit_to_track(PosePrior::around(pose), model.modalities, joints, placement, options.fit)
-          .motion;
+  result.motion = fit_to_track(prior, model.modalities, seen.joints, placement, options.fit).motion;
   // Who does not know the camera answers in another's axes: what it saw is the same.
   if (!placement.camera)
     result.motion =
@@ -139,15 +139,14 @@ void regenerate_clips(const Model& model, const TestRunOptions& options, const P
     const std::size_t last = std::min(results.size(), first + at_once);
     std::vector<MatrixF> tracks;
     for (std::size_t i = first; i < last; ++i) {
-      SeenClip seen = seen_by(model, options, results[i].truth, [&](const MatrixF& track) {
-        return single_answer(model.network, track);
+      results[i].seen = seen_by(model, options, results[i].truth, [&](const MatrixF& track) {
+        return pose_prior(model.network, track);
       });
-      tracks.push_back(std::move(seen.features));
-      results[i].seen = std::move(seen.joints);
+      tracks.push_back(results[i].seen.features);
     }
     RegenerationOptions regeneration = options.regeneration;
     regeneration.seed += first;  // other random numbers for other clips
-    const auto poses = regenerate(model.network, tracks, regeneration);
+    const auto poses = pose_priors(model.network, tracks, regeneration);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       ClipResult& result = results[first + i / samples];
       result.samples.push_back(answer(model, options, result.truth, result.seen, poses[i]));
@@ -155,7 +154,7 @@ void regenerate_clips(const Model& model, const TestRunOptions& options, const P
     if (regeneration.temperature <= 0) continue;
     regeneration.temperature = 0;
     regeneration.samples = 1;
-    const auto single = regenerate(model.network, tracks, regeneration);
+    const auto single = pose_priors(model.network, tracks, regeneration);
     for (std::size_t i = 0; i < single.size(); ++i) {
       ClipResult& result = results[first + i];
       result.others[kMeanField] = answer(model, options, result.truth, result.seen, single[i]);
@@ -198,8 +197,7 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
     for (ClipResult& result : results) {
       const auto predict = [&](const MatrixF& track) { return baseline->predict(track); };
       const SeenClip seen = seen_by(model, options, result.truth, predict);
-      result.others[name] =
-          answer(model, options, result.truth, seen.joints, predict(seen.features));
+      result.others[name] = answer(model, options, result.truth, seen, predict(seen.features));
     }
   }
 }

@@ -54,7 +54,7 @@ struct Regeneration {
 
 struct ClipResult {
   EncodedClip truth;
-  Track2d seen;  ///< the model's joints as its track shows them
+  SeenClip seen;  ///< what the model sees of its track
   bool trained_on = false;
   std::string known_person;  ///< as person_of says, if a training clip shows the same one
   std::vector<Regeneration> samples;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <deque>
 
+#include "base/interruption.hpp"
+
 namespace mcdbn {
 namespace {
 
@@ -41,6 +43,7 @@ VectorXd minimize_lbfgs(const DifferentiableFunction& function, VectorXd start,
   double value = function(x, gradient);
   std::deque<Step> steps;
   for (std::size_t i = 0; i < settings.steps; ++i) {
+    check_interruption();
     if (!(gradient.norm() > settings.tolerance * std::max(1.0, x.norm()))) break;
     VectorXd direction = downhill(steps, gradient);
     double slope = direction.dot(gradient);

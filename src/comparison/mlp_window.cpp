@@ -16,8 +16,8 @@
 namespace mcdbn {
 namespace {
 
-enum RandomPhase : std::uint16_t { kShufflePhase, kWeightPhase, kDropoutPhase };
-constexpr std::uint16_t kStream = random_streams::kPerceptron;
+enum PerceptronPhase : std::uint16_t { kPerceptronShuffle, kPerceptronWeights, kDropoutPhase };
+constexpr std::uint16_t kPerceptronStream = random_streams::kPerceptron;
 
 /// The clip with its ends repeated, so that every frame is the middle of a window.
 MatrixF extended(const MatrixF& track) {
@@ -44,10 +44,10 @@ std::vector<std::int32_t> window_rows(const std::vector<MatrixF>& clips) {
 }
 
 /// The network and a mini-batch's values on the device.
-class Trainer {
+class PerceptronTrainer {
  public:
-  Trainer(Device& device, const MlpWindow::Settings& settings, std::size_t batch,
-          const Matrix& tracks, const Matrix& poses)
+  PerceptronTrainer(Device& device, const MlpWindow::Settings& settings, std::size_t batch,
+                    const Matrix& tracks, const Matrix& poses)
       : settings_(settings),
         tracks_(tracks),
         poses_(poses),
@@ -87,7 +87,7 @@ class Trainer {
   /// larger. Padding between the frames of a window stays zero, as its inputs are.
   static std::vector<DenseLayer> first_layers(const MlpWindow::Settings& settings,
                                               const Matrix& tracks, const Matrix& poses) {
-    RandomKey key{settings.seed, 0, kStream, kWeightPhase};
+    RandomKey key{settings.seed, 0, kPerceptronStream, kPerceptronWeights};
     const auto layer = [&](std::size_t inputs, std::size_t rows, std::size_t outputs) {
       ++key.step;
       return random_dense_layer(inputs, rows, outputs, key);
@@ -113,7 +113,7 @@ class Trainer {
     if (settings_.dropout == 0.0) return;
     dropout(hidden_[layer], static_cast<float>(1.0 - settings_.dropout),
             {settings_.seed, static_cast<std::uint32_t>(steps_),
-             static_cast<std::uint16_t>(kStream + 1 + layer), kDropoutPhase});
+             static_cast<std::uint16_t>(kPerceptronStream + 1 + layer), kDropoutPhase});
   }
 
   const MlpWindow::Settings& settings_;
@@ -140,10 +140,11 @@ void MlpWindow::fit(const std::vector<MatrixF>& tracks, const std::vector<Matrix
 
   const Matrix track_frames = Matrix::from_host(*device_, stacked(inputs));
   const Matrix pose_frames = Matrix::from_host(*device_, stacked(targets));
-  Trainer trainer(*device_, settings_, schedule.batch(), track_frames, pose_frames);
+  PerceptronTrainer trainer(*device_, settings_, schedule.batch(), track_frames, pose_frames);
   const std::size_t batches = schedule.batch_count();
   for (std::size_t epoch = 0; epoch < settings_.epochs; ++epoch) {
-    schedule.shuffle({settings_.seed, static_cast<std::uint32_t>(epoch), kStream, kShufflePhase});
+    schedule.shuffle(
+        {settings_.seed, static_cast<std::uint32_t>(epoch), kPerceptronStream, kPerceptronShuffle});
     for (std::size_t i = 0; i < batches; ++i) {
       const double progress = static_cast<double>(epoch * batches + i) /
                               static_cast<double>(settings_.epochs * batches);

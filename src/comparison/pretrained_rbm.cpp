@@ -10,7 +10,7 @@ namespace mcdbn {
 namespace {
 
 /// Beyond those of Gibbs steps.
-enum RandomPhase : std::uint16_t { kShufflePhase = 0x7000, kWeightPhase = 0x7100 };
+enum RbmPhase : std::uint16_t { kRbmShuffle = 0x7000, kRbmWeights = 0x7100 };
 
 }  // namespace
 
@@ -19,7 +19,7 @@ PretrainedRbm pretrained_rbm(Device& device, const MatrixF& data, const CrbmShap
   CdSettings cd;
   cd.gibbs_steps = 1;
   cd.rate = settings.rate;
-  key.phase = kWeightPhase;
+  key.phase = kRbmWeights;
   Crbm rbm(device, CrbmParameters::random(shape, cd.initial_deviation, key));
 
   std::vector<std::int32_t> rows(static_cast<std::size_t>(data.rows()));
@@ -33,7 +33,7 @@ PretrainedRbm pretrained_rbm(Device& device, const MatrixF& data, const CrbmShap
   step.random.phase = 0;
   for (; step.epoch <= settings.epochs; ++step.epoch) {
     key.step = static_cast<std::uint32_t>(step.epoch);
-    key.phase = kShufflePhase;
+    key.phase = kRbmShuffle;
     schedule.shuffle(key);
     for (std::size_t i = 0; i < schedule.batch_count(); ++i, ++step.random.step) {
       const Rows visible =

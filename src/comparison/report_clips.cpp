@@ -128,7 +128,7 @@ std::vector<ReportClip> report_clips(const Model& model, const std::vector<ClipR
     clip.parents = figure.parents();
     clip.joints = figure.joint_count();
     clip.truth_mm = figure.points_mm(result.truth.motion);
-    clip.track_px = track_px(result.seen, names);
+    clip.track_px = track_px(result.seen.joints, names);
     clip.width_px = result.truth.track.width_px;
     clip.height_px = result.truth.track.height_px;
     for (const Regeneration& sample : result.samples)

@@ -20,13 +20,22 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-TrainedRun trained_run(Device& device, const std::vector<ListedClip>& files,
-                       const TrainingConfig& config, const fs::path& folder,
-                       const Sweep::Watch& watch, bool counts) {
+/// No configuration is charged for compiling.
+void build_kernels(Device& device, const std::vector<ListedClip>& files,
+                   const TrainingConfig& config, const Sweep::Watch& watch) {
   std::vector<LoadedClip> clips = load_training_clips(files, config);
   const TrainingSet data = make_training_set(clips, config);
-  return train_to_folder(device, data, std::move(clips), config, folder,
-                         watch ? watch(counts) : EpochObserver());
+  train_model(device, data, std::move(clips), config, watch ? watch(false) : EpochObserver());
+}
+
+TrainedRun trained_run(Device& device, const std::vector<ListedClip>& files,
+                       const TrainingConfig& config, const fs::path& folder,
+                       const Sweep::Watch& watch) {
+  RunFolder run = RunFolder::begin(folder, config, files, true);
+  std::vector<LoadedClip> clips = load_training_clips(files, config);
+  const TrainingSet data = make_training_set(clips, config);
+  return train_to_folder(device, data, std::move(clips), run, {},
+                         {.epoch = watch ? watch(true) : EpochObserver()});
 }
 
 /// An epoch or mini-batch of everything.
@@ -45,6 +54,15 @@ double inference_s(const Model& model, const std::vector<ClipResult>& results) {
   const auto start = std::chrono::steady_clock::now();
   regenerate(model.network, tracks);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+namespace {
+
+void require_folder(const fs::path& folder) {
+  const OutputsAtOnce to_stay;
+  make_folder(folder);
 }
 
 }  // namespace
@@ -75,6 +93,7 @@ void Sweep::Log::add(ordered_json record) {
   records_.push_back(std::move(record));
   std::string text;
   for (const ordered_json& entry : records_) text += entry.dump() + '\n';
+  const OutputsAtOnce after_each;
   write_text_file(path_, text);
 }
 
@@ -85,7 +104,8 @@ Sweep::Sweep(Device& device, const std::vector<fs::path>& test, std::vector<List
       clips_(std::move(clips)),
       resolve_(std::move(resolve)),
       run_(std::move(run)),
-      log_((make_folder(run_), run_ / "sweep.jsonl")) {}
+      lock_((require_folder(run_), run_)),
+      log_(run_ / "sweep.jsonl") {}
 
 ordered_json Sweep::run(const SweepConfiguration& configuration, const Watch& watch) {
   ordered_json record = {{"name", name_of(configuration)}, {"configuration", ordered_json()}};
@@ -113,9 +133,8 @@ ordered_json Sweep::run(const SweepConfiguration& configuration, const Watch& wa
 
 void Sweep::score(const TrainingConfig& config, const Watch& watch, ordered_json& record) const {
   const fs::path folder = run_ / record["name"].get<std::string>();
-  // No configuration is charged for compiling.
-  trained_run(device_, clips_, shortest(config), folder, watch, false);
-  const TrainedRun trained = trained_run(device_, clips_, config, folder, watch, true);
+  build_kernels(device_, clips_, shortest(config), watch);
+  const TrainedRun trained = trained_run(device_, clips_, config, folder, watch);
   TestRunOptions options;
   options.camera = trained.model.modalities.camera;
   options.baselines.clear();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/folder_lock.hpp"
 #include "mcdbn/corpus/clip_list.hpp"
 #include "mcdbn/device/device.hpp"
 #include "mcdbn/learning/epoch_report.hpp"
@@ -70,6 +71,7 @@ class Sweep {
   std::vector<ListedClip> clips_;
   Resolve resolve_;
   std::filesystem::path run_;
+  FolderLock lock_;
   Log log_;
 };
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/shown.hpp"
 #include "comparison/sweep.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion_model/settings_file.hpp"
@@ -30,11 +31,12 @@ std::vector<std::vector<SaidSetting>> choices_of(const fs::path& file, const tom
       for (auto& choices : choices_of(file, *inner, name + ".")) all.push_back(std::move(choices));
       continue;
     }
-    const std::string who = fmt::format("{}: {}", location_of(file, node), name);
+    const std::string who =
+        fmt::format("{}: {}", location_of(file, node), printable(name.substr(0, 60)));
     std::vector<SaidSetting> choices;
     if (const toml::array* list = node.as_array()) {
       for (const toml::node& value : *list) choices.push_back({name, setting_of(file, value), who});
-      if (choices.empty()) reject(file, node, fmt::format("'{}' has no value to try", name));
+      if (choices.empty()) reject(file, node, fmt::format("{} has no value to try", shown(name)));
     } else {
       choices.push_back({name, setting_of(file, node), who});
     }
@@ -43,7 +45,19 @@ std::vector<std::vector<SaidSetting>> choices_of(const fs::path& file, const tom
   return all;
 }
 
-std::vector<SweepConfiguration> combinations(const std::vector<std::vector<SaidSetting>>& choices) {
+/// @throws ConfigError if they are too many to be meant
+void check_number_of_runs(const fs::path& file, double runs) {
+  constexpr double kMost = 10'000;
+  if (runs > kMost)
+    throw ConfigError(fmt::format("{}: {:.0f} configurations; a sweep has {:.0f} at most",
+                                  file.string(), runs, kMost));
+}
+
+std::vector<SweepConfiguration> combinations(const fs::path& file,
+                                             const std::vector<std::vector<SaidSetting>>& choices) {
+  double runs = 1;
+  for (const auto& values : choices) runs *= static_cast<double>(values.size());
+  check_number_of_runs(file, runs);
   std::vector<SweepConfiguration> all = {{}};
   for (const auto& values : choices) {
     std::vector<SweepConfiguration> longer;
@@ -76,17 +90,17 @@ SweepFile sweep_of(const fs::path& file, const toml::table& table) {
     if (key.str() == "test") {
       sweep.test = test_paths(file, node);
     } else if (key.str() == "grid" && node.is_table()) {
-      more = combinations(choices_of(file, *node.as_table()));
+      more = combinations(file, choices_of(file, *node.as_table()));
     } else if (key.str() == "configuration" && node.is_array_of_tables()) {
       for (const toml::node& entry : *node.as_array())
-        for (SweepConfiguration& one : combinations(choices_of(file, *entry.as_table())))
+        for (SweepConfiguration& one : combinations(file, choices_of(file, *entry.as_table())))
           more.push_back(std::move(one));
     } else {
-      reject(
-          file, node,
-          fmt::format("'{}' is none of: test, [grid], [[configuration]]", std::string(key.str())));
+      reject(file, node,
+             fmt::format("{} is none of: test, [grid], [[configuration]]", shown(key.str())));
     }
     sweep.configurations.insert(sweep.configurations.end(), more.begin(), more.end());
+    check_number_of_runs(file, static_cast<double>(sweep.configurations.size()));
   }
   if (sweep.test.empty())
     throw ConfigError(fmt::format("{}: no 'test': name the clips to score on", file.string()));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/interruption.hpp"
 #include "comparison/clip_pairs.hpp"
 #include "comparison/lbfgs.hpp"
 #include "comparison/track_window.hpp"
@@ -108,6 +109,7 @@ MatrixF TwinGaussianProcesses::predict(const MatrixF& track) const {
   search.steps = settings_.steps;
   MatrixF answers(track.rows(), poses_.cols());
   for (Eigen::Index t = 0; t < track.rows(); ++t) {
+    check_interruption();
     const std::vector<Eigen::Index> rows = nearest(windows.row(t));
     const MatrixD near_windows = windows_(rows, Eigen::all).cast<double>();
     const MatrixD near_poses = poses_(rows, Eigen::all).cast<double>();

@@ -19,21 +19,22 @@ struct TwinGaussianProcessSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"neighbours", at_least(1), "frames",
+    visit(Setting{"neighbours", within(1, 1e5), "frames",
                   "nearest training windows that a frame is predicted from: the time grows with "
                   "their cube"},
           self.neighbours);
-    visit(Setting{"track-width", above(0), "",
+    visit(Setting{"track-width", above(0, 1e6), "",
                   "of the kernel on 2D windows, where 1 is the root mean square distance of two "
                   "training windows"},
           self.track_width);
-    visit(Setting{"pose-width", above(0), "", "of the kernel on poses, likewise"}, self.pose_width);
-    visit(Setting{"track-noise", above(0), "",
+    visit(Setting{"pose-width", above(0, 1e6), "", "of the kernel on poses, likewise"},
+          self.pose_width);
+    visit(Setting{"track-noise", above(0, 1e6), "",
                   "variance of the noise on windows, where the kernel's is 1"},
           self.track_noise);
-    visit(Setting{"pose-noise", above(0), "", "variance of the noise on poses, likewise"},
+    visit(Setting{"pose-noise", above(0, 1e6), "", "variance of the noise on poses, likewise"},
           self.pose_noise);
-    visit(Setting{"steps", at_least(0), "steps",
+    visit(Setting{"steps", within(0, 1e6), "steps",
                   "of L-BFGS at most; 0 leaves the answer at Gaussian process regression"},
           self.steps);
   }

@@ -79,13 +79,9 @@ double size_px(const Track2d& track) {
 }
 
 /// The view's motion as a detector sees it from anywhere.
-void see_by_detector(AugmentedView& view, const RandomKey& key, bool all_in_sight) {
+void see_by_detector(AugmentedView& view, const RandomKey& key) {
   const std::uint64_t seed = mixed_seed({key.seed, key.step, 0x64657465});
   view.camera = random_camera(view.motion, {}, seed);
-  if (all_in_sight) {
-    view.track = project_motion(view.motion, view.camera);
-    return;
-  }
   const auto which = static_cast<std::size_t>(uniform(key, kDetector, 1) *
                                               static_cast<double>(detectors().size()));
   const Detector& detector = detectors()[std::min(which, detectors().size() - 1)];
@@ -135,7 +131,7 @@ AugmentedView seen_view(const Motion& raw, double fps, const CameraPlacement& pl
     });
   if (settings.turn_deg > 0) change_carriage(view.motion, settings.turn_deg, key);
   if (uniform(key, kDetector) < settings.detector) {
-    see_by_detector(view, key, all_in_sight);
+    see_by_detector(view, key);
     return view;
   }
   CameraPlacement moved = placement;

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <string>
-#include <utility>
 
+#include "base/interruption.hpp"
 #include "base/missing_values.hpp"
 #include "base/random_streams.hpp"
-#include "corpus/people.hpp"
+#include "corpus/clip_groups.hpp"
 #include "corpus/pose_pool.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/features/standardizer.hpp"
@@ -18,38 +16,41 @@ namespace mcdbn {
 namespace {
 
 /// Fewer views of much data: it varies by itself, and all views are kept in memory.
-std::size_t views_that_fit(const std::vector<LoadedClip>& clips, const CorpusSettings& settings) {
+std::size_t views_that_fit(double frames, const CorpusSettings& settings) {
   constexpr double kMostFrames = 200'000;
+  const double fitting = std::max(1.0, std::floor(kMostFrames / std::max(frames, 1.0)));
+  return std::min(settings.augment.views, static_cast<std::size_t>(fitting));
+}
+
+/// Of all clips at the model's rate.
+double frames_of(const std::vector<LoadedClip>& clips, const CorpusSettings& settings) {
   double frames = 0;
   for (const LoadedClip& loaded : clips) {
     const Motion& raw = loaded.motion;
     frames += static_cast<double>(raw.frames()) * raw.frame_time_s * settings.fps;
   }
-  const double fitting = std::max(1.0, std::floor(kMostFrames / std::max(frames, 1.0)));
-  return std::min(settings.augment.views, static_cast<std::size_t>(fitting));
+  return frames;
 }
 
 }  // namespace
 
+double frames_of_views(double frames, const CorpusSettings& settings) {
+  return frames * static_cast<double>(views_that_fit(frames, settings));
+}
+
 TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Modalities& modalities,
                                  const CorpusSettings& settings, std::uint64_t seed) {
-  const std::size_t count = views_that_fit(clips, settings);
+  const std::size_t count = views_that_fit(frames_of(clips, settings), settings);
   TrainingSet views{modalities, {}, {}, {}, {}, {}};
-  PeopleCount people;
-  std::map<std::pair<std::size_t, std::string>, std::size_t> groups;
-  const bool actions_said =
-      std::ranges::any_of(clips, [](const LoadedClip& loaded) { return !loaded.action.empty(); });
+  ClipGroups groups(clips);
   std::optional<PosePool> pool;
   if (settings.augment.new_poses()) pool.emplace(clips, settings.fps);
   RandomKey key{seed, 0, random_streams::kAugmentedViews, 0};
   for (const LoadedClip& loaded : clips) {
     const Motion& raw = loaded.motion;
-    const std::size_t person = people.number_of(raw.skeleton, loaded.person);
-    const std::size_t group =
-        groups.try_emplace(std::pair{person, loaded.action}, groups.size()).first->second;
+    groups.add(loaded, count, views);
     for (std::size_t i = 0; i < count; ++i, ++key.step) {
-      views.people.push_back(person);
-      if (actions_said) views.groups.push_back(group);
+      check_interruption();
       views.clips.push_back(loaded.clip);
       const AugmentedView view =
           augmented_view(raw, settings.fps, settings.camera, settings.augment, key, false,

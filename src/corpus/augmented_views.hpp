@@ -12,4 +12,8 @@ namespace mcdbn {
 TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Modalities& modalities,
                                  const CorpusSettings& settings, std::uint64_t seed);
 
+/// How many frames those views have together.
+/// @param frames of all clips at the model's rate
+double frames_of_views(double frames, const CorpusSettings& settings);
+
 }  // namespace mcdbn

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <set>
 
+#include "base/interruption.hpp"
 #include "base/text_file.hpp"
 #include "base/user_cache.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/motion_file.hpp"
+#include "mcdbn/motion/frame_rate.hpp"
 #include "motion/resample.hpp"
 
 namespace fs = std::filesystem;
@@ -47,6 +49,10 @@ Motion prepared(Motion motion, const fs::path& path, const ClipOptions& options,
   if (motion.frames() == 0) {
     throw InputError(fmt::format("{}: has no frame; use a file with motion", path.string()));
   }
+  if (notices && !kUsualFrameRate_hz.contains(motion.fps()))
+    notices->push_back(
+        fmt::format("{}: it has {:.4g} frames a second; correct it if that is not so",
+                    path.string(), motion.fps()));
   const bool resampling = options.fps > 0 && std::abs(options.fps - motion.fps()) > kSameRate_hz;
   return resampling ? resample(motion, options.fps) : motion;
 }
@@ -59,9 +65,7 @@ TrainingClip identified(const fs::path& path, const std::string& text) {
 
 Motion load_clip(const fs::path& path, const ClipOptions& options,
                  std::vector<std::string>* notices) {
-  if (!std::isfinite(options.fps) || options.fps < 0) {
-    throw ConfigError(fmt::format("fps is {}; give a rate, or 0 for the file's own", options.fps));
-  }
+  if (options.fps != 0) check_range("`fps`, if not 0,", kFrameRate_hz, options.fps);
   return prepared(read_motion(path, notices), path, options, notices);
 }
 
@@ -69,6 +73,7 @@ std::vector<LoadedClip> load_clips(const std::vector<fs::path>& files, bool keep
                                    std::vector<std::string>* notices) {
   std::vector<LoadedClip> clips;
   for (const fs::path& file : files) {
+    check_interruption();
     const std::string text = read_text_file(file);
     clips.push_back({identified(file, text),
                      prepared(parse_motion(text, file, notices), file,

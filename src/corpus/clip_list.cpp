@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/shown.hpp"
 #include "base/text_file.hpp"
 #include "formats/toml_texts.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -30,13 +31,14 @@ ListedClip clip_from(const fs::path& path, const toml::table& table) {
     else if (key == "action")
       clip.action = text;
     else
-      fail_at(path, key.source(),
-              fmt::format("no key {} is known; a clip has file, person and action", key.str()));
+      fail_at(
+          path, key.source(),
+          fmt::format("no key {} is known; a clip has file, person and action", shown(key.str())));
   }
   if (clip.file.empty())
     fail_at(path, table.source(), fmt::format("a clip without file; {}", kExample));
   if (!fs::is_regular_file(clip.file))
-    fail_at(path, table.source(), fmt::format("{}: no such file", clip.file.string()));
+    fail_at(path, table.source(), fmt::format("{}: no such file", printable(clip.file.string())));
   return clip;
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/interruption.hpp"
 #include "base/upper_median.hpp"
 #include "corpus/people.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -196,6 +197,7 @@ std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips, const Sur
   std::vector<SurveyedClip> surveyed;
   Seen seen;
   for (const ListedClip& clip : clips) {
+    check_interruption();
     SurveyedClip result{clip, 0, 0, 0, {}, {}};
     if (result.clip.person.empty()) result.clip.person = person_of(clip.file);
     if (result.clip.action.empty()) result.clip.action = action_of(clip.file);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/interruption.hpp"
+#include "base/utf8.hpp"
 #include "corpus/people.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
@@ -54,6 +56,7 @@ void bring_onto_humanoid(std::vector<LoadedClip>& clips, std::vector<std::string
   PeopleCount people;
   Losses losses;
   for (LoadedClip& clip : clips) {
+    check_interruption();
     // By the skeleton's own bones; on the humanoid those of one person may differ by a hair.
     if (clip.person.empty())
       clip.person = fmt::format("person {}", people.number_of(clip.motion.skeleton));
@@ -67,6 +70,16 @@ void bring_onto_humanoid(std::vector<LoadedClip>& clips, std::vector<std::string
     }
   }
   if (notices) notices->push_back(losses.text());
+}
+
+}  // namespace
+
+namespace {
+
+/// What a model records is text, and known to be before anything is trained.
+void check_names(const LoadedClip& clip) {
+  for (const Joint& joint : clip.motion.skeleton.joints)
+    require_utf8(joint.name, fmt::format("{}: the joint name {}", clip.clip.path, joint.name));
 }
 
 }  // namespace
@@ -86,6 +99,7 @@ std::vector<LoadedClip> load_training_clips(const std::vector<ListedClip>& files
   for (std::size_t i = 0; i < clips.size(); ++i) {
     clips[i].person = files[i].person;
     clips[i].action = files[i].action;
+    check_names(clips[i]);
   }
   const auto odd = odd_one(clips);
   if (settings.skeleton == SkeletonUse::own && odd)

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "base/interruption.hpp"
 #include "base/random_streams.hpp"
+#include "corpus/clip_groups.hpp"
 #include "corpus/pose_pool.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
@@ -40,7 +42,8 @@ std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair
 
 /// Views as fine-tuning will see them, for the scaling: what hardly moves in the clips may move
 /// in their views (the left arm of somebody who waves with the right one, seen in a mirror), and
-/// what counts for fifty deviations there hides everything else.
+/// what counts for fifty deviations there hides everything else. So do a detector's errors in what
+/// never moves: a spine that the skeleton puts on the pelvis.
 void add_views(const Motion& raw, const CorpusSettings& settings, RandomKey& key,
                const PosePool* pool, std::vector<AugmentedView>& views) {
   constexpr std::size_t kViews = 4;  // with and without mirror
@@ -75,9 +78,13 @@ TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const Corpus
   std::optional<PosePool> pool;
   if (with_views && settings.augment.new_poses()) pool.emplace(clips, settings.fps);
   RandomKey key{seed, 0, random_streams::kScalingViews, 0};
+  std::vector<std::size_t> phases;
   for (const LoadedClip& loaded : clips) {
+    check_interruption();
+    const std::size_t before = motions.size();
     for (Motion& motion : resampled_phases(loaded.motion, settings))
       motions.push_back(std::move(motion));
+    phases.push_back(motions.size() - before);
     if (with_views) add_views(loaded.motion, settings, key, pool ? &*pool : nullptr, views);
     recorded.push_back(loaded.clip);
   }
@@ -99,6 +106,8 @@ TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const Corpus
                   std::move(recorded),
                   {},
                   {}};
+  ClipGroups groups(clips);
+  for (std::size_t i = 0; i < clips.size(); ++i) groups.add(clips[i], phases[i], set);
   Modalities& modalities = set.modalities;
   std::vector<Pair> pairs;
   const auto add_pair = [&](const Motion& motion, const Track2d& track, const Camera& camera) {

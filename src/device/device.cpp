@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cstdlib>
 
+#include "base/interruption.hpp"
 #include "device/program.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -178,7 +179,7 @@ std::vector<LaunchTime> Device::take_launch_times() {
 
 void Device::finish() {
   try {
-    queue_.finish();
+    run_interruptibly([queue = queue_] { queue.finish(); });
   } catch (const cl::Error& error) {
     throw DeviceError(fmt::format("{}: {} returned {}", info_.name, error.what(), error.err()));
   }

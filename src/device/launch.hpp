@@ -19,8 +19,14 @@ struct LaunchSize {
 /// each other length of clip, and may make one group, which one core runs, of it all.
 std::array<std::size_t, 2> local_size_for(const std::array<std::size_t, 2>& global);
 
-/// Enqueues one kernel with its arguments set in order; returns at once.
-/// @throws DeviceError naming the kernel
+/// Keeps a host that only enqueues from running far ahead of its device: now and then, some ten
+/// times a second, it waits for the queue. Otherwise nobody would hear for minutes that the work is
+/// to stop. A wait costs some 50 µs.
+/// @throws Interrupted if that was asked for, DeviceError
+void keep_pace(Device& device);
+
+/// Enqueues one kernel with its arguments set in order; returns at once, but for keep_pace().
+/// @throws DeviceError naming the kernel, Interrupted
 template <typename... Arguments>
 void launch(Device& device, cl::Kernel& kernel, const LaunchSize& size,
             const Arguments&... arguments) {
@@ -36,6 +42,7 @@ void launch(Device& device, cl::Kernel& kernel, const LaunchSize& size,
                                         device.keeps_launch_times() ? &event : nullptr);
     if (device.keeps_launch_times()) device.keep_launch(kernel, event);
     device.count_launch();
+    keep_pace(device);
   } catch (const cl::Error& error) {
     throw DeviceError("kernel " + kernel.getInfo<CL_KERNEL_FUNCTION_NAME>() + " on " +
                       device.info().name + ": " + error.what() + " returned " +

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mcdbn/device/matrix.hpp"
+#include "device/training_state.hpp"
 
 namespace mcdbn {
 
@@ -17,6 +17,7 @@ class LossAccumulator {
   void add_cross_entropy(std::size_t slot, const Rows& x, const Rows& y, float scale);
   /// Where the sums lie, for kernels that add to them by themselves: slot s is float s.
   const cl::Buffer& buffer() const { return sums_.buffer(); }
+  void visit_state(TrainingState& state) { state.matrix("losses", sums_); }
   /// Waits for the queue, returns the sums and starts again from zero.
   std::vector<float> read_and_reset();
 

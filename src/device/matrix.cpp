@@ -19,6 +19,28 @@ auto checked(const char* what, Call&& call) {
   }
 }
 
+bool is_lack_of_memory(cl_int code) {
+  return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES ||
+         code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE;
+}
+
+/// @throws DeviceError saying how much was wanted where the device has no room for it
+cl::Buffer allocate(const Device& device, std::size_t bytes) {
+  constexpr double kMegabyte = 1e6;
+  try {
+    return {device.context(), CL_MEM_READ_WRITE, bytes};
+  } catch (const cl::Error& error) {
+    if (!is_lack_of_memory(error.err()))
+      throw DeviceError(
+          fmt::format("allocating a matrix: {} returned {}", error.what(), error.err()));
+    throw DeviceError(fmt::format(
+        "{}: no room for {:.0f} MB more, of {:.0f} MB that it has; smaller layers and mini-batches "
+        "need less",
+        device.info().name, static_cast<double>(bytes) / kMegabyte,
+        static_cast<double>(device.info().global_memory_bytes) / kMegabyte));
+  }
+}
+
 void require_shape(bool holds, const char* what) {
   if (!holds) throw ShapeError(what);
 }
@@ -31,9 +53,7 @@ Matrix::Matrix(Device& device, std::size_t rows, std::size_t columns)
   if (element_count() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
     throw DeviceError(fmt::format("a matrix of {} x {} exceeds 2^31 elements", rows, columns));
   if (empty()) return;
-  checked("allocating a matrix", [&] {
-    buffer_ = cl::Buffer(device.context(), CL_MEM_READ_WRITE, element_count() * sizeof(float));
-  });
+  buffer_ = allocate(device, element_count() * sizeof(float));
   set_zero();
 }
 
@@ -67,11 +87,13 @@ Matrix Matrix::filled_with_row(const Matrix& row, std::size_t rows) {
 
 MatrixF Matrix::to_host() const {
   MatrixF wide(rows_, stride());
-  if (!empty())
+  if (!empty()) {
+    device_->finish();  // which can be interrupted
     checked("reading a matrix", [&] {
       device_->queue().enqueueReadBuffer(buffer_, CL_TRUE, 0, element_count() * sizeof(float),
                                          wide.data());
     });
+  }
   return wide.leftCols(static_cast<Eigen::Index>(columns_));
 }
 
@@ -119,10 +141,7 @@ void Matrix::copy_rows_from(const Matrix& other, std::size_t first, std::size_t 
 
 IndexBuffer::IndexBuffer(Device& device, const std::vector<std::int32_t>& values)
     : size_(values.size()) {
-  checked("allocating an index", [&] {
-    buffer_ = cl::Buffer(device.context(), CL_MEM_READ_WRITE,
-                         std::max<std::size_t>(size_, 1) * sizeof(std::int32_t));
-  });
+  buffer_ = allocate(device, std::max<std::size_t>(size_, 1) * sizeof(std::int32_t));
   upload(device, values);
 }
 

@@ -60,6 +60,11 @@ const cl::Buffer& Optimizer::state_buffer() const {
   return states_.empty() ? parameters_.all().buffer() : states_.buffer();
 }
 
+void Optimizer::visit_state(TrainingState& state) {
+  state.number("optimizer.steps", steps_);
+  if (!states_.empty()) state.matrix("optimizer", states_);
+}
+
 int Optimizer::size() const {
   return to_int(parameters_.all().stride());
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "device/program.hpp"
+#include "device/training_state.hpp"
 #include "mcdbn/device/parameters.hpp"
 
 namespace mcdbn {
@@ -56,6 +57,8 @@ class Optimizer {
   const cl::Buffer& state_buffer() const;
   /// [states x floats]: the velocity, or the mean and the square; none: empty.
   Matrix& states() { return states_; }
+  /// What it keeps from step to step; the parameters are their machine's.
+  void visit_state(TrainingState& state);
   /// Floats of one block of states.
   int size() const;
 

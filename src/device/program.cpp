@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/interruption.hpp"
 #include "base/user_cache.hpp"
 #include "device/embedded_kernels.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -55,6 +56,31 @@ std::string key_of(const std::string& file, const std::string& name, const Defin
 bool driver_keeps_programs(const cl::Device& device) {
   const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
   return platform.getInfo<CL_PLATFORM_NAME>() == "Portable Computing Language";
+}
+
+/// Where the whole log of a failed build can be read; empty if it cannot be kept.
+std::string kept_log(const std::string& log) {
+  std::error_code error;
+  const fs::path path =
+      fs::temp_directory_path(error) / fmt::format("mcdbn-cl-build-{}.log", ::getpid());
+  if (!error) std::ofstream(path, std::ios::binary) << log;
+  return fs::exists(path, error) ? path.string() : std::string();
+}
+
+/// What went wrong in a line: the first of the log that speaks of an error.
+std::string build_failure(const std::string& log, const std::string& options) {
+  if (log.find_first_not_of(" \t\r\n") == std::string::npos)
+    return fmt::format(
+        "building kernels with {}: the OpenCL driver says nothing of why; is there room where it "
+        "keeps what it builds (PoCL: $POCL_CACHE_DIR, else ~/.cache/pocl)?",
+        options);
+  std::istringstream lines(log);
+  std::string line, first;
+  while (std::getline(lines, line) && line.find("error") == std::string::npos)
+    if (first.empty()) first = line;
+  const std::string path = kept_log(log);
+  return fmt::format("building kernels with {}: {}{}", options, line.empty() ? first : line,
+                     path.empty() ? "" : fmt::format(" (the whole log: {})", path));
 }
 
 }  // namespace
@@ -127,10 +153,9 @@ cl::Program ProgramCache::build(const std::string& source, const std::string& op
 cl::Program ProgramCache::built_from_source(const std::string& source, const std::string& options) {
   cl::Program program(context_, source);
   try {
-    program.build(options.c_str());
+    run_interruptibly([program, options]() mutable { program.build(options.c_str()); });
   } catch (const cl::Error&) {
-    throw DeviceError(fmt::format("building kernels with {}:\n{}", options,
-                                  program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_)));
+    throw DeviceError(build_failure(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_), options));
   }
   return program;
 }

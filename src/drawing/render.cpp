@@ -9,8 +9,8 @@
 #include <opencv2/videoio.hpp>
 #include <string_view>
 
+#include "base/interruption.hpp"
 #include "base/text_file.hpp"
-#include "drawing/partial_file.hpp"
 #include "drawing/render_figure.hpp"
 #include "drawing/render_over.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -21,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using rendering::Figure;
 using rendering::Palette;
-using rendering::PartialFile;
 
 struct Size {
   int width_px, height_px;
@@ -151,6 +150,14 @@ void check(const std::vector<RenderClip>& clips, const RenderOptions& options) {
     throw ConfigError(
         fmt::format("{} columns in a contact sheet; choose 1 to 64", options.sheet_columns));
   }
+  // A sheet has as many pictures; OpenCV would take the memory of any.
+  constexpr double kMost_pixels = 1e8;
+  const double pixels = static_cast<double>(options.placement.width_px) *
+                        options.placement.height_px * options.sheet_columns;
+  if (pixels > kMost_pixels)
+    throw ConfigError(fmt::format("a row of {} pictures of {} x {} px; lower `image-size`",
+                                  options.sheet_columns, options.placement.width_px,
+                                  options.placement.height_px));
 }
 
 /// Even numbers, as video encoders want them.
@@ -198,7 +205,7 @@ double duration_s(const std::vector<Figure>& figures) {
 
 void render_video(const std::vector<Panel>& panels, const std::vector<Figure>& figures,
                   const fs::path& path, double fps) {
-  const PartialFile file(path);
+  OutputFile file(path);
   const auto frame_at = [&](double t_s) {
     cv::Mat image;
     for (const Panel& panel : panels) {
@@ -216,6 +223,7 @@ void render_video(const std::vector<Panel>& panels, const std::vector<Figure>& f
   cv::VideoWriter writer;
   const int frames = std::max(1, static_cast<int>(std::lround(duration_s(figures) * fps)));
   for (int i = 0; i < frames; ++i) {
+    check_interruption();
     const cv::Mat image = frame_at(i / fps);
     if (i == 0 && !writer.open(file.temporary().string(),
                                cv::VideoWriter::fourcc('m', 'p', '4', 'v'), fps, image.size())) {
@@ -240,6 +248,7 @@ void render_sheet(const std::vector<Panel>& panels, const std::vector<Figure>& f
   for (int row = 0; row < rows; ++row) {
     cv::Mat strip;
     for (int column = 0; column < columns; ++column) {
+      check_interruption();
       const Panel& panel = panels[panels.size() == 1 ? 0 : static_cast<std::size_t>(row)];
       const int index = panels.size() == 1 ? row * columns + column : column;
       const double t_s = times > 1 ? last_s * index / (times - 1) : 0;

@@ -8,9 +8,10 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "base/interruption.hpp"
 #include "base/text_file.hpp"
-#include "drawing/partial_file.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion/frame_rate.hpp"
 
 namespace mcdbn::rendering {
 namespace {
@@ -22,13 +23,18 @@ class Film {
     cv::Mat skipped;
     if (!std::filesystem::exists(path) || !capture_.open(path.string()))
       throw InputError(fmt::format("{}: is not a film that can be read", path.string()));
-    for (int frame = 0; frame < from; ++frame)
+    for (int frame = 0; frame < from; ++frame) {
+      check_interruption();
       if (!capture_.read(skipped))
         throw InputError(fmt::format("{}: ends before its frame {}", path.string(), from));
+    }
   }
   double fps() const {
     constexpr double kUsual = 30;
     const double fps = capture_.get(cv::CAP_PROP_FPS);
+    if (fps > 0 && !kFrameRate_hz.contains(fps))
+      throw InputError(fmt::format("{}: says {:g} frames a second, which must be {}",
+                                   path_.string(), fps, kFrameRate_hz.text()));
     return fps > 0 ? fps : kUsual;
   }
   /// An empty image where the film ends.
@@ -61,9 +67,10 @@ void draw_figures(cv::Mat& image, const std::vector<Figure>& figures, const Came
 
 void write_film(Film& film, int frames, const std::vector<Figure>& figures, const Camera& camera,
                 const std::filesystem::path& path) {
-  const PartialFile file(path);
+  OutputFile file(path);
   cv::VideoWriter writer;
   for (int i = 0; i < frames; ++i) {
+    check_interruption();
     cv::Mat image = film.next();
     if (image.empty()) break;
     draw_figures(image, figures, camera, i / film.fps());
@@ -87,6 +94,7 @@ void write_sheet(Film& film, int frames, const std::vector<Figure>& figures, con
   const int times = 2 * columns;
   int shown = 0;
   for (int i = 0; i < frames && shown < times; ++i) {
+    check_interruption();
     cv::Mat image = film.next();
     if (image.empty()) break;
     if (i < shown * (frames - 1) / std::max(1, times - 1)) continue;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/interruption.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
 
@@ -18,6 +19,7 @@ std::vector<double> pairwise_pearson(const std::vector<MatrixD>& clips) {
   correlations.reserve(clips.size() * (clips.size() + 1) / 2);
   for (std::size_t i = 0; i < clips.size(); ++i)
     for (std::size_t j = i + 1; j < clips.size(); ++j) {
+      check_interruption();
       // Rows are contiguous, so the first frames are the first entries.
       const Eigen::Index entries = std::min(clips[i].size(), clips[j].size());
       correlations.push_back(pearson(Eigen::Map<const Eigen::VectorXd>(clips[i].data(), entries),

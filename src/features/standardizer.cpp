@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "base/json_place.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -99,25 +100,26 @@ nlohmann::json Standardizer::to_json() const {
           {"kept", kept_}};
 }
 
-Standardizer Standardizer::from_json(const nlohmann::json& json) {
-  Standardizer result;
-  try {
-    const auto mean = json.at("mean").get<std::vector<double>>();
-    const auto deviation = json.at("deviation").get<std::vector<double>>();
-    result.mean_ = RowVectorD::Map(mean.data(), static_cast<Eigen::Index>(mean.size()));
-    result.deviation_ =
-        RowVectorD::Map(deviation.data(), static_cast<Eigen::Index>(deviation.size()));
-    result.kept_ = json.at("kept").get<std::vector<int>>();
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(fmt::format("scaling: {}; the model file is damaged", error.what()));
-  }
-  const int columns = result.input_dimension();
-  const auto usable = [&](int column) {
-    return column >= 0 && column < columns && result.deviation_[column] > 0;
+Standardizer Standardizer::from_json(const nlohmann::json& json, const std::string& where) {
+  const JsonPlace place(json, where);
+  const auto row = [&](const char* name) -> RowVectorD {
+    const std::vector<double> values = place[name].finite_numbers();
+    return RowVectorD::Map(values.data(), static_cast<Eigen::Index>(values.size()));
   };
-  if (result.deviation_.size() != columns ||
-      !std::all_of(result.kept_.begin(), result.kept_.end(), usable)) {
-    throw InputError("scaling: sizes that do not fit together; the model file is damaged");
+  Standardizer result;
+  result.mean_ = row("mean");
+  result.deviation_ = row("deviation");
+  if (result.deviation_.size() != result.mean_.size())
+    place["deviation"].fail(
+        fmt::format("{} numbers, but mean has {}", result.deviation_.size(), result.mean_.size()));
+  const Range columns = within(0, static_cast<double>(result.mean_.size()) - 1);
+  for (const JsonPlace& kept : place["kept"].list()) {
+    const int column = static_cast<int>(kept.count(columns));
+    if (!result.kept_.empty() && column <= result.kept_.back())
+      kept.fail("columns do not rise; the model file is damaged");
+    if (!(result.deviation_[column] > 0))
+      kept.fail("a column whose deviation is not above 0; the model file is damaged");
+    result.kept_.push_back(column);
   }
   return result;
 }

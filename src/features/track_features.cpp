@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/json_place.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -291,12 +292,13 @@ nlohmann::json TrackFeatures::to_json() const {
   return {{"joints", joint_names_}, {"root", root_name_}};
 }
 
-TrackFeatures TrackFeatures::from_json(const nlohmann::json& json) {
+TrackFeatures TrackFeatures::from_json(const nlohmann::json& json, const std::string& where) {
+  const JsonPlace place(json, where);
+  const std::vector<std::string> joints = place["joints"].texts();
   try {
-    return TrackFeatures(json.at("joints").get<std::vector<std::string>>(),
-                         json.at("root").get<std::string>());
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(fmt::format("track features: {}; the model file is damaged", error.what()));
+    return TrackFeatures(joints, place["root"].text());
+  } catch (const InputError& error) {
+    place["joints"].fail(error.what());
   }
 }
 

@@ -10,7 +10,7 @@ namespace mcdbn {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
-constexpr int kRounds = 3;
+constexpr int kReweightings = 3;
 /// A variance that says nothing of any number of pixels or of rays.
 constexpr double kAnything = 1e8;
 
@@ -95,7 +95,7 @@ std::vector<Measured> smooth_series(const std::vector<Measured>& series,
                                     const SeriesDynamics& dynamics) {
   std::vector<Measured> used = series;
   std::vector<State> states = posterior(used, dynamics);
-  for (int round = 1; round < kRounds; ++round) {
+  for (int round = 1; round < kReweightings; ++round) {
     for (std::size_t t = 0; t < series.size(); ++t) {
       if (std::isinf(series[t].variance)) continue;
       used[t].variance = series[t].variance / weight_of(series[t], used[t], states[t]);

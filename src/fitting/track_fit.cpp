@@ -4,36 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "camera/track_rays.hpp"
-#include "fitting/joint_fit.hpp"
-#include "fitting/planted_velocity.hpp"
+#include "fitting/clip_evidence.hpp"
+#include "fitting/prior_deviations.hpp"
 #include "fitting/root_trajectory.hpp"
+#include "fitting/seen_noise.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
-#include "motion/foot_joints.hpp"
 
 namespace mcdbn {
 namespace {
 
-/// How far the joints of other people are from where the model's skeleton has them. Measured on
-/// held-out walkers on the model's skeleton: with 0.07 the fit takes their error from 42 to 38 and
-/// from 34 to 33 mm, of which proportions are 28 and 26; trusted to 0.025 it makes the latter
-/// larger.
-constexpr double kProportions_m = 0.07;
-
-/// What is wrong with the root's velocity where PosePrior::deviation is 1: the acceleration of the
-/// error, on a 1.7 m body.
+/// What is wrong with the root's velocity where the prior says no deviation and no fit follows.
 constexpr double kVelocityError_m_s2 = 1.0;
-
-/// What is wrong with the root's velocity as planted feet tell it. Where the track is off by 5 px
-/// the feet of held-out walkers slide 1.6 times as fast as in the capture without it, 1.2 times
-/// with it, and on clean tracks 1.2 times either way; with less the root's position suffers.
-constexpr double kPlantedError_m_s2 = 0.5;
-
-constexpr double kSmallestDeviation = 1e-6;
 
 /// The joints that the model looks at: others, such as a node that stays on the floor, may move in
 /// the file unlike anything that a camera sees.
@@ -43,39 +28,11 @@ std::vector<std::string> tracked_joints(const TrackFeatures& features) {
   return names;
 }
 
-/// RMS of some standardized deviations. @param columns of the features before standardizing; those
-/// that the standardizer dropped do not count. 1 if none is left.
-double rms_deviation(const Eigen::Ref<const MatrixF>& deviation, const Standardizer& scale,
-                     int first, int count) {
-  double squares = 0, number = 0;
-  for (std::size_t k = 0; k < scale.kept_columns().size(); ++k) {
-    const int column = scale.kept_columns()[k];
-    if (column < first || column >= first + count) continue;
-    const auto of_feature = deviation.col(static_cast<Eigen::Index>(k)).cast<double>();
-    squares += of_feature.squaredNorm();
-    number += static_cast<double>(of_feature.size());
-  }
-  return number > 0 ? std::max(kSmallestDeviation, std::sqrt(squares / number)) : 1.0;
-}
-
-/// @return [frames x orientations]
-MatrixD turn_deviations_rad(const MatrixF& deviation, const Modalities& features, double turn_deg) {
-  const auto turns = static_cast<int>(features.pose_features.joints().size());
-  const double turn_rad = turn_deg * std::numbers::pi / 180;
-  MatrixD result(deviation.rows(), turns);
-  for (Eigen::Index t = 0; t < result.rows(); ++t) {
-    for (int turn = 0; turn < turns; ++turn) {
-      result(t, turn) = turn_rad * rms_deviation(deviation.row(t), features.pose_scale,
-                                                 PoseFeatures::kBlock * turn, PoseFeatures::kBlock);
-    }
-  }
-  return result;
-}
-
 void check(const PosePrior& prior, const Modalities& features, const Track2d& track) {
   const auto frames = prior.mean.rows(), columns = prior.mean.cols();
-  if (columns != features.pose_scale.output_dimension() || prior.deviation.rows() != frames ||
-      prior.deviation.cols() != columns || frames != track.frames()) {
+  const bool same = prior.deviation.rows() == frames && prior.deviation.cols() == columns;
+  if (columns != features.pose_scale.output_dimension() || frames != track.frames() ||
+      (prior.has_deviation() && !same)) {
     throw ShapeError(fmt::format(
         "fit_to_track: a mean of {}x{} and a deviation of {}x{}, expected {} columns, and as many "
         "rows as the track has frames ({})",
@@ -101,24 +58,34 @@ class ClipFit {
     velocity_ = file_units_per_metre(skeleton_) *
                 modalities.pose_features.root_features(features_).rightCols(3) *
                 camera_.camera_from_world;
-    velocity_error_m_s2_ =
-        kVelocityError_m_s2 * rms_deviation(prior.deviation, modalities.pose_scale,
-                                            modalities.pose_features.velocity_feature(), 3);
+    velocity_error_m_s2_ = prior.has_deviation() ? root_acceleration_deviation_m_s2(
+                                                       prior, modalities, TrackFitSettings{})
+                                                 : kVelocityError_m_s2;
   }
 
   void place_root() {
     root_ = root_trajectory(relative_positions(), track_, camera_, velocity_, velocity_error_m_s2_);
   }
 
-  void turn_joints(const MatrixD& turn_deviation_rad, double track_noise_px,
-                   const TrackFitSettings& settings) {
-    features_ = fit_joints(modalities_.pose_features, features_, turn_deviation_rad, motion(),
-                           track_, track_noise_px, camera_, settings);
-    const MatrixD positions = relative_positions();
-    root_ = root_trajectory(positions, track_, camera_, velocity_, velocity_error_m_s2_);
-    const MatrixD planted = planted_velocity(motion(), skeleton_.find(modalities_.root_name()),
-                                             foot_joints(skeleton_), velocity_);
-    root_ = root_trajectory(positions, track_, camera_, planted, kPlantedError_m_s2);
+  /// @param own_skeleton else its proportions are unknown
+  void meet_track(const PosePrior& prior, double track_noise_px, bool own_skeleton,
+                  const TrackFitSettings& settings) {
+    ClipEvidence evidence(modalities_.pose_features, motion(), travelled(), track_, camera_);
+    PosteriorClip& clip = evidence.clip;
+    clip.turn_deviation_rad = turn_deviations_rad(prior, modalities_, settings);
+    clip.root_m_s2 = root_acceleration_deviation_m_s2(prior, modalities_, settings);
+    clip.body_unknown = !own_skeleton;
+    SeenNoise noise(track_noise_px, camera_, evidence.usual_depth_m(), own_skeleton, settings);
+    const MatrixD mean = features_;
+    PosteriorPoint point = PosteriorPoint::zero(clip);
+    for (std::size_t solution = 0; solution < settings.solutions; ++solution) {
+      evidence.find_planted(motion());
+      point = most_likely(clip, noise.rays(), settings, std::move(point));
+      features_ = evidence.turned(mean, point);
+      root_ = evidence.root(point);
+      if (!own_skeleton) skeleton_ = evidence.body(point);
+      if (!noise.learn(evidence.usual_residual(point))) break;
+    }
   }
 
   Motion motion() const { return decoded(root_); }
@@ -143,6 +110,14 @@ class ClipFit {
   const Camera& camera() const { return camera_; }
 
  private:
+  /// [frames x 3] world axes, file units
+  MatrixD travelled() const {
+    MatrixD way = MatrixD::Zero(velocity_.rows(), 3);
+    for (Eigen::Index t = 1; t < way.rows(); ++t)
+      way.row(t) = way.row(t - 1) + velocity_.row(t) / track_.fps;
+    return way;
+  }
+
   Motion decoded(const MatrixD& root) const {
     return modalities_.pose_features.decode(features_, camera_.camera_from_world, skeleton_,
                                             modalities_.fps, root);
@@ -172,11 +147,6 @@ class ClipFit {
 
 }  // namespace
 
-PosePrior PosePrior::around(MatrixF mean) {
-  MatrixF deviation = MatrixF::Ones(mean.rows(), mean.cols());
-  return {std::move(mean), std::move(deviation)};
-}
-
 FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, const Track2d& track,
                         const KnownOfClip& known, const std::optional<TrackFitSettings>& settings) {
   check(prior, features, track);
@@ -184,10 +154,7 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
   ClipFit clip(prior, features, track, known);
   clip.place_root();
   if (settings) {
-    TrackFitSettings allowing = *settings;
-    if (!known.skeleton) allowing.proportions_m = std::max(allowing.proportions_m, kProportions_m);
-    clip.turn_joints(turn_deviations_rad(prior.deviation, features, allowing.turn_deg),
-                     track_noise_px(track), allowing);
+    clip.meet_track(prior, track_noise_px(track), known.skeleton.has_value(), *settings);
   }
   FittedClip result;
   result.shown = clip.shown(track);

@@ -22,6 +22,7 @@ TurnedBones::TurnedBones(const PoseFeatures& features, const Skeleton& skeleton,
     // Another skeleton may hang its joints otherwise; who comes later is nobody's parent.
     parents_.push_back(parent < static_cast<int>(turn) ? parent : -1);
   }
+  for (const Joint& joint : skeleton.joints) turn_above_.push_back(turn_at_or_above(joint.parent));
   for (const int joint : joints) {
     std::vector<Bone> way;
     for (int lower = joint; lower != root_ && lower >= 0; lower = skeleton.joints[lower].parent) {

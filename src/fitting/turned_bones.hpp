@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/frame_fit.hpp"
+#include "fitting/lever.hpp"
 #include "mcdbn/features/pose_features.hpp"
 
 namespace mcdbn {
@@ -21,6 +21,8 @@ class TurnedBones {
   int root() const { return root_; }
   /// By orientation, the one that it hangs from, or −1.
   const std::vector<int>& parents() const { return parents_; }
+  /// By joint of the skeleton, the orientation that turns the bone to it, or −1.
+  const std::vector<int>& turn_above() const { return turn_above_; }
   /// By joint, its levers as they lie in one pose.
   std::vector<std::vector<Lever>> levers(const WorldPose& pose,
                                          const Eigen::Matrix3d& camera_from_world) const;
@@ -30,6 +32,7 @@ class TurnedBones {
     int turn, upper, lower;  ///< the orientation and the joints at both ends
   };
   int root_ = 0;
+  std::vector<int> turn_above_;
   std::vector<int> parents_;
   std::vector<std::vector<Bone>> ways_;
 };

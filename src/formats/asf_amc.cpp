@@ -13,7 +13,7 @@
 namespace mcdbn {
 namespace {
 
-using bvh::Cursor, bvh::same_word, bvh::shown;
+using bvh::Cursor, bvh::same_word;
 
 /// What CMU captured with; an AMC does not say.
 constexpr double kRate_hz = 120;

@@ -15,7 +15,7 @@
 namespace mcdbn {
 namespace {
 
-using bvh::Cursor, bvh::same_word, bvh::shown;
+using bvh::Cursor, bvh::same_word;
 
 std::optional<int> freedom_of(std::string_view word) {
   constexpr std::array<std::string_view, 6> kWords{"rx", "ry", "rz", "tx", "ty", "tz"};

@@ -8,6 +8,7 @@
 
 #include "base/text_file.hpp"
 #include "formats/bvh_parser.hpp"
+#include "mcdbn/motion/frame_rate.hpp"
 
 namespace mcdbn {
 namespace {
@@ -32,7 +33,9 @@ MotionHeader parse_motion_header(Cursor& cursor) {
   cursor.expect("Frame", kAdvice);
   cursor.expect("Time:", kAdvice);
   header.frame_time_s = cursor.number("the seconds of one frame");
-  if (!(header.frame_time_s > 0)) cursor.fail("the frame time must be more than 0 seconds");
+  if (!kFrameRate_hz.contains(1 / header.frame_time_s))
+    cursor.fail(fmt::format("the frame time must be at least {:g} and at most {:g} seconds",
+                            1 / kFrameRate_hz.most, 1 / kFrameRate_hz.least));
   return header;
 }
 

@@ -28,15 +28,6 @@ bool same_word(std::string_view a, std::string_view b) {
                     [](char x, char y) { return lower(x) == lower(y); });
 }
 
-std::string shown(std::string_view word) {
-  constexpr std::size_t kLongest = 40;
-  std::string text(word.substr(0, kLongest));
-  for (char& c : text) {
-    if (!std::isprint(static_cast<unsigned char>(c))) c = '?';
-  }
-  return fmt::format("'{}{}'", text, word.size() > kLongest ? "..." : "");
-}
-
 Cursor::Cursor(std::string_view text, std::string name, std::vector<std::string>* warnings)
     : text_(text), name_(std::move(name)), warnings_(warnings) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/shown.hpp"
 #include "mcdbn/motion/skeleton.hpp"
 
 namespace mcdbn::bvh {
@@ -43,7 +44,6 @@ class Cursor {
 
 bool same_word(std::string_view a, std::string_view b);
 /// A word from the file as a message can show it: shortened, printable, in quotes.
-std::string shown(std::string_view word);
 
 /// The name of a channel in a CHANNELS line.
 std::string_view channel_word(Channel channel);

@@ -83,14 +83,18 @@ void set_fisheye(Camera& camera, std::vector<double> values, const std::string& 
 }
 
 int pixels_of(double value, const std::string& where) {
-  if (!(value >= 1 && value <= 1e6 && value == std::floor(value)))
+  if (!Camera::kImage_px.contains(value) || value != std::floor(value))
     throw InputError(where + " is not a whole number above 0; give the image's size in pixels");
   return static_cast<int>(value);
 }
 
 void guess_size(Camera& camera) {
-  camera.width_px = std::max(1, static_cast<int>(std::lround(2 * camera.cx_px)));
-  camera.height_px = std::max(1, static_cast<int>(std::lround(2 * camera.cy_px)));
+  const auto around = [](double centre_px) {
+    const Range range = Camera::kImage_px;
+    return static_cast<int>(std::lround(std::clamp(2 * centre_px, range.least, range.most)));
+  };
+  camera.width_px = around(camera.cx_px);
+  camera.height_px = around(camera.cy_px);
 }
 
 Eigen::Matrix3d rotation_of(const std::vector<double>& values, const std::string& where) {

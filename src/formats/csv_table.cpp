@@ -6,6 +6,7 @@
 #include <cctype>
 #include <limits>
 
+#include "base/shown.hpp"
 #include "formats/csv_text.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -48,7 +49,7 @@ double CsvTable::number_in(const Line& line, std::size_t column) const {
   const std::string_view cell = column < line.cells.size() ? line.cells[column] : "";
   if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
   const std::optional<double> value = number(cell);
-  if (!value) fail(line, fmt::format("'{}' in column {} is not a number", cell, column + 1));
+  if (!value) fail(line, fmt::format("{} in column {} is not a number", shown(cell), column + 1));
   return *value;
 }
 

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/shown.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -37,7 +38,7 @@ std::optional<double> number(std::string_view text) {
 void require_csv_name(const std::string& name) {
   if (name.find_first_of(",;\t\n\r#\"") == std::string::npos && trimmed(name) == name) return;
   throw InputError(
-      fmt::format("joint name '{}' cannot stand in a CSV header; rename the joint", name));
+      fmt::format("joint name {} cannot stand in a CSV header; rename the joint", shown(name)));
 }
 
 }  // namespace mcdbn

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <set>
 
+#include "base/shown.hpp"
 #include "formats/frame_numbers.hpp"
 
 namespace mcdbn {
@@ -43,7 +44,7 @@ ImageNumbers::ImageNumbers(const JsonPlace& list, const std::string& key)
 long long ImageNumbers::of(const JsonPlace& place, const std::string& name) const {
   const auto number = numbers_.find(name);
   if (number == numbers_.end() || !number->second)
-    place.fail(fmt::format("no number of a frame in '{}'", name));
+    place.fail(fmt::format("no number of a frame in {}", shown(name)));
   return *number->second;
 }
 

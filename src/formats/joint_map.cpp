@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "base/shown.hpp"
 #include "formats/toml_texts.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -27,7 +28,7 @@ JointMap read_joint_map(const std::filesystem::path& path) {
     const auto role = joint_role_of(key.str());
     if (!role)
       fail_at(path, key.source(),
-              fmt::format("no role is called {}; there are: {}", key.str(), role_names()));
+              fmt::format("no role is called {}; there are: {}", shown(key.str()), role_names()));
     map[*role] = text_of(path, key.str(), node, "the name of a joint");
   }
   if (map.empty()) throw InputError(fmt::format("{}:1: no roles; {}", path.string(), kExample));

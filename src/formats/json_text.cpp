@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 #include "mcdbn/base/errors.hpp"
 
@@ -14,15 +12,6 @@ namespace mcdbn {
 using nlohmann::json;
 
 namespace {
-
-std::string kind_of(const json& value) {
-  if (value.is_null()) return "nothing (null)";
-  if (value.is_boolean()) return "a truth value";
-  if (value.is_string()) return "a text";
-  if (value.is_array()) return "a list";
-  if (value.is_object()) return "an object";
-  return "a number";
-}
 
 /// The text with null for Python's NaN and Infinity outside of strings.
 std::string without_nan(std::string_view text) {
@@ -86,66 +75,6 @@ json parse_lines(std::string_view text, const std::string& file) {
 }
 
 }  // namespace
-
-void JsonPlace::fail(const std::string& what) const {
-  throw InputError(path_.empty() ? fmt::format("{}: {}", file_, what)
-                                 : fmt::format("{}: {}: {}", file_, path_, what));
-}
-
-JsonPlace JsonPlace::operator[](const std::string& key) const {
-  if (!is_object()) fail(fmt::format("{} where an object is expected", kind_of(*value_)));
-  const auto found = value_->find(key);
-  if (found == value_->end()) fail(fmt::format("no key '{}'", key));
-  return {*found, *this, path_.empty() ? key : "." + key};
-}
-
-JsonPlace JsonPlace::at(std::size_t index) const {
-  if (!is_list()) fail(fmt::format("{} where a list is expected", kind_of(*value_)));
-  if (index >= value_->size()) fail(fmt::format("{} values; more are needed", value_->size()));
-  return {(*value_)[index], *this, fmt::format("[{}]", index)};
-}
-
-std::vector<JsonPlace> JsonPlace::list() const {
-  if (!is_list()) fail(fmt::format("{} where a list is expected", kind_of(*value_)));
-  std::vector<JsonPlace> places;
-  for (std::size_t i = 0; i < value_->size(); ++i) places.push_back(at(i));
-  return places;
-}
-
-std::vector<std::string> JsonPlace::keys() const {
-  if (!is_object()) fail(fmt::format("{} where an object is expected", kind_of(*value_)));
-  std::vector<std::string> names;
-  for (const auto& [key, value] : value_->items()) names.push_back(key);
-  return names;
-}
-
-double JsonPlace::number() const {
-  if (value_->is_null()) return std::numeric_limits<double>::quiet_NaN();
-  if (!value_->is_number()) fail(fmt::format("{} where a number is expected", kind_of(*value_)));
-  return value_->get<double>();
-}
-
-long long JsonPlace::whole_number() const {
-  const double value = value_->is_null() ? 0.5 : number();
-  if (value != std::floor(value) || std::abs(value) > 1e15) fail("no usable whole number");
-  return static_cast<long long>(value);
-}
-
-std::string JsonPlace::text() const {
-  if (!value_->is_string()) fail(fmt::format("{} where a text is expected", kind_of(*value_)));
-  return value_->get<std::string>();
-}
-
-std::vector<double> JsonPlace::numbers() const {
-  if (!is_list()) fail(fmt::format("{} where a list of numbers is expected", kind_of(*value_)));
-  std::vector<double> result;
-  result.reserve(value_->size());
-  for (std::size_t i = 0; i < value_->size(); ++i) {
-    const json& value = (*value_)[i];
-    result.push_back(value.is_number() ? value.get<double>() : at(i).number());
-  }
-  return result;
-}
 
 json parse_json(std::string_view text, const std::string& file) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);

@@ -1,49 +1,12 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "base/json_place.hpp"
 
 namespace mcdbn {
-
-/// A place in a JSON file, which knows its way there: what is wrong is told as `file: key's path:
-/// what`. It looks at the value and does not own it.
-class JsonPlace {
- public:
-  JsonPlace(const nlohmann::json& value, std::string file)
-      : value_(&value), file_(std::move(file)) {}
-
-  [[noreturn]] void fail(const std::string& what) const;
-
-  const nlohmann::json& value() const { return *value_; }
-  bool is_list() const { return value_->is_array(); }
-  bool is_object() const { return value_->is_object(); }
-  bool has(const char* key) const { return is_object() && value_->contains(key); }
-  std::size_t size() const { return value_->size(); }
-
-  /// @throws InputError if this is no object, or has no such key
-  JsonPlace operator[](const std::string& key) const;
-  /// @throws InputError if this is no list, or shorter
-  JsonPlace at(std::size_t index) const;
-  /// All values of a list. @throws InputError if this is none
-  std::vector<JsonPlace> list() const;
-  /// The names of an object's values. @throws InputError if this is none
-  std::vector<std::string> keys() const;
-
-  double number() const;  ///< null is NaN
-  long long whole_number() const;
-  std::string text() const;
-  std::vector<double> numbers() const;  ///< of a list; null is NaN
-
- private:
-  JsonPlace(const nlohmann::json& value, const JsonPlace& from, const std::string& step)
-      : value_(&value), file_(from.file_), path_(from.path_ + step) {}
-
-  const nlohmann::json* value_;
-  std::string file_, path_;
-};
 
 /// Python's NaN and Infinity are read, too, as null. JSON lines, a value in each line, are a list
 /// of them. @throws InputError `file:line: what`

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "base/shown.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/landmarks.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -131,7 +132,7 @@ class ColumnsReader {
     if (frame_) {
       const double said = table_.number_in(line, *frame_);
       if (!(std::abs(said) < 1e15) || said != std::floor(said))
-        table_.fail(line, fmt::format("'{}' is no number of a frame", line.cells[*frame_]));
+        table_.fail(line, fmt::format("{} is no number of a frame", shown(line.cells[*frame_])));
       number = static_cast<long long>(said);
     }
     people_.frames[number].push_back(std::move(person));

@@ -11,6 +11,8 @@
 
 #include "formats/frame_numbers.hpp"
 #include "formats/landmarks.hpp"
+#include "mcdbn/camera/camera.hpp"
+#include "mcdbn/motion/frame_rate.hpp"
 
 namespace mcdbn {
 namespace {
@@ -75,16 +77,17 @@ class LandmarkReader {
  private:
   /// What an object says beside its frames.
   void read_film(const JsonPlace& content) {
-    const auto above_zero = [&](const auto& keys) -> std::optional<double> {
+    const auto number = [&](const auto& keys, const Range& range) -> std::optional<double> {
       const auto said = any_of_keys(content, keys);
       if (!said || !said->value().is_number()) return {};
-      if (!(said->number() > 0 && said->number() < 1e6)) said->fail("no usable number above 0");
+      if (!range.contains(said->number())) said->fail("must be " + range.text());
       return said->number();
     };
-    people_.fps = above_zero(std::array{"fps", "frame_rate", "frameRate"});
-    const auto width = above_zero(std::array{"width", "image_width", "imageWidth"});
-    const auto height = above_zero(std::array{"height", "image_height", "imageHeight"});
-    if (width && height && *width >= 1 && *height >= 1)
+    people_.fps = number(std::array{"fps", "frame_rate", "frameRate"}, kFrameRate_hz);
+    const auto width = number(std::array{"width", "image_width", "imageWidth"}, Camera::kImage_px);
+    const auto height =
+        number(std::array{"height", "image_height", "imageHeight"}, Camera::kImage_px);
+    if (width && height)
       people_.image_size = ImageSize{static_cast<int>(*width), static_cast<int>(*height)};
   }
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "base/shown.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/csv_text.hpp"
 #include "formats/landmarks.hpp"
@@ -126,7 +127,7 @@ class RowsReader {
   long long whole(const CsvTable::Line& line, std::size_t column) const {
     const double value = table_.number_in(line, column);
     if (!(std::abs(value) < 1e15) || value != std::floor(value))
-      table_.fail(line, fmt::format("'{}' is no whole number", line.cells[column]));
+      table_.fail(line, fmt::format("{} is no whole number", shown(line.cells[column])));
     return static_cast<long long>(value);
   }
 

@@ -8,12 +8,15 @@
 #include <optional>
 #include <string_view>
 
+#include "base/shown.hpp"
 #include "base/text_file.hpp"
 #include "formats/csv_text.hpp"
 #include "formats/joint_naming.hpp"
 #include "formats/track_formats.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/camera.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
+#include "mcdbn/motion/frame_rate.hpp"
 
 namespace mcdbn {
 
@@ -52,6 +55,7 @@ class TrackReader {
 
   bool says_fps() const { return says_fps_; }
   bool says_size() const { return says_width_ && says_height_; }
+  const std::vector<std::string>& notices() const { return notices_; }
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
@@ -66,8 +70,10 @@ class TrackReader {
       const std::string_view key = word.substr(0, equals);
       if (key != "fps" && key != "width_px" && key != "height_px") continue;
       const double value = number(word.substr(equals + 1)).value_or(kNan);
-      if (!(value > 0) || (key != "fps" && (value != std::floor(value) || value > 1e6))) {
-        fail(fmt::format("{} has no usable value; write a number above 0, as in {}=30", word, key));
+      const Range range = key == "fps" ? kFrameRate_hz : Camera::kImage_px;
+      if (!range.contains(value) || (key != "fps" && value != std::floor(value))) {
+        fail(
+            fmt::format("{} has no usable value; write a number of {}", shown(word), range.text()));
       }
       (key == "fps" ? says_fps_ : key == "width_px" ? says_width_ : says_height_) = true;
       if (key == "fps") track_.fps = value;
@@ -87,7 +93,7 @@ class TrackReader {
         return other.quantity == column.quantity && other.joint == column.joint;
       };
       if (std::any_of(columns_.begin(), columns_.end(), same)) {
-        fail(fmt::format("column {} comes twice; remove one", name));
+        fail(fmt::format("column {} comes twice; remove one", shown(name)));
       }
       columns_.push_back(column);
     }
@@ -112,7 +118,7 @@ class TrackReader {
       }
       return {quantity, index};
     }
-    fail(fmt::format("unknown column '{}'; columns end in _x_px, _y_px or _confidence", name));
+    fail(fmt::format("unknown column {}; columns end in _x_px, _y_px or _confidence", shown(name)));
   }
 
   bool has_column(Quantity quantity, int joint) const {
@@ -126,8 +132,8 @@ class TrackReader {
     for (const auto& [quantity, ending] :
          {std::pair{Quantity::x, "_x_px"}, std::pair{Quantity::y, "_y_px"}}) {
       if (!has_column(quantity, joint)) {
-        fail(fmt::format("joint {0} has no column {0}{1}; add it or remove the joint", name,
-                         ending));
+        fail(fmt::format("joint {} has no column {}; add it or remove the joint", shown(name),
+                         shown(name + std::string(ending))));
       }
     }
   }
@@ -142,9 +148,9 @@ class TrackReader {
       const std::optional<double> value = cells[k].empty() ? kNan : number(cells[k]);
       if (!value) {
         fail(
-            fmt::format("'{}' in column {} is not a number; leave the cell empty where the joint "
+            fmt::format("{} in column {} is not a number; leave the cell empty where the joint "
                         "was not seen",
-                        cells[k], k + 1));
+                        shown(cells[k]), k + 1));
       }
       row[static_cast<Eigen::Index>(k)] = *value;
       if (columns_[k].quantity == Quantity::confidence && *value < 0) {
@@ -185,9 +191,28 @@ class TrackReader {
     track_.y_px = gone.select(kNan, track_.y_px);
     track_.confidence = gone.select(0.0, track_.confidence);
     if (columns_.front().quantity == Quantity::time && frames > 1) {
-      track_.fps = static_cast<double>(frames - 1) / (rows_.back()[0] - rows_.front()[0]);
-      says_fps_ = true;
+      take_rate_of_times();
     }
+  }
+
+  void take_rate_of_times() {
+    const auto time_s = [&](std::size_t row) { return rows_[row][0]; };
+    track_.fps = static_cast<double>(rows_.size() - 1) / (time_s(rows_.size() - 1) - time_s(0));
+    if (!kFrameRate_hz.contains(track_.fps))
+      fail(fmt::format("time_s makes {:g} frames a second, which must be {}; write seconds",
+                       track_.fps, kFrameRate_hz.text()));
+    says_fps_ = true;
+    double shortest_s = time_s(1) - time_s(0), longest_s = shortest_s;
+    for (std::size_t row = 1; row < rows_.size(); ++row) {
+      shortest_s = std::min(shortest_s, time_s(row) - time_s(row - 1));
+      longest_s = std::max(longest_s, time_s(row) - time_s(row - 1));
+    }
+    constexpr double kEven = 1.5;  // a frame that is left out makes 2
+    if (longest_s > kEven * shortest_s)
+      notices_.push_back(
+          fmt::format("time_s goes on by {:.4g} to {:.4g} s: frames are taken as even, {:.4g} a "
+                      "second; put in a line for each that is left out",
+                      shortest_s, longest_s, track_.fps));
   }
 
   std::string name_;
@@ -196,6 +221,7 @@ class TrackReader {
   Track2d track_;
   std::vector<Column> columns_;
   std::vector<RowVectorD> rows_;
+  std::vector<std::string> notices_;
 };
 
 std::string cell(double value) {
@@ -241,6 +267,7 @@ SeenPeople read(const TrackSource& source) {
     };
     people.frames[frame] = {{row_of(track.x_px), row_of(track.y_px), row_of(track.confidence), 1}};
   }
+  people.notices = reader.notices();
   if (reader.says_fps()) people.fps = track.fps;
   people.image_size = ImageSize{track.width_px, track.height_px};
   people.image_size_is_said = reader.says_size();

@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "base/shown.hpp"
 #include "base/text_file.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/csv_text.hpp"
@@ -82,12 +83,14 @@ class DeepLabCutReader {
       const std::string quantity = lower(coords->cells[k]);
       if (quantity.empty()) continue;  // of the name of an image that is cut into cells
       if (quantity != "x" && quantity != "y" && quantity != "likelihood")
-        table_.fail(*coords, fmt::format("coords '{}'; x, y and likelihood are known", quantity));
+        table_.fail(*coords,
+                    fmt::format("coords {}; x, y and likelihood are known", shown(quantity)));
       const std::size_t individual =
           individuals == nullptr ? 0 : index_in(individuals_, individuals->cells[k]);
       columns_.push_back({k, individual, index_in(parts_, parts->cells[k]), quantity.front()});
       if (!known.emplace(individual, columns_.back().part, quantity.front()).second)
-        table_.fail(*coords, fmt::format("{} of {} comes twice", quantity, parts->cells[k]));
+        table_.fail(*coords,
+                    fmt::format("{} of {} comes twice", shown(quantity), shown(parts->cells[k])));
     }
     if (columns_.empty()) table_.fail(*coords, "no columns x and y");
     if (individuals_.empty()) individuals_.emplace_back();

@@ -3,8 +3,6 @@
 // Facts: OpenPose's doc/02_output.md.
 #include <fmt/format.h>
 
-#include <system_error>
-
 #include "base/text_file.hpp"
 #include "formats/frame_numbers.hpp"
 #include "formats/joint_naming.hpp"
@@ -110,26 +108,20 @@ std::string frame_text(const Track2d& track, int frame) {
   return json{{"version", 1.3}, {"people", people}}.dump();
 }
 
-/// A folder beside it is filled, then renamed: no half of a track is left behind.
+/// A folder of a file for each frame.
 void write(const fs::path& path, const Track2d& track) {
   set_to_write(track, kSets, kName);
-  const fs::path temporary = path.string() + ".tmp";
-  std::error_code error;
-  if (fs::exists(path, error) && !fs::is_empty(path, error))
-    throw InputError(fmt::format(
-        "{}: is there already; the track is a folder of files, give a new name", path.string()));
-  fs::remove_all(temporary, error);
-  make_folder(temporary);
+  OutputFile folder(path);
+  make_folder(folder.temporary());
   const std::string name =
       path.filename().empty() ? path.parent_path().filename().string() : path.filename().string();
-  for (int frame = 0; frame < track.frames(); ++frame)
-    write_text_file(temporary / fmt::format("{}_{:012}_keypoints.json", name, frame),
-                    frame_text(track, frame));
-  fs::rename(temporary, path, error);
-  if (error) {
-    fs::remove_all(temporary, error);
-    throw InputError(fmt::format("{}: the folder cannot be made", path.string()));
+  {
+    const OutputsAtOnce into_folder;
+    for (int frame = 0; frame < track.frames(); ++frame)
+      write_text_file(folder.temporary() / fmt::format("{}_{:012}_keypoints.json", name, frame),
+                      frame_text(track, frame));
   }
+  folder.put_in_place();
 }
 
 }  // namespace

@@ -11,7 +11,9 @@
 
 #include "formats/people_following.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/camera.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
+#include "mcdbn/motion/frame_rate.hpp"
 
 namespace mcdbn {
 namespace {
@@ -91,7 +93,7 @@ ImageSize guessed_image(const Extent& extent) {
     if (holds(short_side, long_side)) return {short_side, long_side};
   }
   const auto whole = [](double extent) {
-    return static_cast<int>(std::ceil(std::min(extent, 1e6)));
+    return static_cast<int>(std::ceil(std::min(extent, Camera::kImage_px.most)));
   };
   return {std::max(whole(extent.most_x), 1), std::max(whole(extent.most_y), 1)};
 }
@@ -165,7 +167,10 @@ void limit_confidences(Frames& frames, std::vector<std::string>& notices) {
   } else {
     notices.push_back(fmt::format("confidences up to {:.4g} are cut at 1", *greatest));
   }
-  for_each_joint(frames, [&](double, double, double& c) { c = std::min(c / scale, 1.0); });
+  // What was seen stays seen, however small the share is that is left.
+  constexpr double kLeast = std::numeric_limits<double>::min();
+  for_each_joint(frames,
+                 [&](double, double, double& c) { c = std::clamp(c / scale, kLeast, 1.0); });
 }
 
 Track2d track_of(const SeenPeople& seen, const Frames& frames, const Followed& followed) {
@@ -250,6 +255,11 @@ TrackReading tracks_of(SeenPeople seen, const TrackReadOptions& options, const s
     reading.notices.push_back(
         fmt::format("the file does not say its rate: {} frames a second are taken; say it by `fps`",
                     kUsualFps));
+  if (options.fps) check_range("`fps`", kFrameRate_hz, *options.fps);
+  if (!options.fps && seen.fps && !kUsualFrameRate_hz.contains(*seen.fps))
+    reading.notices.push_back(fmt::format(
+        "the file says {:.4g} frames a second; say another rate by `fps` if that is not so",
+        *seen.fps));
   const double fps = options.fps ? *options.fps : seen.fps.value_or(kUsualFps);
   std::vector<Followed> people =
       follow_people(frames, static_cast<int>(std::clamp(kPatience_s * fps, 1.0, 1000.0)));

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "base/shown.hpp"
 #include "base/text_file.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/csv_text.hpp"
@@ -67,7 +68,8 @@ class SleapReader {
     if (!frame_) table_.fail(header, fmt::format("no column {}", kFrame));
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       if (!nodes_[i].x || !nodes_[i].y)
-        table_.fail(header, fmt::format("node {0} has no columns {0}.x and {0}.y", names_[i]));
+        table_.fail(header,
+                    fmt::format("node {} has not both columns, .x and .y", shown(names_[i])));
     if (nodes_.empty()) table_.fail(header, "no nodes: columns NODE.x and NODE.y");
   }
 
@@ -85,7 +87,7 @@ class SleapReader {
     table_.require_cells(line, table_.lines().front().cells.size());
     const double frame = table_.number_in(line, *frame_);
     if (!(std::abs(frame) < 1e15) || frame != std::floor(frame))
-      table_.fail(line, fmt::format("{} is no number of a frame", line.cells[*frame_]));
+      table_.fail(line, fmt::format("{} is no number of a frame", shown(line.cells[*frame_])));
     SeenPerson person;
     for (const Node& node : nodes_) {
       person.x_px.push_back(table_.number_in(line, *node.x));

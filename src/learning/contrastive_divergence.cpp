@@ -137,6 +137,12 @@ void ContrastiveDivergence::run_chain(const Rows& rows, const CdRule& rule, cons
 
 void ContrastiveDivergence::after_update(const CdRule&) {}
 
+void ContrastiveDivergence::visit_state(TrainingState& state) {
+  optimizer_.visit_state(state);
+  state.matrix_if_any("activity", activity_,
+                      [this] { return Matrix(crbm_.device(), 1, crbm_.shape().hidden); });
+}
+
 void ContrastiveDivergence::pull_to_target(std::size_t count, const CdRule& rule) {
   constexpr float kActivityKept = 0.9F;
   const bool is_first = activity_.empty();

@@ -55,6 +55,7 @@ class ContrastiveDivergence : public LearningRule {
   /// step() by the rule that the settings say. @param visible one
   void learn(std::span<const Rows> visible, const LearningStep& step,
              LossAccumulator& losses) override;
+  void visit_state(TrainingState& state) override;
 
   /// One mini-batch: enqueues and returns. The draws are those of `key` with phase = Gibbs step for
   /// hidden units, kVisiblePhase + Gibbs step for visible ones.

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <string>
 
+#include "device/training_state.hpp"
+
 namespace mcdbn {
 
 /// Stops a run that blows up before it wastes an hour: the loss is not finite, or has grown to
@@ -12,6 +14,7 @@ class DivergenceGuard {
   DivergenceGuard(std::string stage, std::string advice);
   /// @throws DivergenceError naming stage, epoch, loss and what to lower
   void check(std::size_t epoch, double loss);
+  void visit_state(TrainingState& state) { state.number("best_loss", best_); }
 
  private:
   static constexpr double kGrowth = 4.0;

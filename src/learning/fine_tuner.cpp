@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "base/random_streams.hpp"
+#include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
 #include "learning/squared_loss.hpp"
 
@@ -69,8 +71,9 @@ void FineTuner::Direction::learn(std::span<const Rows> rows, const Matrix& all_s
 FineTuner::FineTuner(Device& device, const Mcdbn& start, const SynchronizedClips& clips,
                      const SequenceWindows& windows, const LearningSettings& settings,
                      const SequenceLossMaker& make_loss)
-    : settings_(settings.fine_tuning),
-      seed_(settings.seed),
+    : learning_(settings),
+      settings_(settings.fine_tuning),
+      shape_(windows),
       network_(device, start, settings_.mean_field_steps),
       windows_(device, clips, windows.rows()),
       sampler_(clips, windows, settings),
@@ -87,11 +90,21 @@ FineTuner::FineTuner(Device& device, const Mcdbn& start, const SynchronizedClips
   }
 }
 
+void FineTuner::see(const SynchronizedClips& clips) {
+  network_.device().finish();
+  windows_ = ClipWindows(network_.device(), clips, shape_.rows());
+  sampler_ = WindowSampler(clips, shape_, learning_);
+  for (const Direction& direction : directions_)
+    require(windows_.seen(direction.modality).empty() == (direction.seen == nullptr) ||
+                &direction == &directions_.front(),
+            "fine-tuning: other clips are not seen as the first were");
+}
+
 void FineTuner::step(std::size_t step) {
   index_.upload(network_.device(), sampler_.rows(step));
   const std::vector<Rows> rows = windows_.rows(index_);
   const auto kept = static_cast<float>(1.0 - settings_.dropout);
-  RandomKey key{seed_, static_cast<std::uint32_t>(step), random_streams::kDropout, 0};
+  RandomKey key{learning_.seed, static_cast<std::uint32_t>(step), random_streams::kDropout, 0};
   network_.clear_gradients();
   for (Direction& direction : directions_) {
     direction.learn(rows, windows_.seen(direction.modality), kept, key);
@@ -105,6 +118,14 @@ void FineTuner::step(std::size_t step) {
   // A young average is that of few steps.
   const double young = static_cast<double>(step + 1) / static_cast<double>(step + 10);
   network_.update(rule, kLongestGradient, static_cast<float>(std::min(settings_.average, young)));
+}
+
+void FineTuner::visit_state(TrainingState& state) {
+  network_.visit_state(state);
+  for (Direction& direction : directions_) {
+    TrainingState own = state.under(std::to_string(direction.modality) + ".");
+    direction.loss->visit_state(own);
+  }
 }
 
 void FineTuner::add_direction(const SequenceWindows& windows, std::size_t modality,

@@ -42,6 +42,8 @@ class FineTuner {
             const SequenceWindows& windows, const LearningSettings& settings,
             const SequenceLossMaker& make_loss);
 
+  /// Windows are those of these clips from now on; of the same modalities, as completely seen.
+  void see(const SynchronizedClips& clips);
   /// Mini-batch `step` of settings.fine_tuning.steps, counted from 0. Enqueues and returns.
   void step(std::size_t step);
   /// The weighted loss of the last modality since the last call.
@@ -50,8 +52,12 @@ class FineTuner {
   UnrolledPass& forward() { return directions_.front().pass; }
   /// The moving average of the parameters in their place, to be judged; again: back.
   void exchange_averages() { network_.exchange_averages(); }
-  /// The network that the moving average makes.
-  Mcdbn result() { return network_.averaged(); }
+  /// The moving average of the parameters, for result().
+  const Matrix& averages() const { return network_.averages(); }
+  /// The network that averages() of now or before make.
+  Mcdbn result(const Matrix& averages) { return network_.with_parameters(averages); }
+  /// What goes from one mini-batch to the next.
+  void visit_state(TrainingState& state);
 
  private:
   /// A modality predicted from all others, and its loss.
@@ -69,8 +75,9 @@ class FineTuner {
   void add_direction(const SequenceWindows& windows, std::size_t modality,
                      std::unique_ptr<SequenceLoss> loss, std::unique_ptr<Matrix> seen = nullptr);
 
+  const LearningSettings& learning_;
   const FineTuningSettings& settings_;
-  std::uint64_t seed_;
+  SequenceWindows shape_;
   UnrolledNetwork network_;
   ClipWindows windows_;
   WindowSampler sampler_;

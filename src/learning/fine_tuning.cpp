@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "device/pointwise.hpp"
+#include "learning/checkpoints.hpp"
 #include "learning/divergence_guard.hpp"
 #include "learning/fine_tuner.hpp"
 
@@ -67,15 +68,24 @@ class HeldOutRecord {
       return step - kept_.steps >= std::max(kLeastPatience, steps / 4);
     kept_.steps = step;
     kept_.loss = loss;
-    network_ = tuner.result();
+    if (averages_.empty()) averages_ = Matrix::like(tuner.averages());
+    averages_.copy_from(tuner.averages());
     return false;
   }
-  FineTuned take() { return {std::move(*network_), kept_}; }
+  FineTuned result(FineTuner& tuner) const { return {tuner.result(averages_), kept_}; }
+
+  void visit_state(TrainingState& state, const FineTuner& tuner) {
+    state.number("held_out.best_loss", best_loss_);
+    state.number("held_out.steps", kept_.steps);
+    state.number("held_out.loss", kept_.loss);
+    state.matrix_if_any("held_out.averages", averages_,
+                        [&] { return Matrix::like(tuner.averages()); });
+  }
 
  private:
-  double best_loss_ = std::numeric_limits<double>::infinity();
+  double best_loss_ = std::numeric_limits<double>::max();
   KeptStep kept_;
-  std::optional<Mcdbn> network_;
+  Matrix averages_;  ///< that were kept
 };
 
 EpochReport report_of(std::size_t done, const FineTuningSettings& settings, double loss,
@@ -95,7 +105,8 @@ EpochReport report_of(std::size_t done, const FineTuningSettings& settings, doub
 
 FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& source,
                     const SequenceSource* held_out, const LearningSettings& settings,
-                    const SequenceLossMaker& make_loss, const EpochObserver& observer) {
+                    const SequenceLossMaker& make_loss, const EpochObserver& observer,
+                    Checkpoints* checkpoints) {
   const std::size_t steps = settings.fine_tuning.steps;
   const SequenceWindows windows = sequence_windows(start, settings.fine_tuning);
   std::optional<HeldOutWindows> judged;
@@ -106,10 +117,25 @@ FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& so
   HeldOutRecord record;
   DivergenceGuard guard(
       kStage, fmt::format("lower `fine-tuning.rate` (now {:g})", settings.fine_tuning.rate));
+  const auto visit = [&](TrainingState& state) {
+    tuner.visit_state(state);
+    guard.visit_state(state);
+    record.visit_state(state, tuner);
+  };
+  StageRun run(device, checkpoints, kStage, visit, [](TrainingState&) {});
   auto last = std::chrono::steady_clock::now();
-  for (std::size_t done = 1; done <= steps; ++done) {
+  const std::size_t lasts = settings.fine_tuning.new_views_every;
+  std::size_t round = 0;
+  for (std::size_t done = run.done() + 1; done <= steps && !run.is_over(); ++done) {
+    if (const std::size_t due = lasts > 0 ? (done - 1) / lasts : 0; due != round) {
+      round = due;
+      if (source.renew(round)) tuner.see(source.sequences());
+    }
     tuner.step(done - 1);
-    if (done % kReportEvery != 0 && done != steps) continue;
+    if (done % kReportEvery != 0 && done != steps) {
+      run.after_step(done);
+      continue;
+    }
     const double loss = tuner.read_loss();
     guard.check(done, loss);
     const auto now = std::chrono::steady_clock::now();
@@ -119,9 +145,11 @@ FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& so
     last = std::chrono::steady_clock::now();
     if (observer) observer(report);
     if (judged && record.add(tuner, done, steps, *report.held_out_loss)) break;
+    run.after_step(done);
   }
-  if (judged) return record.take();
-  return {tuner.result(), {}};
+  run.end();
+  if (judged) return record.result(tuner);
+  return {tuner.result(tuner.averages()), {}};
 }
 
 }  // namespace mcdbn

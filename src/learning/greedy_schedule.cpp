@@ -7,6 +7,8 @@
 
 #include "base/random_streams.hpp"
 #include "device/pointwise.hpp"
+#include "learning/checkpoints.hpp"
+#include "learning/clip_weights.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/divergence_guard.hpp"
 #include "learning/history_noise.hpp"
@@ -53,26 +55,37 @@ struct Stage {
   /// The sequences that the machine sees, and by how many frames each is ahead of the window's row.
   std::vector<std::pair<const Matrix*, int>> sequences;
   std::function<LayerHealth()> health;  ///< called now and then for the report
+  Checkpoints::Visit machine;           ///< what the rule trains
   const Matrix* seen = nullptr;         ///< of the first sequence: LearningStep::seen
 };
 
 /// All epochs: shuffle, all mini-batches, one read of the losses, guard, report.
 /// @param random of the mini-batches' draws; the stage's own shuffles have another phase
+/// @param checkpoints none: nothing is kept
 void run_epochs(const Stage& stage, MinibatchSchedule& schedule, DivergenceGuard guard,
-                const RandomKey& random, const EpochObserver& observer) {
+                const RandomKey& random, const EpochObserver& observer, Checkpoints* checkpoints) {
   const std::size_t batches = schedule.batch_count();
-  LossAccumulator losses(stage.sequences.front().first->device(), stage.rule.loss_count(),
-                         schedule.batch());
+  Device& device = stage.sequences.front().first->device();
+  LossAccumulator losses(device, stage.rule.loss_count(), schedule.batch());
+  StageRun run(device, checkpoints, stage.name, stage.machine, [&](TrainingState& state) {
+    stage.rule.visit_state(state);
+    losses.visit_state(state);
+    guard.visit_state(state);
+  });
+  if (run.is_over()) return;
   EpochClock clock;
   LearningStep step;
   step.random = random;
+  step.random.step += static_cast<std::uint32_t>(run.done());
   step.seen = stage.seen;
+  std::size_t first = run.done() % batches;
   for (step.epoch = 1; step.epoch <= stage.epochs; ++step.epoch) {
     RandomKey shuffle = random;
     shuffle.phase = kShufflePhase;
     shuffle.step = static_cast<std::uint32_t>(step.epoch);
-    schedule.shuffle(shuffle);
-    for (std::size_t i = 0; i < batches; ++i) {
+    schedule.shuffle(shuffle);  // each goes on from the one before
+    if (step.epoch <= run.done() / batches) continue;
+    for (std::size_t i = first; i < batches; ++i) {
       std::vector<Rows> visible;
       for (const auto& [values, ahead] : stage.sequences)
         visible.push_back(Rows::indexed(*values, schedule.index(), schedule.first_of(i),
@@ -81,24 +94,29 @@ void run_epochs(const Stage& stage, MinibatchSchedule& schedule, DivergenceGuard
           static_cast<double>(step.random.step) / static_cast<double>(stage.epochs * batches);
       stage.rule.learn(visible, step, losses);
       ++step.random.step;
+      if (i + 1 < batches) run.after_step((step.epoch - 1) * batches + i + 1);
     }
     double loss = 0;
     const auto sums = losses.read_and_reset();
     for (const float sum : sums) loss += sum / static_cast<double>(batches * sums.size());
     guard.check(step.epoch, loss);
-    if (!observer) continue;
-    EpochReport report;
-    report.stage = stage.name;
-    report.epoch = step.epoch;
-    report.epochs = stage.epochs;
-    report.loss = loss;
-    report.windows_per_s = clock.windows_per_s(batches * schedule.batch());
-    report.stage_progress = static_cast<double>(step.epoch) / static_cast<double>(stage.epochs);
-    report.overall_progress = report.stage_progress;
-    if (is_health_epoch(step.epoch, stage.epochs)) report.health = stage.health();
-    observer(report);
-    clock.restart();
+    if (observer) {
+      EpochReport report;
+      report.stage = stage.name;
+      report.epoch = step.epoch;
+      report.epochs = stage.epochs;
+      report.loss = loss;
+      report.windows_per_s = clock.windows_per_s((batches - first) * schedule.batch());
+      report.stage_progress = static_cast<double>(step.epoch) / static_cast<double>(stage.epochs);
+      report.overall_progress = report.stage_progress;
+      if (is_health_epoch(step.epoch, stage.epochs)) report.health = stage.health();
+      observer(report);
+      clock.restart();
+    }
+    first = 0;
+    run.after_step(step.epoch * batches);
   }
+  run.end();
 }
 
 std::unique_ptr<LearningRule> cd_rule(Crbm& crbm, std::size_t batch, const CdSettings& settings) {
@@ -193,6 +211,21 @@ std::vector<std::int32_t> paired_rows(std::span<const Sequences> codes, std::siz
   return rows;
 }
 
+MinibatchSchedule minibatches(const Sequences& sequences, const std::vector<std::int32_t>& rows,
+                              const LearningSettings& learning) {
+  return {sequences.values.device(), rows, learning.batch, learning.least_batches,
+          sequences.weights(rows)};
+}
+
+/// Sequences of a modality; people weigh as the settings say.
+Sequences weighted(Device& device, const SynchronizedClips& clips, const ModalityClips& modality,
+                   const LearningSettings& learning) {
+  Sequences sequences = Sequences::from_host(device, modality.clips, modality.seen);
+  const std::vector<double> weights = clip_weights(clips, learning.people_power);
+  for (std::size_t i = 0; i < weights.size(); ++i) sequences.clips[i].weight = weights[i];
+  return sequences;
+}
+
 /// A hundred windows' codes at most, for mrbm_health. @return [rows x dimension] of each modality
 std::vector<MatrixF> some_codes(std::span<const Sequences> codes,
                                 const LearningSettings& learning) {
@@ -237,7 +270,8 @@ std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings&
 
 TrainedCdbn train_cdbn(Device& device, Sequences visible, const std::vector<CrbmShape>& layers,
                        const LearningSettings& learning, std::uint16_t first_stream,
-                       const EpochObserver& observer, const std::string& name, const Cdbn* start) {
+                       const EpochObserver& observer, const std::string& name, const Cdbn* start,
+                       Checkpoints* checkpoints) {
   TrainedCdbn trained;
   trained.code = std::move(visible);
   OverallProgress progress(observer, cdbn_cost(layers, learning));
@@ -252,7 +286,7 @@ TrainedCdbn train_cdbn(Device& device, Sequences visible, const std::vector<Crbm
         device, trained.code,
         start ? start->layers.at(layer).to_host() : small_weights(shape, learning, stream),
         settings, learning, stream, progress.part(crbm_cost(shape, settings)),
-        fmt::format("{}.{}", name, layer)));
+        fmt::format("{}.{}", name, layer), checkpoints));
     ++stream;
     trained.code = up_pass(trained.cdbn.layers.back(), trained.code);
   }
@@ -261,12 +295,11 @@ TrainedCdbn train_cdbn(Device& device, Sequences visible, const std::vector<Crbm
 
 Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
                 const CdSettings& settings, const LearningSettings& learning, std::uint16_t stream,
-                const EpochObserver& observer, const std::string& stage) {
+                const EpochObserver& observer, const std::string& stage, Checkpoints* checkpoints) {
   const CrbmShape shape = initial.shape;
   initial.visible_mean = mean_of(visible);
   Crbm crbm(device, initial);
-  MinibatchSchedule schedule(device, visible.window_rows(shape.order), learning.batch,
-                             learning.least_batches);
+  MinibatchSchedule schedule = minibatches(visible, visible.window_rows(shape.order), learning);
   const auto rule = cd_rule(crbm, schedule.batch(), settings);
   std::optional<HistoryNoise> noise;
   if (settings.history_noise > 0 && shape.order > 0)
@@ -285,18 +318,23 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
               noise ? static_cast<LearningRule&>(*noise) : *rule,
               {{&visible.values, 0}},
               [&] { return crbm_health(crbm.to_host(), windows); },
+              [&](TrainingState& state) {
+                state.parameters("parameters", crbm.parameters());
+                state.matrix("deviation", crbm.visible_deviation);
+                if (state.restores()) crbm.refresh_transposed();
+              },
               visible.seen.empty() ? nullptr : &visible.seen},
-             schedule, guard, key_of(learning, stream, 0, 0), observer);
+             schedule, guard, key_of(learning, stream, 0, 0), observer, checkpoints);
   return crbm;
 }
 
 Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
                 const LearningSettings& learning, std::uint16_t stream,
-                const EpochObserver& observer) {
+                const EpochObserver& observer, Checkpoints* checkpoints) {
   const MrbmSettings& settings = learning.mrbm;
   Mrbm mrbm(device, initial);
-  MinibatchSchedule schedule(device, paired_rows(codes, learning.look_ahead), learning.batch,
-                             learning.least_batches);
+  MinibatchSchedule schedule =
+      minibatches(codes.front(), paired_rows(codes, learning.look_ahead), learning);
   const std::unique_ptr<LearningRule> rule = make_mrbm_rule(mrbm, schedule.batch(), settings);
   DivergenceGuard guard(
       "mrbm", fmt::format("lower `mrbm.rate` (now {:g}) or `mrbm.initial-deviation` (now {:g})",
@@ -306,13 +344,17 @@ Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmPara
   for (std::size_t m = 0; m < codes.size(); ++m) sequences.emplace_back(&codes[m].values, ahead[m]);
   const std::vector<MatrixF> some = some_codes(codes, learning);
   run_epochs({"mrbm", settings.epochs, *rule, std::move(sequences),
-              [&] { return mrbm_health(mrbm.to_host(), some); }},
-             schedule, guard, key_of(learning, stream, 0, 0), observer);
+              [&] { return mrbm_health(mrbm.to_host(), some); },
+              [&](TrainingState& state) {
+                state.parameters("parameters", mrbm.parameters());
+                if (state.restores()) mrbm.refresh_transposed();
+              }},
+             schedule, guard, key_of(learning, stream, 0, 0), observer, checkpoints);
   return mrbm;
 }
 
 Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningSettings& learning,
-                   const EpochObserver& observer, const Mcdbn* start) {
+                   const EpochObserver& observer, const Mcdbn* start, Checkpoints* checkpoints) {
   learning.validate();
   const SynchronizedClips clips = source.sequences();
   clips.check();
@@ -336,16 +378,16 @@ Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningS
   for (std::size_t i = 0; i < modalities; ++i) {
     const std::size_t m = modalities - 1 - i;
     const ModalityClips& modality = clips.modalities[m];
-    TrainedCdbn trained = train_cdbn(
-        device, Sequences::from_host(device, modality.clips, modality.seen), layers[m], learning,
-        random_streams::layers_of(i), progress.part(cdbn_cost(layers[m], learning)), modality.name,
-        start ? &start->cdbns.at(m) : nullptr);
+    TrainedCdbn trained =
+        train_cdbn(device, weighted(device, clips, modality, learning), layers[m], learning,
+                   random_streams::layers_of(i), progress.part(cdbn_cost(layers[m], learning)),
+                   modality.name, start ? &start->cdbns.at(m) : nullptr, checkpoints);
     cdbns[m] = std::move(trained.cdbn);
     codes[m] = std::move(trained.code);
   }
   Mrbm mrbm = train_mrbm(device, codes,
                          start ? start->mrbm.to_host() : small_weights(shape, codes, learning),
-                         learning, random_streams::kMrbm, progress.part(last_cost));
+                         learning, random_streams::kMrbm, progress.part(last_cost), checkpoints);
   const RegenerationSettings& drawn = learning.regeneration;
   return {std::move(cdbns), std::move(mrbm), learning.look_ahead, learning.mrbm.mean_field_steps,
           SamplingRule{.gibbs_steps = drawn.gibbs_steps,

@@ -20,6 +20,7 @@ class HistoryNoise : public LearningRule {
   /// The noise takes phase kNoisePhase of the step's draws.
   void learn(std::span<const Rows> visible, const LearningStep& step,
              LossAccumulator& losses) override;
+  void visit_state(TrainingState& state) override { rule_.visit_state(state); }
   static constexpr std::uint16_t kNoisePhase = 0x7200;
 
  private:

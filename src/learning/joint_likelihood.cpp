@@ -44,6 +44,12 @@ void JointLikelihood::make_stacks() {
   row_losses_ = Matrix(device, 1, mrbm_.modality_count() * block_);
 }
 
+void JointLikelihood::visit_state(TrainingState& state) {
+  MrbmChains::visit_state(state);
+  state.number("started", started_);
+  if (!particles_.empty()) state.matrix("particles", particles_);
+}
+
 void JointLikelihood::run_minibatch(std::span<const Rows> visible, const LearningStep& step,
                                     LossAccumulator& losses) {
   if (!tile_) {

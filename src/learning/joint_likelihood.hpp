@@ -24,6 +24,8 @@ class JointLikelihood : public MrbmChains {
   /// Unset where mini-batches are composed.
   const std::optional<RowTile>& tile() const { return tile_; }
 
+  void visit_state(TrainingState& state) override;
+
  protected:
   void run_minibatch(std::span<const Rows> visible, const LearningStep& step,
                      LossAccumulator& losses) override;

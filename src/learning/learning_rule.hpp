@@ -31,6 +31,8 @@ class LearningRule {
   /// @throws ShapeError
   virtual void learn(std::span<const Rows> visible, const LearningStep& step,
                      LossAccumulator& losses) = 0;
+  /// What it keeps from one mini-batch to the next, the machine's parameters not among it.
+  virtual void visit_state(TrainingState& state) = 0;
 };
 
 }  // namespace mcdbn

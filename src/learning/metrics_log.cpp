@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "mcdbn/base/errors.hpp"
@@ -20,8 +22,12 @@ void append(nlohmann::ordered_json& line, const LayerHealth& health) {
 
 }  // namespace
 
-MetricsLog::MetricsLog(const std::filesystem::path& path) : path_(path), stream_(path) {
-  check();
+MetricsLog::MetricsLog(const std::filesystem::path& path, std::uint64_t kept)
+    : path_(path), written_(0) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error) written_ = std::min<std::uint64_t>(kept, size);
+  if (!write_waiting()) finish();
 }
 
 void MetricsLog::add(const EpochReport& report) {
@@ -33,12 +39,25 @@ void MetricsLog::add(const EpochReport& report) {
   if (report.stage == "fine-tuning") line["former_stage"] = "joint";
   if (report.held_out_loss) line["held_out_loss"] = *report.held_out_loss;
   if (report.health) append(line, *report.health);
-  stream_ << line.dump() << '\n' << std::flush;
-  check();
+  waiting_ += line.dump() + '\n';
+  write_waiting();
 }
 
-void MetricsLog::check() const {
-  if (!stream_) throw InputError(fmt::format("{}: cannot be written", path_.string()));
+void MetricsLog::finish() {
+  if (!write_waiting()) throw InputError(fmt::format("{}: cannot be written", path_.string()));
+}
+
+/// What half a line may have been left of an earlier try, or of a program that was killed, goes.
+bool MetricsLog::write_waiting() {
+  std::ofstream stream(path_, std::ios::binary | std::ios::app);
+  if (!stream) return false;
+  std::error_code error;
+  std::filesystem::resize_file(path_, written_, error);
+  stream << waiting_ << std::flush;
+  if (!stream || error) return false;
+  written_ += waiting_.size();
+  waiting_.clear();
+  return true;
 }
 
 }  // namespace mcdbn

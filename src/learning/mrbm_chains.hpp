@@ -23,6 +23,8 @@ class MrbmChains : public LearningRule {
   void learn(std::span<const Rows> visible, const LearningStep& step,
              LossAccumulator& losses) override;
 
+  void visit_state(TrainingState& state) override { optimizer_.visit_state(state); }
+
   /// The gradient of the last step, downhill, where the optimizer is none; for tests.
   MrbmParameters gradients();
 

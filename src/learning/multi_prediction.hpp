@@ -29,6 +29,7 @@ class MultiPrediction : public LearningRule {
   /// step() by the rule that the settings say. @param visible the codes of each modality
   void learn(std::span<const Rows> visible, const LearningStep& step,
              LossAccumulator& losses) override;
+  void visit_state(TrainingState& state) override { optimizer_.visit_state(state); }
 
   /// One mini-batch with its update: enqueues and returns. Adds to `losses` the mean loss of a
   /// unit: in slot m that of the modality m, predicted from the others.

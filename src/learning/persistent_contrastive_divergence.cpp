@@ -31,6 +31,16 @@ PersistentContrastiveDivergence::PersistentContrastiveDivergence(
   fast_machine_.emplace(crbm.parameters().in(fast_sum_), crbm.shape(), crbm.visible_mean.to_host());
 }
 
+void PersistentContrastiveDivergence::visit_state(TrainingState& state) {
+  ContrastiveDivergence::visit_state(state);
+  state.number("fresh", fresh_);
+  state.matrix("particles", particles_);
+  if (!fast_machine_) return;
+  state.matrix("fast", fast_);
+  state.matrix("fast_sum", fast_sum_);
+  if (state.restores()) fast_machine_->refresh_transposed();
+}
+
 void PersistentContrastiveDivergence::run_chain(const Rows& rows, const CdRule& rule,
                                                 const RandomKey& key) {
   if (tile_)

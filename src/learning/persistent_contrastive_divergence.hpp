@@ -31,6 +31,8 @@ class PersistentContrastiveDivergence : public ContrastiveDivergence {
                                   std::optional<RowTile> tile, const CdSettings& settings = {},
                                   std::optional<OptimizerKind> optimizer = {});
 
+  void visit_state(TrainingState& state) override;
+
   /// The chains' hidden units, 0 or 1. [batch x hidden]; more rows where the batch was filled up
   const Matrix& particles() const { return particles_; }
 

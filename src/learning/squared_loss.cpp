@@ -4,6 +4,7 @@
 
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
+#include "device/training_state.hpp"
 
 namespace mcdbn {
 
@@ -48,6 +49,11 @@ void SquaredLoss::differentiate(const Matrix& prediction, const Matrix& target, 
   }
   column_sum(losses_, 1.0F, 1.0F, sum_);
   ++steps_;
+}
+
+void SquaredLoss::visit_state(TrainingState& state) {
+  state.matrix("loss", sum_);
+  state.number("loss.steps", steps_);
 }
 
 double SquaredLoss::read_and_reset() {

@@ -13,6 +13,7 @@ class SquaredLoss : public SequenceLoss {
               const Matrix* seen = nullptr);
   void differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) override;
   double read_and_reset() override;
+  void visit_state(TrainingState& state) override;
 
  private:
   SequenceWindows windows_;

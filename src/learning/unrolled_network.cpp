@@ -133,8 +133,9 @@ void UnrolledNetwork::exchange_averages() {
   refresh_copies();
 }
 
-Mcdbn UnrolledNetwork::averaged() {
-  exchange_averages();
+Mcdbn UnrolledNetwork::with_parameters(const Matrix& values) {
+  spare_.copy_from(parameters_.all());
+  parameters_.copy_from(values);
   Mcdbn result{std::vector<Cdbn>(layers_.size()), Mrbm(device(), uncentered(mrbm_.to_host())),
                look_ahead_, mean_field_steps_};
   for (std::size_t m = 0; m < layers_.size(); ++m)
@@ -142,9 +143,16 @@ Mcdbn UnrolledNetwork::averaged() {
       auto& own = result.cdbns[m].layers;
       own.emplace_back(device(), uncentered(layer.crbm.to_host(), below_of(own.size())));
     }
-  exchange_averages();
+  parameters_.copy_from(spare_);
   result.fills_gaps = false;
   return result;
+}
+
+void UnrolledNetwork::visit_state(TrainingState& state) {
+  state.parameters("parameters", parameters_);
+  state.matrix("averages", averages_);
+  optimizer_.visit_state(state);
+  if (state.restores()) refresh_copies();
 }
 
 }  // namespace mcdbn

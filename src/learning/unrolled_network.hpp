@@ -52,8 +52,11 @@ class UnrolledNetwork {
   void update(const UpdateRule& rule, float longest_gradient, float average_kept);
   /// The moving average of the parameters in their place, to be judged; again: back.
   void exchange_averages();
-  /// The network that the moving average of the parameters makes.
-  Mcdbn averaged();
+  /// The moving average of the parameters, laid out as they are. [1 x floats]
+  const Matrix& averages() const { return averages_; }
+  /// The network that parameters so laid out make.
+  Mcdbn with_parameters(const Matrix& values);
+  void visit_state(TrainingState& state);
 
  private:
   void refresh_copies();

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "base/random_streams.hpp"
+#include "learning/clip_weights.hpp"
 
 namespace mcdbn {
 namespace {
@@ -20,20 +20,14 @@ std::int32_t row_of(const Sequences::Clip& clip, std::int64_t frame) {
 WindowSampler::WindowSampler(const SynchronizedClips& clips, const SequenceWindows& windows,
                              const LearningSettings& learning)
     : windows_(windows), look_ahead_(learning.look_ahead), seed_(learning.seed) {
-  const auto group = [&](std::size_t clip) {
-    return clips.groups.empty() ? 0 : clips.groups[clip];
-  };
-  std::map<std::size_t, double> frames_of;
-  for (std::size_t i = 0; i < clips.count(); ++i)
-    frames_of[group(i)] += static_cast<double>(clips.frames(i));
+  const std::vector<double> weights = clip_weights(clips, learning.fine_tuning.people_power);
   std::size_t first = 0;
   double end = 0;
   for (std::size_t i = 0; i < clips.count(); ++i) {
     const std::size_t frames = clips.frames(i);
     clips_.push_back({first, frames});
     first += frames;
-    end += static_cast<double>(frames) *
-           std::pow(frames_of[group(i)], learning.fine_tuning.people_power - 1.0);
+    end += static_cast<double>(frames) * weights[i];
     ends_.push_back(end);
   }
 }

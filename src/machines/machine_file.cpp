@@ -1,6 +1,10 @@
 #include "mcdbn/machines/machine_file.hpp"
 
+#include <fmt/format.h>
+
+#include "base/shown.hpp"
 #include "machines/machine_tensors.hpp"
+#include "mcdbn/machines/size_limits.hpp"
 
 namespace mcdbn {
 namespace {
@@ -37,26 +41,30 @@ struct Put {
   }
 };
 
-Mcdbn mcdbn_from(Device& device, const TensorFile& file, const json& about) {
+Mcdbn mcdbn_from(Device& device, const TensorFile& file, const JsonPlace& about) {
   const MrbmShape shape = mrbm_shape_from(about);
   std::vector<Cdbn> cdbns;
-  for (std::size_t m = 0; m < shape.modalities.size(); ++m)
-    cdbns.push_back(
-        get_cdbn(device, file, shape.modalities[m].name + ".", about.at("cdbns").at(m)));
-  Mcdbn network{std::move(cdbns), get_mrbm(device, file, "mrbm.", shape), about.at("look_ahead"),
-                about.at("mean_field_steps")};
-  network.fills_gaps = about.at("fills_gaps");
+  for (std::size_t m = 0; m < shape.modalities.size(); ++m) {
+    const JsonPlace layers = about["cdbns"].at(m);
+    cdbns.push_back(get_cdbn(device, file, shape.modalities[m].name + ".", layers));
+    if (cdbns.back().code_dimension() != shape.modalities[m].visible)
+      layers.fail("the code of the last layer is not what the MRBM sees");
+  }
+  Mcdbn network{std::move(cdbns), get_mrbm(device, file, "mrbm.", shape),
+                about["look_ahead"].count(size_limits::kLookAhead),
+                about["mean_field_steps"].count(size_limits::kMeanFieldSteps)};
+  network.fills_gaps = about["fills_gaps"].truth();
   return network;
 }
 
 decltype(SavedMachine::machine) machine_from(Device& device, const TensorFile& file,
-                                             const json& about) {
-  const json& kind = about.at("kind");
-  if (kind == "crbm") return get_crbm(device, file, "", about.at("layers").at(0));
-  if (kind == "cdbn") return get_cdbn(device, file, "", about.at("layers"));
+                                             const JsonPlace& about) {
+  const std::string kind = about["kind"].text();
+  if (kind == "crbm") return get_crbm(device, file, "", about["layers"].at(0));
+  if (kind == "cdbn") return get_cdbn(device, file, "", about["layers"]);
   if (kind == "mrbm") return get_mrbm(device, file, "", mrbm_shape_from(about));
   if (kind == "mcdbn") return mcdbn_from(device, file, about);
-  throw InputError(file.path + ": a machine of unknown kind " + kind.dump());
+  about["kind"].fail("a machine of unknown kind " + shown(kind));
 }
 
 std::string scale_prefix(std::size_t modality) {
@@ -74,13 +82,35 @@ json put_scales(Safetensors& file, const std::vector<ColumnScale>& scales) {
   return columns;
 }
 
-std::vector<ColumnScale> scales_from(const TensorFile& file, const json& columns) {
+/// What each modality's data are, or a stack's.
+struct VisibleUnits {
+  std::vector<std::size_t> operator()(const Crbm& crbm) const { return {crbm.shape().visible}; }
+  std::vector<std::size_t> operator()(const Cdbn& cdbn) const {
+    return {cdbn.layers.front().shape().visible};
+  }
+  std::vector<std::size_t> operator()(const Mrbm& mrbm) const {
+    std::vector<std::size_t> units;
+    for (const Modality& modality : mrbm.shape().modalities) units.push_back(modality.visible);
+    return units;
+  }
+  std::vector<std::size_t> operator()(const Mcdbn& network) const {
+    std::vector<std::size_t> units;
+    for (const Cdbn& cdbn : network.cdbns) units.push_back(cdbn.layers.front().shape().visible);
+    return units;
+  }
+};
+
+/// @param visible of each modality, which its scale fits if it has one
+std::vector<ColumnScale> scales_from(const TensorFile& file, const JsonPlace& columns,
+                                     const std::vector<std::size_t>& visible) {
   std::vector<ColumnScale> scales;
-  for (std::size_t m = 0; m < columns.size(); ++m) {
-    const auto row = [&](const char* name) -> RowVectorF {
-      return file.content.get(scale_prefix(m) + name, file.path, 1, columns[m]);
-    };
-    scales.push_back({row("mean"), row("deviation")});
+  for (const JsonPlace& place : columns.list()) {
+    const std::size_t m = scales.size();
+    const std::size_t count = place.count(within(0, size_limits::kUnits.most));
+    if (m >= visible.size() || (count != 0 && count != visible[m]))
+      place.fail(fmt::format("a scale of {} columns for data that are not there", count));
+    scales.push_back({get_matrix(file, scale_prefix(m) + "mean", 1, count),
+                      get_deviation(file, scale_prefix(m) + "deviation", count)});
   }
   return scales;
 }
@@ -104,11 +134,11 @@ void save_machine(const std::filesystem::path& path, const SavedMachine& saved) 
 SavedMachine load_machine(Device& device, const std::filesystem::path& path) {
   const Safetensors content = read_safetensors(path);
   const TensorFile file{content, path.string()};
-  return reading_description(file.path, [&]() -> SavedMachine {
-    const json about = parsed_description(file);
-    return {machine_from(device, file, about), scales_from(file, about.at("scales")),
-            about.at("config")};
-  });
+  const json about = parsed_description(file);
+  const JsonPlace place(about, file.path);
+  SavedMachine saved{machine_from(device, file, place), {}, place["config"].value()};
+  saved.scales = scales_from(file, place["scales"], std::visit(VisibleUnits{}, saved.machine));
+  return saved;
 }
 
 bool is_machine_file(const std::filesystem::path& path) {
@@ -118,15 +148,13 @@ bool is_machine_file(const std::filesystem::path& path) {
 nlohmann::json describe_machine(const std::filesystem::path& path) {
   const Safetensors content = read_safetensors(path);
   const TensorFile file{content, path.string()};
-  return reading_description(file.path, [&] {
-    json about = parsed_description(file);
-    std::size_t numbers = 0;
-    for (const auto& [name, tensor] : content.tensors) numbers += tensor.values.size();
-    about["parameters"] = numbers;
-    about["standardized"] = !about.at("scales").empty();
-    about.erase("scales");
-    return about;
-  });
+  json about = parsed_description(file);
+  std::size_t numbers = 0;
+  for (const auto& [name, tensor] : content.tensors) numbers += tensor.values.size();
+  about["parameters"] = numbers;
+  about["standardized"] = JsonPlace(about, file.path)["scales"].size() > 0;
+  about.erase("scales");
+  return about;
 }
 
 }  // namespace mcdbn

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "base/shown.hpp"
+#include "mcdbn/machines/size_limits.hpp"
+
 namespace mcdbn {
 namespace {
 
@@ -11,8 +14,10 @@ const char* name_of(VisibleKind kind) {
   return kind == VisibleKind::gaussian ? "gaussian" : "binary";
 }
 
-VisibleKind kind_from(const json& name) {
-  return name == "gaussian" ? VisibleKind::gaussian : VisibleKind::binary;
+VisibleKind kind_from(const JsonPlace& name) {
+  for (const VisibleKind kind : {VisibleKind::gaussian, VisibleKind::binary})
+    if (name.text() == name_of(kind)) return kind;
+  name.fail(fmt::format("{}; gaussian and binary are known", shown(name.text())));
 }
 
 json shape_json(const CrbmShape& shape) {
@@ -25,14 +30,17 @@ json shape_json(const CrbmShape& shape) {
   return entry;
 }
 
-CrbmShape shape_from(const json& entry) {
-  const std::size_t order = entry.at("order");
-  return {entry.at("visible"),
-          entry.at("hidden"),
+CrbmShape shape_from(const JsonPlace& entry) {
+  const std::size_t order = entry["order"].count(size_limits::kHistory);
+  const auto part = [&](const char* name) {
+    return entry.has(name) ? entry[name].count(within(0, static_cast<double>(order))) : order;
+  };
+  return {entry["visible"].count(size_limits::kUnits),
+          entry["hidden"].count(size_limits::kUnits),
           order,
-          kind_from(entry.at("kind")),
-          entry.value("order_A", order),
-          entry.value("order_B", order)};
+          kind_from(entry["kind"]),
+          part("order_A"),
+          part("order_B")};
 }
 
 void put(Safetensors& file, const std::string& prefix, const Parameters& parameters) {
@@ -40,15 +48,16 @@ void put(Safetensors& file, const std::string& prefix, const Parameters& paramet
     file.put(prefix + shape.name, parameters.to_host(shape.name));
 }
 
-MatrixF get(const TensorFile& file, const std::string& name, std::size_t rows,
-            std::size_t columns) {
-  return file.content.get(name, file.path, static_cast<Eigen::Index>(rows),
-                          static_cast<Eigen::Index>(columns));
-}
-
-void get(const TensorFile& file, const std::string& prefix, Parameters parameters) {
-  for (const ParameterShape& shape : parameters.entries())
-    parameters.upload(shape.name, get(file, prefix + shape.name, shape.rows, shape.columns));
+/// Parameters of a device with what the file has of them. Every one is looked at before memory is
+/// taken: a false size in the description would take any amount.
+Parameters get(Device& device, const TensorFile& file, const std::string& prefix,
+               const std::vector<ParameterShape>& shapes) {
+  std::vector<MatrixF> values;
+  for (const ParameterShape& shape : shapes)
+    values.push_back(get_matrix(file, prefix + shape.name, shape.rows, shape.columns));
+  Parameters parameters(device, shapes);
+  for (std::size_t i = 0; i < shapes.size(); ++i) parameters.upload(shapes[i].name, values[i]);
+  return parameters;
 }
 
 std::string layer_prefix(const std::string& prefix, std::size_t layer) {
@@ -56,6 +65,26 @@ std::string layer_prefix(const std::string& prefix, std::size_t layer) {
 }
 
 }  // namespace
+
+MatrixF get_matrix(const TensorFile& file, const std::string& name, std::size_t rows,
+                   std::size_t columns) {
+  const MatrixF values = file.content.get(name, file.path, static_cast<Eigen::Index>(rows),
+                                          static_cast<Eigen::Index>(columns));
+  // Finite weights of any size would answer with numbers that are not.
+  constexpr float kLargestWeight = 1e6F;
+  if (!(values.array().abs() <= kLargestWeight).all())
+    throw InputError(fmt::format("{}: tensor {} holds a number that is not finite or beyond {:.0f}",
+                                 file.path, name, kLargestWeight));
+  return values;
+}
+
+RowVectorF get_deviation(const TensorFile& file, const std::string& name, std::size_t columns) {
+  const MatrixF values = get_matrix(file, name, 1, columns);
+  if (!(values.array() > 0).all())
+    throw InputError(
+        fmt::format("{}: tensor {} holds a deviation that is not above 0", file.path, name));
+  return values;
+}
 
 json put_crbm(Safetensors& file, const std::string& prefix, const Crbm& crbm) {
   put(file, prefix, crbm.parameters());
@@ -65,14 +94,14 @@ json put_crbm(Safetensors& file, const std::string& prefix, const Crbm& crbm) {
 }
 
 Crbm get_crbm(Device& device, const TensorFile& file, const std::string& prefix,
-              const json& description) {
+              const JsonPlace& description) {
   const CrbmShape shape = shape_from(description);
-  const Parameters parameters(device, Crbm::parameter_shapes(shape));
-  get(file, prefix, parameters);
-  const auto row = [&](const char* name) { return get(file, prefix + name, 1, shape.visible); };
-  return {parameters, shape, row("visible_mean"),
-          file.content.tensors.contains(prefix + "visible_deviation") ? row("visible_deviation")
-                                                                      : MatrixF{}};
+  const Parameters parameters = get(device, file, prefix, Crbm::parameter_shapes(shape));
+  MatrixF deviation;
+  if (const std::string name = prefix + "visible_deviation"; file.content.tensors.contains(name))
+    deviation = get_deviation(file, name, shape.visible);
+  return {parameters, shape, get_matrix(file, prefix + "visible_mean", 1, shape.visible),
+          deviation};
 }
 
 json put_cdbn(Safetensors& file, const std::string& prefix, const Cdbn& cdbn) {
@@ -83,12 +112,20 @@ json put_cdbn(Safetensors& file, const std::string& prefix, const Cdbn& cdbn) {
 }
 
 Cdbn get_cdbn(Device& device, const TensorFile& file, const std::string& prefix,
-              const json& shapes) {
+              const JsonPlace& shapes) {
   Cdbn cdbn;
-  for (std::size_t i = 0; i < shapes.size(); ++i)
-    cdbn.layers.push_back(get_crbm(device, file, layer_prefix(prefix, i), shapes[i]));
-  if (cdbn.layers.empty())
-    throw InputError(file.path + ": a CDBN without layers; train the model again");
+  const std::vector<JsonPlace> places = shapes.list();
+  if (places.empty()) shapes.fail("a CDBN without layers; train the model again");
+  if (!size_limits::kLayers.contains(static_cast<double>(places.size())))
+    shapes.fail(
+        fmt::format("{} layers; there must be {}", places.size(), size_limits::kLayers.text()));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::size_t visible = shape_from(places[i]).visible;
+    if (i > 0 && visible != cdbn.layers.back().shape().hidden)
+      places[i]["visible"].fail(fmt::format("{} units, but the layer below has {}", visible,
+                                            cdbn.layers.back().shape().hidden));
+    cdbn.layers.push_back(get_crbm(device, file, layer_prefix(prefix, i), places[i]));
+  }
   return cdbn;
 }
 
@@ -101,19 +138,24 @@ json put_mrbm(Safetensors& file, const std::string& prefix, const Mrbm& mrbm) {
   return {{"modalities", modalities}, {"hidden", mrbm.hidden()}};
 }
 
-MrbmShape mrbm_shape_from(const json& description) {
-  MrbmShape shape{{}, description.at("hidden")};
-  for (const json& modality : description.at("modalities"))
-    shape.modalities.push_back(
-        {modality.at("name"), modality.at("visible"), kind_from(modality.at("kind"))});
+MrbmShape mrbm_shape_from(const JsonPlace& description) {
+  MrbmShape shape{{}, description["hidden"].count(size_limits::kUnits)};
+  const JsonPlace modalities = description["modalities"];
+  for (const JsonPlace& modality : modalities.list())
+    shape.modalities.push_back({modality["name"].text(),
+                                modality["visible"].count(size_limits::kUnits),
+                                kind_from(modality["kind"])});
+  try {
+    shape.check();
+  } catch (const ShapeError& error) {
+    modalities.fail(error.what());
+  }
   return shape;
 }
 
 Mrbm get_mrbm(Device& device, const TensorFile& file, const std::string& prefix,
               const MrbmShape& shape) {
-  const Parameters parameters(device, Mrbm::parameter_shapes(shape));
-  get(file, prefix, parameters);
-  return {parameters, shape};
+  return {get(device, file, prefix, Mrbm::parameter_shapes(shape)), shape};
 }
 
 json description_in(const TensorFile& file, const std::string& key, const std::string& what,
@@ -121,11 +163,14 @@ json description_in(const TensorFile& file, const std::string& key, const std::s
   const auto text = file.content.metadata.find(key);
   if (text == file.content.metadata.end())
     throw InputError(fmt::format("{}: not {}", file.path, what));
-  json about = json::parse(text->second);
-  if (about.at("format_version") != format_version)
+  json about = json::parse(text->second, nullptr, false);
+  if (about.is_discarded())
+    throw InputError(fmt::format("{}: damaged: its description is no JSON", file.path));
+  const json version = JsonPlace(about, file.path)["format_version"].value();
+  if (version != format_version)
     throw InputError(
         fmt::format("{}: model format {}, this program reads {}; train the model again", file.path,
-                    about.at("format_version").dump(), format_version));
+                    version.dump().substr(0, 40), format_version));
   return about;
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/json_place.hpp"
 #include "base/safetensors.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/cdbn.hpp"
@@ -18,17 +19,23 @@ struct TensorFile {
   std::string path;  ///< for errors
 };
 
+/// [rows x columns], all finite. @throws InputError
+MatrixF get_matrix(const TensorFile& file, const std::string& name, std::size_t rows,
+                   std::size_t columns);
+/// [1 x columns], all above 0. @throws InputError
+RowVectorF get_deviation(const TensorFile& file, const std::string& name, std::size_t columns);
+
 nlohmann::json put_crbm(Safetensors& file, const std::string& prefix, const Crbm& crbm);
 Crbm get_crbm(Device& device, const TensorFile& file, const std::string& prefix,
-              const nlohmann::json& shape);
+              const JsonPlace& shape);
 
 /// Layer i has the prefix `PREFIXi.`
 nlohmann::json put_cdbn(Safetensors& file, const std::string& prefix, const Cdbn& cdbn);
 Cdbn get_cdbn(Device& device, const TensorFile& file, const std::string& prefix,
-              const nlohmann::json& shapes);
+              const JsonPlace& shapes);
 
 nlohmann::json put_mrbm(Safetensors& file, const std::string& prefix, const Mrbm& mrbm);
-MrbmShape mrbm_shape_from(const nlohmann::json& description);
+MrbmShape mrbm_shape_from(const JsonPlace& description);
 Mrbm get_mrbm(Device& device, const TensorFile& file, const std::string& prefix,
               const MrbmShape& shape);
 
@@ -36,15 +43,5 @@ Mrbm get_mrbm(Device& device, const TensorFile& file, const std::string& prefix,
 /// @param what the file ought to be, "a model of mcdbn-cl"  @throws InputError
 nlohmann::json description_in(const TensorFile& file, const std::string& key,
                               const std::string& what, int format_version);
-
-/// What `read` makes of a description, whose errors say which file is damaged.
-template <typename Read>
-auto reading_description(const std::string& path, Read&& read) {
-  try {
-    return read();
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(path + ": damaged model description: " + error.what());
-  }
-}
 
 }  // namespace mcdbn

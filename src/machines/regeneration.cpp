@@ -188,14 +188,29 @@ Sequences code_of(const Mcdbn& network, std::size_t modality, const std::vector<
   return cdbn.up_pass(Sequences::from_host(network.mrbm.device(), sequences));
 }
 
-}  // namespace
+/// What the wanted modality's frames were decoded from and to, [decoded·frames.total x …].
+struct Decoded {
+  Frames frames;
+  Matrix code, visible;
+  std::vector<Eigen::Index> lengths;  ///< of each decoded sequence
 
-std::vector<MatrixF> regenerate(const Mcdbn& network,
-                                const std::vector<std::vector<MatrixF>>& present,
-                                std::size_t wanted, const RegenerationOptions& options) {
-  const std::size_t sequences = sequence_count(network, present, wanted);
-  if (sequences == 0 || options.samples == 0) return {};
-  const Frames frames = frames_of(network, present, wanted, options.run_in);
+  /// The rows of each decoded sequence.
+  std::vector<MatrixF> sequences_of(const Matrix& matrix) const {
+    const MatrixF values = matrix.to_host();
+    std::vector<MatrixF> sequences;
+    sequences.reserve(lengths.size());
+    for (std::size_t i = 0; i < lengths.size(); ++i)
+      sequences.emplace_back(
+          values.middleRows(static_cast<Eigen::Index>(i * frames.total + frames.lead), lengths[i]));
+    return sequences;
+  }
+};
+
+/// @param present at least one sequence of one modality, options.samples above 0
+Decoded decoded(const Mcdbn& network, const std::vector<std::vector<MatrixF>>& present,
+                std::size_t wanted, std::size_t sequences, const RegenerationOptions& options) {
+  Decoded result{frames_of(network, present, wanted, options.run_in), {}, {}, {}};
+  const Frames& frames = result.frames;
   std::vector<std::optional<Sequences>> present_codes(present.size());
   const std::vector<MatrixF>* shown = nullptr;
   for (std::size_t m = 0; m < present.size(); ++m) {
@@ -203,19 +218,24 @@ std::vector<MatrixF> regenerate(const Mcdbn& network,
     present_codes[m] = code_of(network, m, present[m], frames);
     shown = &present[m];
   }
-  const std::size_t decoded = sequences * options.samples;
-  const Matrix code =
-      infer_code(network, frames, wanted, std::move(present_codes), sequences, options);
-  CdbnDecoder decoder(network.cdbns[wanted], code, decoded);
+  for (std::size_t i = 0; i < sequences * options.samples; ++i)
+    result.lengths.push_back((*shown)[i / options.samples].rows());
+  result.code = infer_code(network, frames, wanted, std::move(present_codes), sequences, options);
+  CdbnDecoder decoder(network.cdbns[wanted], result.code, result.lengths.size());
   decoder.decode(frames.start, frames.lead + frames.longest, options);
-
-  const MatrixF visible = decoder.visible().to_host();
-  std::vector<MatrixF> result;
-  for (std::size_t i = 0; i < decoded; ++i)
-    result.emplace_back(
-        visible.middleRows(static_cast<Eigen::Index>(i * frames.total + frames.lead),
-                           (*shown)[i / options.samples].rows()));
+  result.visible = decoder.visible();
   return result;
+}
+
+}  // namespace
+
+std::vector<MatrixF> regenerate(const Mcdbn& network,
+                                const std::vector<std::vector<MatrixF>>& present,
+                                std::size_t wanted, const RegenerationOptions& options) {
+  const std::size_t sequences = sequence_count(network, present, wanted);
+  if (sequences == 0 || options.samples == 0) return {};
+  const Decoded all = decoded(network, present, wanted, sequences, options);
+  return all.sequences_of(all.visible);
 }
 
 std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>& first,
@@ -225,6 +245,19 @@ std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>
 
 MatrixF single_answer(const Mcdbn& network, const MatrixF& first) {
   return regenerate(network, std::vector<MatrixF>{first}).front();
+}
+
+std::vector<CodedAnswer> coded_answers(const Mcdbn& network, const std::vector<MatrixF>& first,
+                                       const RegenerationOptions& options) {
+  const std::vector<std::vector<MatrixF>> present{first, {}};
+  const std::size_t sequences = sequence_count(network, present, 1);
+  if (sequences == 0 || options.samples == 0) return {};
+  const Decoded all = decoded(network, present, 1, sequences, options);
+  std::vector<MatrixF> means = all.sequences_of(all.visible), codes = all.sequences_of(all.code);
+  std::vector<CodedAnswer> answers;
+  for (std::size_t i = 0; i < means.size(); ++i)
+    answers.push_back({std::move(means[i]), std::move(codes[i])});
+  return answers;
 }
 
 }  // namespace mcdbn

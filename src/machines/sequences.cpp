@@ -1,5 +1,7 @@
 #include "mcdbn/machines/sequences.hpp"
 
+#include <algorithm>
+
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -50,6 +52,19 @@ std::vector<std::int32_t> Sequences::window_rows(std::size_t order) const {
     for (std::size_t t = valid_from + order; t < clip.frames; ++t)
       rows.push_back(static_cast<std::int32_t>(clip.first + t));
   return rows;
+}
+
+std::vector<double> Sequences::weights(std::span<const std::int32_t> rows) const {
+  const auto differ = [](const Clip& a, const Clip& b) { return a.weight != b.weight; };
+  if (std::adjacent_find(clips.begin(), clips.end(), differ) == clips.end()) return {};
+  std::vector<double> weights;
+  weights.reserve(rows.size());
+  auto clip = clips.begin();
+  for (const std::int32_t row : rows) {
+    while (static_cast<std::size_t>(row) >= clip->first + clip->frames) ++clip;
+    weights.push_back(clip->weight);
+  }
+  return weights;
 }
 
 }  // namespace mcdbn

@@ -10,7 +10,7 @@ namespace mcdbn {
 namespace {
 
 /// Bones of both sides may differ by this share of their length, as measured bodies do.
-constexpr double kMostDifference = 0.25;
+constexpr double kMostOfBone = 0.25;
 
 using Axes = Eigen::Vector3d;  ///< the diagonal of a reflection along one axis
 const Axes kWorldMirror(-1, 1, 1);
@@ -34,7 +34,7 @@ Reflection joint_reflection(const Skeleton& skeleton, const std::vector<int>& op
       miss += (axes.cwiseProduct(bone) - skeleton.joints[opposite[child]].offset).norm();
       length += bone.norm();
     }
-    if (miss <= best.miss - kMostDifference * length && miss < best.miss) best = {axes, miss};
+    if (miss <= best.miss - kMostOfBone * length && miss < best.miss) best = {axes, miss};
   }
   return best;
 }
@@ -51,7 +51,7 @@ std::vector<Axes> reflections(const Skeleton& skeleton, const std::vector<int>& 
     miss += own.miss;
     if (parent >= 0) length += skeleton.joints[j].offset.norm();
   }
-  if (miss > kMostDifference * length) return {};
+  if (miss > kMostOfBone * length) return {};
   return axes;
 }
 

@@ -20,9 +20,9 @@ struct OtherBody {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"height", at_least(0), "", "relative deviation of a person's height"},
+    visit(Setting{"height", within(0, 1), "", "relative deviation of a person's height"},
           self.height);
-    visit(Setting{"proportions", at_least(0), "",
+    visit(Setting{"proportions", within(0, 1), "",
                   "relative deviation of each bone's length, both sides alike"},
           self.proportions);
   }

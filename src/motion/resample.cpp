@@ -164,10 +164,7 @@ bool is_authored_pose(const Motion& motion, int frame) {
   return 4 * zeros >= 3 * rotations;
 }
 
-void check_arguments(const Motion& motion, double target_hz, double phase) {
-  if (!(target_hz > 0 && std::isfinite(target_hz))) {
-    throw ConfigError(fmt::format("resample: {} Hz is no frame rate, give one above 0", target_hz));
-  }
+void check_arguments(const Motion& motion, double phase) {
   if (!(phase >= 0 && phase < 1)) {
     throw ConfigError(fmt::format("resample: phase {} must be at least 0 and below 1", phase));
   }
@@ -190,8 +187,23 @@ Motion without_first_frame(const Motion& motion) {
   return {motion.skeleton, motion.frame_time_s, motion.channels.bottomRows(motion.frames() - 1)};
 }
 
+int frames_at_rate(int frames, double rate_hz, double target_hz, double phase, double slack) {
+  check_range("a frame rate in Hz", kFrameRate_hz, rate_hz);
+  check_range("a frame rate in Hz", kFrameRate_hz, target_hz);
+  const double last = std::floor((frames - 1) / (rate_hz / target_hz) - phase + slack);
+  if (last >= kMostFrames)
+    throw InputError(fmt::format(
+        "{} frames at {:g} Hz would become {:.0f} at {:g} Hz, at most {:.0f} are made; is the rate "
+        "right?",
+        frames, rate_hz, last + 1, target_hz, kMostFrames));
+  return std::max(1, static_cast<int>(last) + 1);
+}
+
 Motion resample(const Motion& motion, double target_hz, double phase) {
-  check_arguments(motion, target_hz, phase);
+  check_arguments(motion, phase);
+  // The last frame is kept although a printed frame time puts it a little past the end.
+  constexpr double kSlack = 1e-3;
+  const int frames = frames_at_rate(motion.frames(), motion.fps(), target_hz, phase, kSlack);
   const double step = motion.fps() / target_hz;
   const bool same_rate = std::abs(step - 1) <= kSameRate;
   if (same_rate && phase == 0) return motion;
@@ -199,11 +211,7 @@ Motion resample(const Motion& motion, double target_hz, double phase) {
   MatrixD signals = to_signals(motion);
   if (step > 1 && !same_rate) signals = low_pass(signals, step);
 
-  // The last frame is kept although a printed frame time puts it a little past the end.
-  constexpr double kSlack = 1e-3;
   const double last_frame = motion.frames() - 1;
-  const int frames =
-      std::max(1, static_cast<int>(std::floor(last_frame / step - phase + kSlack)) + 1);
   Motion result{motion.skeleton, 1.0 / target_hz, MatrixD(frames, motion.channels.cols())};
   for (int frame = 0; frame < frames; ++frame) {
     const double source_frame = std::min((frame + phase) * step, last_frame);

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "mcdbn/motion/frame_rate.hpp"
 #include "mcdbn/motion/skeleton.hpp"
 
 namespace mcdbn {
@@ -12,6 +13,14 @@ namespace mcdbn {
 bool has_leading_calibration_pose(const Motion& motion);
 /// The clip from its second frame on. @throws ShapeError if it has fewer than two frames
 Motion without_first_frame(const Motion& motion);
+
+/// How many frames a clip or a track has at another rate: those that fit into its duration from
+/// `phase` new frames on, at least one. A rounded frame time may put the last a little past the
+/// end: `slack` new frames are given.
+/// @throws ConfigError if one is no frame rate, InputError if memory would be asked for more than
+///         kMostFrames
+int frames_at_rate(int frames, double rate_hz, double target_hz, double phase, double slack);
+inline constexpr double kMostFrames = 1e7;
 
 /// Resamples a clip to `target_hz`: low-pass below the new Nyquist rate first when going down
 /// (zero phase, so nothing is delayed; flat to 0.3 of the new rate, −6 dB at 0.4, nothing from

@@ -7,6 +7,7 @@
 #include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/resample.hpp"
 #include "motion/retarget.hpp"
+#include "motion_model/pose_priors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -40,7 +41,7 @@ class OtherSkeleton {
     return wanted;
   }
 
-  Motion moved(Motion motion) const {
+  Motion moved(const Motion& motion) const {
     return target_ ? retargeted(motion, roles_, *target_) : motion;
   }
 
@@ -61,7 +62,7 @@ std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d&
                                     const ClipPlacement& wanted, const PoseAnswer& single,
                                     const PoseAnswers& all, TrackFindings* findings) {
   const OtherSkeleton other(modalities.pose_features.skeleton(), wanted);
-  const ClipPlacement placement = other.placement(wanted);
+  ClipPlacement placement = other.placement(wanted);
   Track2d sides = track;
   std::vector<SideSwap> swaps;
   if (!joined_by_name(track, modalities.track_features)) {
@@ -69,11 +70,11 @@ std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d&
     exchange_sides(sides, swaps);
   }
   SeenClip seen = see_clip(modalities, resample_track(sides, modalities.fps), placement, single);
+  placement.view = seen.view;
   std::vector<Motion> motions;
   Camera camera;
-  for (const MatrixF& pose : all(seen.features)) {
-    const FittedClip clip =
-        fit_to_track(PosePrior::around(pose), modalities, seen.joints, placement, placement.fit);
+  for (const PosePrior& prior : all(seen.features)) {
+    const FittedClip clip = fit_to_track(prior, modalities, seen.joints, placement, placement.fit);
     if (motions.empty()) camera = clip.camera;
     motions.push_back(other.moved(with_frames(resample(clip.motion, track.fps), track.frames())));
   }
@@ -86,8 +87,8 @@ std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
                                     const RegenerationOptions& options, TrackFindings* findings) {
   return regenerate_clip(
       model.modalities, track, placement,
-      [&](const MatrixF& features) { return single_answer(model.network, features); },
-      [&](const MatrixF& features) { return regenerate(model.network, {features}, options); },
+      [&](const MatrixF& features) { return pose_prior(model.network, features); },
+      [&](const MatrixF& features) { return pose_priors(model.network, {features}, options); },
       findings);
 }
 

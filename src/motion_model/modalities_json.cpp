@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "mcdbn/base/errors.hpp"
+#include "base/shown.hpp"
 #include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/motion/frame_rate.hpp"
 
 namespace mcdbn {
 namespace {
@@ -19,15 +20,37 @@ json camera_json(const CameraPlacement& camera) {
           {"height_px", camera.height_px}};
 }
 
-CameraPlacement camera_from(const json& entry) {
+CameraPlacement camera_from(const JsonPlace& entry) {
   CameraPlacement camera;
-  camera.azimuth_deg = entry.at("azimuth_deg");
-  camera.elevation_deg = entry.at("elevation_deg");
-  if (!entry.at("distance").is_null()) camera.distance = entry.at("distance").get<double>();
-  camera.field_of_view_deg = entry.at("field_of_view_deg");
-  camera.width_px = entry.at("width_px");
-  camera.height_px = entry.at("height_px");
+  camera.azimuth_deg = entry["azimuth_deg"].number(any_number());
+  camera.elevation_deg = entry["elevation_deg"].number(within(-90, 90));
+  if (const JsonPlace distance = entry["distance"]; !distance.value().is_null())
+    camera.distance = distance.number(above(0));
+  camera.field_of_view_deg = entry["field_of_view_deg"].number(CameraPlacement::kFieldOfView_deg);
+  camera.width_px = static_cast<int>(entry["width_px"].count(Camera::kImage_px));
+  camera.height_px = static_cast<int>(entry["height_px"].count(Camera::kImage_px));
   return camera;
+}
+
+/// The skeleton's header, with its errors' lines under the place that it stands at.
+Skeleton skeleton_from(const JsonPlace& entry) {
+  return parse_bvh_header(entry.text(), entry.where());
+}
+
+/// Joints of the 2D modality are the skeleton's: what is sought there by name must be found.
+void check_joints(const JsonPlace& entry, const Modalities& modalities) {
+  const JsonPlace root = entry["root"];
+  if (root.text() != modalities.root_name())
+    root.fail(fmt::format("{}, but the moving joint is {}", shown(root.text()),
+                          shown(modalities.root_name())));
+  for (const JsonPlace& joint : entry["joints"].list())
+    if (modalities.pose_features.skeleton().find(joint.text()) < 0)
+      joint.fail(fmt::format("the skeleton has no joint {}", shown(joint.text())));
+}
+
+void check_dimension(const JsonPlace& scale, int columns, int dimension) {
+  if (columns != dimension)
+    scale["mean"].fail(fmt::format("{} numbers for {} features", columns, dimension));
 }
 
 }  // namespace
@@ -40,16 +63,22 @@ json pose_features_json(const PoseFeatures& features) {
           {"constant_channels", std::vector<double>(fixed.begin(), fixed.end())}};
 }
 
-PoseFeatures pose_features_from(const json& entry) {
-  try {
-    const auto constants = entry.at("constant_channels").get<std::vector<double>>();
-    return PoseFeatures::restored(
-        parse_bvh_header(entry.at("skeleton").get<std::string>(), "the model's skeleton"),
-        entry.at("root"), entry.at("joints"),
-        RowVectorD::Map(constants.data(), static_cast<Eigen::Index>(constants.size())));
-  } catch (const json::exception& error) {
-    throw InputError(fmt::format("pose features: {}; the model file is damaged", error.what()));
+PoseFeatures pose_features_from(const JsonPlace& entry) {
+  const std::vector<double> constants = entry["constant_channels"].finite_numbers();
+  Skeleton skeleton = skeleton_from(entry["skeleton"]);
+  const Range joints = within(0, skeleton.joint_count() - 1);
+  std::vector<int> moving;
+  for (const JsonPlace& joint : entry["joints"].list()) {
+    moving.push_back(static_cast<int>(joint.count(joints)));
+    if (moving.size() > 1 && moving.back() <= moving[moving.size() - 2])
+      joint.fail("joints do not rise; the model file is damaged");
   }
+  if (static_cast<int>(constants.size()) != skeleton.channel_count())
+    entry["constant_channels"].fail(
+        fmt::format("{} numbers for {} channels", constants.size(), skeleton.channel_count()));
+  return PoseFeatures::restored(
+      std::move(skeleton), static_cast<int>(entry["root"].count(joints)), std::move(moving),
+      RowVectorD::Map(constants.data(), static_cast<Eigen::Index>(constants.size())));
 }
 
 json modalities_json(const Modalities& modalities) {
@@ -62,14 +91,23 @@ json modalities_json(const Modalities& modalities) {
           {"level_view", modalities.level_view}};
 }
 
-Modalities modalities_from(const json& entry) {
-  return {pose_features_from(entry.at("pose_features")),
-          TrackFeatures::from_json(entry.at("track_features")),
-          Standardizer::from_json(entry.at("pose_scale")),
-          Standardizer::from_json(entry.at("track_scale")),
-          entry.at("fps"),
-          camera_from(entry.at("camera")),
-          entry.value("level_view", false)};  // models from before there was one
+Modalities modalities_from(const JsonPlace& entry) {
+  const JsonPlace track = entry["track_features"], pose_scale = entry["pose_scale"],
+                  track_scale = entry["track_scale"];
+  Modalities modalities{pose_features_from(entry["pose_features"]),
+                        TrackFeatures::from_json(track.value(), track.where()),
+                        Standardizer::from_json(pose_scale.value(), pose_scale.where()),
+                        Standardizer::from_json(track_scale.value(), track_scale.where()),
+                        entry["fps"].number(kFrameRate_hz),
+                        camera_from(entry["camera"])};
+  // Models from before there was one do not say it.
+  if (entry.has("level_view")) modalities.level_view = entry["level_view"].truth();
+  check_joints(track, modalities);
+  check_dimension(pose_scale, modalities.pose_scale.input_dimension(),
+                  modalities.pose_features.dimension());
+  check_dimension(track_scale, modalities.track_scale.input_dimension(),
+                  modalities.track_features.dimension());
+  return modalities;
 }
 
 }  // namespace mcdbn

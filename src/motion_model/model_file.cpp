@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "base/setting_values.hpp"
 #include "machines/machine_tensors.hpp"
+#include "mcdbn/machines/size_limits.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
 #include "motion_model/modalities_json.hpp"
 
@@ -15,6 +18,7 @@ using nlohmann::json;
 constexpr int kFormatVersion = 1;
 
 constexpr const char* kMrbmPrefix = "mrbm.";
+constexpr const char *kDeviationC = "pose.deviation.C", *kDeviationBias = "pose.deviation.c";
 
 json sampling_json(const SamplingRule& rule) {
   return {{"gibbs_steps", rule.gibbs_steps},
@@ -25,45 +29,100 @@ json sampling_json(const SamplingRule& rule) {
 }
 
 /// Algorithm 5's rule for models that say none.
-SamplingRule sampling_from(const json& about) {
-  if (!about.contains("sampling")) return {};
-  const json& entry = about.at("sampling");
-  return {entry.at("gibbs_steps"), entry.at("mrbm_gibbs_steps"), entry.at("steady"),
-          entry.at("scale"), entry.value("always", false)};
+SamplingRule sampling_from(const JsonPlace& about) {
+  if (!about.has("sampling")) return {};
+  const JsonPlace entry = about["sampling"];
+  return {entry["gibbs_steps"].count(size_limits::kGibbsSteps),
+          entry["mrbm_gibbs_steps"].count(size_limits::kGibbsSteps), entry["steady"].truth(),
+          entry["scale"].number(within(0, 1000)), entry.has("always") && entry["always"].truth()};
+}
+
+/// The settings that there are today, where the record has them.
+void check_config(const JsonPlace& config) {
+  if (!config.is_object()) config.fail("no settings");
+  const TrainingConfig usual;
+  visit_settings(usual, [&](const Setting& setting, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    const json::json_pointer pointer = record_pointer(setting.name);
+    if (!config.value().contains(pointer)) return;
+    const JsonPlace said(config.value().at(pointer), config.where() + "." + setting.name);
+    if constexpr (std::is_same_v<Value, bool>)
+      said.truth();
+    else if constexpr (std::is_same_v<Value, std::size_t>)
+      said.count(setting.range);
+    else
+      said.number(setting.range);
+  });
+}
+
+/// Unset for models that were saved without one.
+std::optional<AnswerDeviation> deviation_from(const TensorFile& file, const Cdbn& pose) {
+  if (!file.content.tensors.contains(kDeviationC)) return {};
+  const auto code = static_cast<Eigen::Index>(pose.code_dimension()),
+             visible = static_cast<Eigen::Index>(pose.layers.front().shape().visible);
+  return AnswerDeviation{file.content.get(kDeviationC, file.path, code, visible),
+                         file.content.get(kDeviationBias, file.path, 1, visible)};
 }
 
 json parsed_description(const TensorFile& file) {
   return description_in(file, "mcdbn", "a model of mcdbn-cl", kFormatVersion);
 }
 
-Model model_from(Device& device, const TensorFile& file) {
-  const json about = parsed_description(file);
+/// Each modality's frames, as its scale gives them, are what its first layer sees.
+void check_frames(const JsonPlace& about, const Modalities& modalities,
+                  const std::vector<Cdbn>& cdbns) {
+  const std::array<int, 2> dimensions{modalities.track_scale.output_dimension(),
+                                      modalities.pose_scale.output_dimension()};
+  for (std::size_t m = 0; m < cdbns.size(); ++m)
+    if (const std::size_t visible = cdbns[m].layers.front().shape().visible;
+        visible != static_cast<std::size_t>(dimensions[m]))
+      about[kModalityNames[m]].at(0)["visible"].fail(
+          fmt::format("{} units for frames of {} numbers", visible, dimensions[m]));
+}
+
+Mcdbn network_from(Device& device, const TensorFile& file, const JsonPlace& about) {
   std::vector<Cdbn> cdbns;
-  MrbmShape shape{{}, about.at("mrbm_hidden")};
+  MrbmShape shape{{}, about["mrbm_hidden"].count(size_limits::kUnits)};
   for (const std::string name : kModalityNames) {
-    cdbns.push_back(get_cdbn(device, file, name + ".", about.at(name)));
+    cdbns.push_back(get_cdbn(device, file, name + ".", about[name]));
     shape.modalities.push_back({name, cdbns.back().code_dimension()});
   }
   Mrbm mrbm = get_mrbm(device, file, kMrbmPrefix, shape);
-  Model model{{std::move(cdbns), std::move(mrbm), about.at("look_ahead"),
-               about.at("mean_field_steps"), sampling_from(about), about.value("fills_gaps", true)},
-              modalities_from(about.at("modalities")),
+  return {std::move(cdbns),
+          std::move(mrbm),
+          about["look_ahead"].count(size_limits::kLookAhead),
+          about["mean_field_steps"].count(size_limits::kMeanFieldSteps),
+          sampling_from(about),
+          !about.has("fills_gaps") || about["fills_gaps"].truth()};
+}
+
+EarlyStopping early_stopping_from(const JsonPlace& stopped) {
+  return {stopped["held_out"].texts(), stopped["steps"].count(any_seed()),
+          stopped["loss"].number(any_number())};
+}
+
+Model model_from(Device& device, const TensorFile& file) {
+  const json description = parsed_description(file);
+  const JsonPlace about(description, file.path);
+  Model model{network_from(device, file, about),
+              modalities_from(about["modalities"]),
               {},
-              about.at("config")};
-  for (const json& clip : about.at("training_clips"))
-    model.training_clips.push_back({clip.at("path"), clip.at("fingerprint")});
-  if (about.contains("early_stopping")) {
-    const json& stopped = about.at("early_stopping");
-    model.early_stopping =
-        EarlyStopping{stopped.at("held_out"), stopped.at("steps"), stopped.at("loss")};
-  }
+              about["config"].value()};
+  model.network.deviation = deviation_from(file, model.network.cdbns[kPose]);
+  check_config(about["config"]);
+  check_frames(about, model.modalities, model.network.cdbns);
+  for (const JsonPlace& clip : about["training_clips"].list())
+    model.training_clips.push_back({clip["path"].text(), clip["fingerprint"].text()});
+  if (about.has("early_stopping"))
+    model.early_stopping = early_stopping_from(about["early_stopping"]);
   return model;
 }
 
 }  // namespace
 
-void save_model(const std::filesystem::path& path, const Model& model) {
+void save_model(const std::filesystem::path& path, const Model& model, StoredNumbers stored) {
   Safetensors file;
+  file.half = stored == StoredNumbers::half;
   json about;
   about["format_version"] = kFormatVersion;
   for (std::size_t m = 0; m < model.network.modality_count(); ++m) {
@@ -71,6 +130,10 @@ void save_model(const std::filesystem::path& path, const Model& model) {
     about[name] = put_cdbn(file, name + ".", model.network.cdbns[m]);
   }
   put_mrbm(file, kMrbmPrefix, model.network.mrbm);
+  if (const auto& deviation = model.network.deviation) {
+    file.put(kDeviationC, deviation->C);
+    file.put(kDeviationBias, deviation->c);
+  }
   about["mrbm_hidden"] = model.network.mrbm.hidden();
   about["look_ahead"] = model.network.look_ahead;
   about["mean_field_steps"] = model.network.mean_field_steps;
@@ -89,32 +152,36 @@ void save_model(const std::filesystem::path& path, const Model& model) {
 }
 
 Model load_model(Device& device, const std::filesystem::path& path) {
-  const Safetensors file = read_safetensors(path);
-  return reading_description(path.string(), [&] {
-    return model_from(device, {file, path.string()});
-  });
+  return model_from(device, {read_safetensors(path), path.string()});
 }
 
 nlohmann::json describe_model(const std::filesystem::path& path) {
   const Safetensors file = read_safetensors(path);
-  return reading_description(path.string(), [&] {
-    const json about = parsed_description({file, path.string()});
-    const json& config = about.at("config");
-    std::size_t numbers = 0;
-    for (const auto& [name, tensor] : file.tensors) numbers += tensor.values.size();
-    json clips = json::array();
-    for (const json& clip : about.at("training_clips"))
-      clips.push_back(
-          std::filesystem::path(clip.at("path").get<std::string>()).filename().string());
-    json description = {{"training_clips", clips}, {"parameters", numbers}};
-    for (const char* name : {"fps", "order", "layers", "hidden", "mrbm-hidden", "camera.azimuth",
-                             "camera.elevation", "camera.fov", "seed"})
-      if (const json::json_pointer place = record_pointer(name); config.contains(place))
-        description[name] = config.at(place);
-    for (const char* name : {"look_ahead", "mean_field_steps", "early_stopping"})
-      if (about.contains(name)) description[name] = about.at(name);
-    return description;
-  });
+  const json parsed = parsed_description({file, path.string()});
+  const JsonPlace about(parsed, path.string());
+  const json& config = about["config"].value();
+  check_config(about["config"]);
+  std::size_t numbers = 0;
+  for (const auto& [name, tensor] : file.tensors) numbers += tensor.values.size();
+  json clips = json::array();
+  for (const JsonPlace& clip : about["training_clips"].list())
+    clips.push_back(std::filesystem::path(clip["path"].text()).filename().string());
+  json description = {{"training_clips", clips}, {"parameters", numbers}};
+  for (const char* name : {"fps", "order", "layers", "hidden", "mrbm-hidden", "camera.azimuth",
+                           "camera.elevation", "camera.fov", "seed"})
+    if (const json::json_pointer place = record_pointer(name); config.contains(place))
+      description[name] = config.at(place);
+  if (about.has("look_ahead"))
+    description["look_ahead"] = about["look_ahead"].count(size_limits::kLookAhead);
+  if (about.has("mean_field_steps"))
+    description["mean_field_steps"] = about["mean_field_steps"].count(size_limits::kMeanFieldSteps);
+  if (about.has("early_stopping")) {
+    early_stopping_from(about["early_stopping"]);
+    description["early_stopping"] = about["early_stopping"].value();
+  }
+  if (const auto thanks = file.metadata.find("acknowledgement"); thanks != file.metadata.end())
+    description["acknowledgement"] = thanks->second;
+  return description;
 }
 
 }  // namespace mcdbn

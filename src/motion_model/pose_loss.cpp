@@ -4,6 +4,7 @@
 
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
+#include "device/training_state.hpp"
 #include "features/pose_bones.hpp"
 #include "learning/squared_loss.hpp"
 #include "motion/foot_joints.hpp"
@@ -82,6 +83,11 @@ void PoseLoss::differentiate(const Matrix& prediction, const Matrix& target, Mat
          scale_, error.buffer(), losses_.buffer(), to_int(losses_.stride()));
   column_sum(losses_, 1.0F, 1.0F, sums_);
   ++steps_;
+}
+
+void PoseLoss::visit_state(TrainingState& state) {
+  state.matrix("pose_loss", sums_);
+  state.number("pose_loss.steps", steps_);
 }
 
 double PoseLoss::read_and_reset() {

@@ -19,6 +19,7 @@ class PoseLoss : public SequenceLoss {
            const PoseLossWeights& weights);
   void differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) override;
   double read_and_reset() override;
+  void visit_state(TrainingState& state) override;
 
  private:
   SequenceWindows windows_;

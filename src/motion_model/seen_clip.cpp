@@ -4,6 +4,7 @@
 
 #include "camera/confidence_weights.hpp"
 #include "camera/keypoint_map.hpp"
+#include "fitting/level_ground.hpp"
 #include "fitting/track_smoothing.hpp"
 
 namespace mcdbn {
@@ -12,6 +13,15 @@ namespace {
 /// More rounds change next to nothing: with an arm hidden for a second held-out walkers are off by
 /// 8.9, 7.8, 7.6 and 7.5 mm after 0, 1, 2 and 4, all in sight by 6.5.
 constexpr int kRounds = 3;
+
+/// The rounds need to know about where joints are: the first solution tells the noise, the second
+/// has it.
+constexpr std::size_t kSolutions = 2;
+
+ClipPlacement roughly(ClipPlacement placement) {
+  if (placement.fit) placement.fit->solutions = std::min(placement.fit->solutions, kSolutions);
+  return placement;
+}
 
 /// What the columns show: what their file says, else what their names tell of joints.
 std::vector<Keypoint> keypoints_of_columns(const Track2d& track) {
@@ -39,18 +49,20 @@ MatrixF where_known(const MatrixF& features, const MatrixF& otherwise) {
 }  // namespace
 
 MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const Track2d& track,
-                  const ClipPlacement& placement,
-                  const std::function<MatrixF(const MatrixF&)>& answer) {
+                  const ClipPlacement& placement, const PoseAnswer& answer) {
   if (!features.array().isNaN().any()) return features;
   const Camera camera = placement.camera_of(track, modalities);
   MatrixF filled = features;
+  const ClipPlacement rough = roughly(placement);
   for (int round = 0; round < kRounds; ++round) {
-    const Track2d shown =
-        fit_to_track(PosePrior::around(answer(filled)), modalities, track, placement, placement.fit)
-            .shown;
+    const Track2d shown = fit_to_track(answer(filled), modalities, track, rough, rough.fit).shown;
     filled = where_known(features, modalities.encode_track(shown, camera));
   }
   return filled;
+}
+
+bool finds_view(const Modalities& modalities, const KnownOfClip& known) {
+  return modalities.level_view && !known.camera && !(known.view.pitch_deg && known.view.roll_deg);
 }
 
 bool joined_by_name(const Track2d& track, const TrackFeatures& features) {
@@ -60,20 +72,43 @@ bool joined_by_name(const Track2d& track, const TrackFeatures& features) {
          found >= std::min<std::ptrdiff_t>(2, std::ssize(features.joint_names()));
 }
 
-SeenClip see_clip(const Modalities& modalities, const Track2d& track,
-                  const ClipPlacement& placement,
-                  const std::function<MatrixF(const MatrixF&)>& answer) {
-  const Camera camera = placement.camera_of(track, modalities);
+namespace {
+
+/// The model's joints, by name.
+SeenClip see_joints(const Modalities& modalities, const Track2d& track,
+                    const ClipPlacement& placement, const PoseAnswer& answer) {
   SeenClip seen;
-  const auto look = [&](const Track2d& joints) {
-    seen.features = modalities.encode_track(smooth_track(joints), camera, &seen.filled);
+  seen.view = placement.view;
+  seen.joints = track;
+  const Track2d smooth = smooth_track(track);
+  ClipPlacement rough = roughly(placement);
+  const auto look = [&] {
+    const Camera camera = rough.camera_of(track, modalities);
+    seen.features = modalities.encode_track(smooth, camera, &seen.filled);
+    seen.features = fill_gaps(modalities, seen.features, track, rough, answer);
   };
-  if (joined_by_name(track, modalities.track_features)) {
-    look(track);
-    seen.joints = track;
-    seen.features = fill_gaps(modalities, seen.features, track, placement, answer);
-    return seen;
+  look();
+  for (int round = 0; finds_view(modalities, placement) && round < kRounds; ++round) {
+    rough.view = levelled_view(
+        placement.view, fit_to_track(answer(seen.features), modalities, track, rough, rough.fit));
+    look();
   }
+  seen.view = rough.view;
+  return seen;
+}
+
+}  // namespace
+
+SeenClip see_clip(const Modalities& modalities, const Track2d& track,
+                  const ClipPlacement& placement, const PoseAnswer& answer) {
+  if (joined_by_name(track, modalities.track_features))
+    return see_joints(modalities, track, placement, answer);
+  SeenClip seen;
+  ClipPlacement rough = roughly(placement);
+  const auto look = [&](const Track2d& joints) {
+    seen.features = modalities.encode_track(smooth_track(joints),
+                                            rough.camera_of(track, modalities), &seen.filled);
+  };
   const Skeleton& skeleton =
       placement.skeleton ? *placement.skeleton : modalities.pose_features.skeleton();
   const KeypointMap map(keypoints_of_columns(track), skeleton,
@@ -83,14 +118,17 @@ SeenClip see_clip(const Modalities& modalities, const Track2d& track,
   look(joints);
   MatrixF filled = seen.features;
   for (int round = 0; round < kRounds; ++round) {
-    const FittedClip clip = fit_to_track(PosePrior::around(answer(filled)), modalities,
-                                         map.evidence(joints), placement, placement.fit);
+    const FittedClip clip =
+        fit_to_track(answer(filled), modalities, map.evidence(joints), rough, rough.fit);
     joints = map.joints_of(weighted, clip.motion, clip.camera);
+    if (finds_view(modalities, placement)) rough.view = levelled_view(placement.view, clip);
     look(joints);
-    filled = where_known(seen.features, modalities.encode_track(clip.shown, camera));
+    filled = where_known(seen.features,
+                         modalities.encode_track(clip.shown, rough.camera_of(track, modalities)));
   }
   seen.joints = map.evidence(joints);
   seen.features = filled;
+  seen.view = rough.view;
   return seen;
 }
 

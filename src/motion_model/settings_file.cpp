@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "base/shown.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 
@@ -14,6 +15,12 @@ std::string location(const std::filesystem::path& file, const toml::source_regio
   return fmt::format("{}:{}", file.string(), source.begin.line);
 }
 
+/// A key as errors have it: any text may stand there.
+std::string named(const std::string& key) {
+  constexpr std::size_t kLongest = 60;
+  return printable(key.substr(0, kLongest));
+}
+
 void add_table(std::vector<SaidSetting>& said, const std::filesystem::path& file,
                const toml::table& table, const std::string& prefix) {
   for (const auto& [key, node] : table) {
@@ -21,7 +28,8 @@ void add_table(std::vector<SaidSetting>& said, const std::filesystem::path& file
     if (const toml::table* inner = node.as_table())
       add_table(said, file, *inner, name + ".");
     else
-      said.push_back({name, scalar_of(node), fmt::format("{}: {}", location_of(file, node), name)});
+      said.push_back(
+          {name, scalar_of(node), fmt::format("{}: {}", location_of(file, node), named(name))});
   }
 }
 
@@ -33,7 +41,8 @@ toml::table read_toml_file(const std::filesystem::path& file) {
   try {
     return toml::parse_file(file.string());
   } catch (const toml::parse_error& error) {
-    throw ConfigError(fmt::format("{}: {}", location(file, error.source()), error.description()));
+    throw ConfigError(
+        fmt::format("{}: no readable TOML from here on", location(file, error.source())));
   }
 }
 

@@ -1,36 +1,87 @@
 #include "mcdbn/motion_model/training_run.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
-#include "base/text_file.hpp"
+#include "base/user_cache.hpp"
+#include "learning/checkpoints.hpp"
 #include "learning/metrics_log.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
 #include "motion_model/sample_calibration.hpp"
 
 namespace mcdbn {
+namespace {
 
-TrainedRun train_to_folder(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
-                           const TrainingConfig& config, const std::filesystem::path& run,
-                           const EpochObserver& observer) {
+/// Tells whether clips are those that a checkpoint was trained on; in halves that are exact
+/// numbers.
+struct ClipsDigest {
+  std::uint32_t low, high;
+
+  explicit ClipsDigest(const TrainingSet& data) {
+    std::string all;
+    for (const TrainingClip& clip : data.clips) all += clip.fingerprint;
+    const std::uint64_t digest = fnv1a(all);
+    low = static_cast<std::uint32_t>(digest);
+    high = static_cast<std::uint32_t>(digest >> 32);
+  }
+  void visit_state(TrainingState& state, const RunFolder& run) {
+    const ClipsDigest now = *this;
+    state.number("clips.low", low);
+    state.number("clips.high", high);
+    if (low != now.low || high != now.high)
+      throw InputError(
+          fmt::format("{}: the clips are not those that the training was begun with; bring them "
+                      "back, or train anew",
+                      run.unfinished().string()));
+  }
+};
+
+}  // namespace
+
+TrainedRun train_model(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
+                       const TrainingConfig& config, const EpochObserver& observer,
+                       Checkpoints* checkpoints) {
   using Clock = std::chrono::steady_clock;
   config.validate();
-  make_folder(run);
-  write_text_file(run / "config.toml", settings_toml(config));
-  MetricsLog metrics(run / "metrics.jsonl");
   const auto start = Clock::now();
   auto [network, stopped] =
-      train_network(device, data, std::move(clips), config, [&](const EpochReport& report) {
-        metrics.add(report);
-        if (observer) observer(report);
-      });
+      train_network(device, data, std::move(clips), config, observer, checkpoints);
   if (config.fine_tuning.steps > 0)
     network.sampling = calibrated_sampling(network, data.modalities, data.tracks, data.poses);
   const double training_s = std::chrono::duration<double>(Clock::now() - start).count();
-  TrainedRun trained{
+  return {
       {std::move(network), data.modalities, data.clips, settings_json(config), std::move(stopped)},
       training_s};
-  save_model(run / "model.safetensors", trained.model);
+}
+
+TrainedRun train_to_folder(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
+                           RunFolder& run, const CheckpointSettings& settings,
+                           const TrainingWatch& watch) {
+  ClipsDigest digest(data);
+  std::optional<MetricsLog> metrics;
+  std::uint64_t metrics_bytes = 0;
+  Checkpoints::Options options;
+  options.folder = run.unfinished();
+  options.every = std::chrono::duration<double>(60 * settings.minutes);
+  if (watch.warning) options.warn = watch.warning;
+  options.more = [&](TrainingState& state) {
+    if (metrics) metrics_bytes = metrics->bytes();
+    state.number("metrics.bytes", metrics_bytes);
+    digest.visit_state(state, run);
+  };
+  Checkpoints checkpoints(options);
+  metrics.emplace(run.unfinished() / "metrics.jsonl", metrics_bytes);
+  TrainedRun trained = train_model(
+      device, data, std::move(clips), run.config(),
+      [&](const EpochReport& report) {
+        metrics->add(report);
+        if (watch.epoch) watch.epoch(report);
+      },
+      &checkpoints);
+  run.complete(trained.model);
   return trained;
 }
 

@@ -21,12 +21,17 @@ install(FILES ${CMAKE_BINARY_DIR}/generated/mcdbn-config.cmake
 
 # A static library leaves its own dependencies to whoever links it.
 set(dependencies "opencv4 clblast fmt spdlog tomlplusplus")
+set(libraries " -lceres")  # has no pkg-config file
 if(BUILD_SHARED_LIBS)
   set(MCDBN_PC_REQUIRES "eigen3 nlohmann_json OpenCL")
   set(MCDBN_PC_REQUIRES_PRIVATE "${dependencies}")
+  set(MCDBN_PC_LIBS "")
+  set(MCDBN_PC_LIBS_PRIVATE "${libraries}")
 else()
   set(MCDBN_PC_REQUIRES "eigen3 nlohmann_json OpenCL ${dependencies}")
   set(MCDBN_PC_REQUIRES_PRIVATE "")
+  set(MCDBN_PC_LIBS "${libraries}")
+  set(MCDBN_PC_LIBS_PRIVATE "")
 endif()
 # Relative, so that the installed tree may be moved.
 file(RELATIVE_PATH MCDBN_PREFIX_FROM_PC /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)

@@ -1,9 +1,11 @@
-# mcdbn_room(NAME [USES ROOM…] [LIBRARIES TARGET…]): the sources of src/NAME as the library mcdbn_NAME.
+# mcdbn_room(NAME [SEPARATE] [USES ROOM…] [LIBRARIES TARGET…]): the sources of src/NAME as the library
+# mcdbn_NAME. SEPARATE: several of them define the same names for themselves (each reader its `read`), so
+# that scripts/build does not join them (CMAKE_UNITY_BUILD).
 # A room may include the headers of the rooms that it uses and of all behind those, and links them;
 # `scripts/lint rooms` reads these declarations and fails on any other include.
 function(mcdbn_room name)
-  cmake_parse_arguments(ROOM "" "" "USES;LIBRARIES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS src/${name}/*.cpp)
+  cmake_parse_arguments(ROOM "SEPARATE" "" "USES;LIBRARIES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS src/${name}/*.cpp src/${name}/*/*.cpp)
   list(TRANSFORM ROOM_USES PREPEND mcdbn_)
   add_library(mcdbn_${name} STATIC ${sources})
   target_include_directories(mcdbn_${name} PUBLIC ${CMAKE_SOURCE_DIR}/include ${CMAKE_SOURCE_DIR}/src
@@ -12,6 +14,9 @@ function(mcdbn_room name)
                                              nlohmann_json::nlohmann_json fmt::fmt spdlog::spdlog
                                       PRIVATE mcdbn_warnings)
   set_target_properties(mcdbn_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  if(ROOM_SEPARATE)
+    set_target_properties(mcdbn_${name} PROPERTIES UNITY_BUILD OFF)
+  endif()
   mcdbn_precompile(mcdbn_${name} mcdbn_base)
   set(MCDBN_ROOMS ${MCDBN_ROOMS} ${name} PARENT_SCOPE)
 endfunction()

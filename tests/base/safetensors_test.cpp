@@ -153,6 +153,25 @@ TEST_CASE("a file is replaced as a whole: who has the old one open keeps it") {
   CHECK_THROWS_AS(read_safetensors(folder / "missing"), InputError);
 }
 
+TEST_CASE("numbers of 16 bits take half the room and come back rounded to the nearest") {
+  const ScratchFolder folder;
+  MatrixF values(2, 3);
+  values << 1.0F, -0.1F, 1e-3F, 1.0F + 1.0F / 2048, 100.3F, 0.0F;
+  Safetensors content;
+  content.put("x", values);
+  const auto single = folder / "single.safetensors", half = folder / "half.safetensors";
+  write_safetensors(single, content);
+  content.half = true;
+  write_safetensors(half, content);
+  CHECK(std::filesystem::file_size(single) - std::filesystem::file_size(half) == 12);
+  const MatrixF got = read_safetensors(half).get("x", "half", 2, 3);
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const float want = values.data()[i];
+    CHECK(std::abs(got.data()[i] - want) <= std::abs(want) / 2048);  // half of 2^-10
+  }
+  CHECK(got != values);
+}
+
 TEST_CASE("damaged files are refused by name, with what is wrong") {
   const ScratchFolder folder;
   const std::string data = bytes_of({1, 2, 3, 4, 5, 6});
@@ -162,19 +181,37 @@ TEST_CASE("damaged files are refused by name, with what is wrong") {
            offsets + "}}";
   };
   CHECK(complaint(folder, file_of(entry("F32", "[2, 3]", "[0, 24]"), data)).empty());
-  CHECK(complaint(folder, file_of(entry("F32", "[2]", "[8, 16]"), data)).empty());
-  for (const char* dtype : {"F64", "F16", "I32", ""})
+  for (const char* dtype : {"F64", "BF16", "I32", ""})
     CHECK(says(complaint(folder, file_of(entry(dtype, "[2, 3]", "[0, 24]"), data)), "F32"));
   // Data that end before the tensor does, or that are read from behind the end.
-  const std::string past = "past the file's end";
+  const std::string offsets = ": x.data_offsets";
   CHECK(says(complaint(folder, file_of(entry("F32", "[2, 3]", "[0, 24]"), data.substr(0, 23))),
-             past));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[2, 3]", "[4, 28]"), data)), past));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[0]", "[25, 25]"), data)), past));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[2]", "[8, 0]"), data)), past));
+             offsets + "[1]: must be at least 0 and at most 23, not 24"));
+  CHECK(says(complaint(folder, file_of(entry("F32", "[2, 3]", "[4, 28]"), data)), offsets));
+  CHECK(says(complaint(folder, file_of(entry("F32", "[0]", "[25, 25]"), data)), offsets));
+  CHECK(says(complaint(folder, file_of(entry("F32", "[2]", "[8, 0]"), data)), offsets));
+  CHECK(says(complaint(folder, file_of(entry("F32", "[6]", "[0, 24, 24]"), data)), offsets));
+  CHECK(says(complaint(folder, file_of(entry("F32", "[6]", "[0]"), data)), offsets));
+  CHECK(says(complaint(folder, file_of(entry("F32", "[6]", "[-1, 24]"), data)), offsets));
+  // Bytes of no tensor, before, between and behind, and bytes of two.
+  const auto two = [&](const std::string& first, const std::string& second) {
+    return complaint(
+        folder,
+        file_of(R"({"a": {"dtype": "F32", "shape": [2], "data_offsets": )" + first +
+                    R"(}, "b": {"dtype": "F32", "shape": [2], "data_offsets": )" + second + "}}",
+                data.substr(0, 16)));
+  };
+  CHECK(two("[0, 8]", "[8, 16]").empty());
+  CHECK(two("[8, 16]", "[0, 8]").empty());
+  CHECK(says(two("[0, 8]", "[4, 12]"), "'b': its numbers overlap those before them"));
+  CHECK(says(two("[0, 8]", "[0, 8]"), "'b': its numbers overlap"));
+  CHECK(says(complaint(folder, file_of(entry("F32", "[2]", "[8, 16]"), data)), "leave a hole"));
+  CHECK(says(complaint(folder, file_of(entry("F32", "[2]", "[0, 8]"), data)),
+             "16 bytes that belong to no tensor"));
   // More or fewer bytes than the shape asks for.
-  const std::string size = "not that of its shape";
-  for (const char* shape : {"[2, 2]", "[7]", "[]", "[2, 3, 2]", "[0, 6]"})
+  const std::string size = ": x.shape: is not that of the numbers that are there";
+  for (const char* shape : {"[2, 2]", "[7]", "[]", "[2, 3, 2]", "[0, 6]",
+                            "[4611686018427387904, 4]", "[4294967296, 4294967296, 6]"})
     CHECK(says(complaint(folder, file_of(entry("F32", shape, "[0, 24]"), data)), size));
   CHECK(says(complaint(folder, file_of(entry("F32", "[2]", "[0, 9]"), data)), size));
   // A header that is no header.

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string>
 
 namespace mcdbn::test {
@@ -34,5 +35,13 @@ class ScratchFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// Names of the files and folders right in a folder.
+inline std::set<std::string> entries_of(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.insert(entry.path().filename());
+  return names;
+}
 
 }  // namespace mcdbn::test

@@ -55,14 +55,14 @@ TEST_CASE("settings: ranges and their words") {
     const char* text;
   };
   const double tiny = std::numeric_limits<double>::denorm_min();
-  for (const Case& one :
-       std::vector<Case>{{any_number(), {-1e300, 0, 1e300}, {}, "a finite number"},
-                         {at_least(2), {2, 1e300}, {1.999, -3}, "at least 2"},
-                         {above(0), {tiny, 5}, {0, -0.0, -tiny}, "above 0"},
-                         {within(-1, 1), {-1, 0, 1}, {-1.01, 1.01}, "at least -1 and at most 1"},
-                         {between(0, 180), {tiny, 179.9}, {0, 180, 200}, "above 0 and below 180"},
-                         {share_below_one(), {0, 0.999}, {-tiny, 1}, "at least 0 and below 1"},
-                         {Range{.most = 4}, {-9, 4}, {4.1}, "at most 4"}}) {
+  for (const Case& one : std::vector<Case>{
+           {any_number(), {-1e300, 0, 1e300}, {}, "a finite number"},
+           {at_least(2), {2, kLargest}, {1.999, -3, 1e300}, "at least 2 and at most 1000000000"},
+           {above(0), {tiny, 5}, {0, -0.0, -tiny, 1e300}, "above 0 and at most 1000000000"},
+           {within(-1, 1), {-1, 0, 1}, {-1.01, 1.01}, "at least -1 and at most 1"},
+           {between(0, 180), {tiny, 179.9}, {0, 180, 200}, "above 0 and below 180"},
+           {share_below_one(), {0, 0.999}, {-tiny, 1}, "at least 0 and below 1"},
+           {Range{.most = 4}, {-9, 4}, {4.1}, "at most 4"}}) {
     CAPTURE(one.text);
     CHECK(one.range.text() == one.text);
     for (const double value : one.in) CHECK(one.range.contains(value));
@@ -75,7 +75,7 @@ TEST_CASE("settings: groups are named before their settings, and checked by that
   CHECK(values_of(Outer{}) ==
         Values{{"count", "3"}, {"inner.share", "0.5"}, {"inner.flag", "true"}});
   CHECK_NOTHROW(check_settings(Outer{}));
-  check_refused<Outer>("count", 1, "at least 2");
+  check_refused<Outer>("count", 1, "at least 2 and at most 1000000000");
   check_refused<Outer>("inner.share", 1, "at least 0 and below 1");
   check_refused<Outer>("inner.share", -kInfinity, "a finite number");
 }
@@ -84,18 +84,19 @@ TEST_CASE("settings: a value is of its setting's kind and range, or refused") {
   std::size_t count = 7;
   CHECK(assigned(at_least(2), 5, count) == "ok");
   CHECK(count == 5);
-  CHECK(assigned(at_least(2), -3, count) == "it must be at least 2, not -3");
+  CHECK(assigned(at_least(2), -3, count) == "it must be at least 2 and at most 1000000000, not -3");
   CHECK(assigned(any_number(), -3, count) == "it must be at least 0, not -3");
   CHECK(assigned(at_least(2), 2.0, count) == "it must be a whole number, not 2.0");
   CHECK(assigned(at_least(2), true, count) == "it must be a whole number, not true");
   CHECK(assigned(at_least(2), "two", count) == "it must be a whole number, not \"two\"");
   CHECK(count == 5);
-  CHECK(assigned(at_least(0), std::numeric_limits<std::size_t>::max(), count) == "ok");
-  CHECK(count == std::numeric_limits<std::size_t>::max());
+  CHECK(assigned(any_seed(), std::size_t{9'000'000'000'000'000'000}, count) == "ok");
+  CHECK(count == 9'000'000'000'000'000'000);
+  CHECK(assigned(any_seed(), std::numeric_limits<std::size_t>::max(), count) != "ok");
   double number = 7;
   CHECK(assigned(above(0), 3, number) == "ok");
   CHECK(number == 3);
-  CHECK(assigned(above(0), 0.0, number) == "it must be above 0, not 0");
+  CHECK(assigned(above(0), 0.0, number) == "it must be above 0 and at most 1000000000, not 0");
   CHECK(assigned(above(0), false, number) == "it must be a number, not false");
   bool flag = false;
   CHECK(assigned(on_or_off(), true, flag) == "ok");

@@ -146,6 +146,9 @@ TEST_CASE("the same rate, no frames, and rates that are none") {
   CHECK_THROWS_AS(resample_track(track, 0), ConfigError);
   CHECK_THROWS_AS(resample_track(track, -30), ConfigError);
   CHECK_THROWS_AS(resample_track(track, kMissing), ConfigError);
-  track.fps = 0;
-  CHECK_THROWS_AS(resample_track(track, 30), ConfigError);
+  CHECK_THROWS_AS(resample_track(track, 1e9), ConfigError);
+  for (const double rate : {0.0, 1e-9, 1e300}) {
+    track.fps = rate;
+    CHECK_THROWS_AS(resample_track(track, 30), ConfigError);
+  }
 }

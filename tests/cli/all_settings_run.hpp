@@ -26,7 +26,7 @@ class AllSettingsRun {
 /// config.toml of a run, setting by setting.
 std::map<std::string, double> recorded_settings(const std::filesystem::path& run);
 
-/// What `train` records for these options. It stops there: metrics.jsonl cannot be written.
+/// What `train --print-settings` prints for these options.
 std::map<std::string, double> settings_of_options(const std::string& options);
 
 }  // namespace mcdbn::test

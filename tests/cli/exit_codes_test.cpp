@@ -70,7 +70,7 @@ TEST_CASE("exit codes: usage 2, input 3, without any device") {
            {"train " + clip + " -o " + out + " --camera-fov 180", 2, "--camera-fov"},
            {"train " + clip + " -o " + out + " --fine-tuning-dropout 1", 2,
             "--fine-tuning-dropout must be at least 0 and below 1, not 1"},
-           {"regenerate --input t.csv -o " + out, 2, "--model"},
+           {"regenerate --quiet --input t.csv -o " + out, 3, "t.csv: no such file"},
            {"evaluate --model m", 2, "--test"},
            {"evaluate --model m --test t --camera-elevation -89.05", 2, "--camera-elevation"},
            {"evaluate --model m --test t --camera-elevation 90", 2, "--camera-elevation"},
@@ -81,6 +81,83 @@ TEST_CASE("exit codes: usage 2, input 3, without any device") {
     check_case(one);
   CHECK(!fs::exists(out));
   CHECK(!fs::exists(out + ".png"));
+}
+
+TEST_CASE("exit codes: numbers out of any range are 2, NaN is in none, messages are short") {
+  const ScratchFolder folder;
+  const std::string clip = folder.write("clip.bvh", small_bvh(8)).string();
+  const std::string out = (folder / "out").string();
+  const std::string grid =
+      folder
+          .write("sweep.toml",
+                 [] {
+                   std::string text = "test = ['t']\n[grid]\n";
+                   for (const char* name :
+                        {"seed", "order", "hidden", "batch", "phases", "fps", "layers"})
+                     text += fmt::format("{} = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]\n", name);
+                   return text;
+                 }())
+          .string();
+  const std::string project = "project " + clip + " -o " + out,
+                    train = "train " + clip + " -o " + out,
+                    render = "render " + clip + " -o " + out + ".png",
+                    regenerate = "regenerate --model m --input t.csv -o " + out,
+                    generate = "generate --model m --seed-clip c.bvh -o " + out;
+  for (const Case& one : std::vector<Case>{
+           {project + " --fps 1e-300", 2,
+            "--fps, if not 0, must be at least 0.1 and at most 10000"},
+           {render + " --fps 1e-300", 2, "--fps"},
+           {render + " --fps 1e9", 2, "--fps: must be at least 0 and at most 10000, not '1e9'"},
+           {project + " --fps nan", 2, "--fps: must be at least 0"},
+           {project + " --fps inf", 2, "--fps: must be at least 0"},
+           {project + " --camera-distance nan", 2, "--camera-distance: must be above 0"},
+           {project + " --image-size 1000000000 5", 2, "--image-size: must be at least 1"},
+           {project + " --image-size -1 5", 2, "--image-size: must be at least 1"},
+           {project + " --noise-px 1e300", 2, "--noise-px"},
+           {render + " --orbit-speed nan", 2, "--orbit-speed"},
+           {render + " --video-fps nan", 2, "--video-fps: must be at least 1 and at most 240"},
+           {render + " --over-from -1", 2, "--over-from"},
+           {regenerate + " --temperature nan", 2,
+            "--temperature: must be at least 0 and at most 10"},
+           {regenerate + " --samples nan", 2, "--samples"},
+           {regenerate + " --fps 1e-9", 2, "--fps: must be at least 0.1 and at most 10000"},
+           {generate + " --temperature nan", 2, "--temperature"},
+           {generate + " --frames 1e300", 2, "--frames: must be at least 1 and at most 1000000"},
+           {"bench --seconds nan", 2, "--seconds"},
+           {"synthesize --action walk --clips 1000000000 -o " + out, 2, "--clips"},
+           {train + " --seed -1", 2, "--seed must be at least 0"},
+           {train + " --seed 18446744073709551615", 2,
+            "--seed must be at least 0 and at most 9e+18"},
+           {train + " --layers 100000", 2, "--layers must be at least 1 and at most 64"},
+           {train + " --hidden 1000000000", 2, "--hidden must be at least 1 and at most 100000"},
+           {train + " --order -1", 2, "--order must be at least 0 and at most 1000"},
+           {train + " --augment-speed nan", 2, "--augment-speed must be"},
+           {train + " --augment-bone 1e300", 2, "--augment-bone must be"},
+           {train + " --gaussian-rate 1e300", 2, "--gaussian-rate must be above 0 and at most 100"},
+           {train + " --fine-tuning-windows 1000000000", 2, "--fine-tuning-windows must be"},
+           {train + " --phases 1e9", 2, "--phases must be a whole number"},
+           {train + " --sweep " + grid, 2, "10000000 configurations; a sweep has 10000 at most"}}) {
+    check_case(one);
+    CHECK(run_cli(one.arguments).standard_error.size() < 300 + out.size());
+  }
+  CHECK(!fs::exists(out));
+}
+
+TEST_CASE("exit codes: what a training cannot do with these clips or this device is 2, at once") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const std::string train = "train " + pipeline.training_clips() + " --quiet --force -o '" +
+                            (folder / "run").string() + "' ";
+  for (const Case& one : std::vector<Case>{
+           {train + "--order 100", 2, "--order 100"},
+           {train + "--order 40", 2, "but the longest clip has 36"},
+           {train + "--look-ahead 500", 2, "a window of 511 frames"},
+           {train + "--hidden 100000 --mrbm-hidden 100000", 2, "lower --hidden (now 100000)"},
+           {train + "--fine-tuning-windows 100000 --fine-tuning-window-frames 1000", 2,
+            "--fine-tuning-windows (100000)"}})
+    check_case(one);
+  CHECK(!fs::exists(folder / "run/model.safetensors"));
 }
 
 TEST_CASE("exit codes: bad models and tracks are 3, no such device 4") {
@@ -108,19 +185,19 @@ TEST_CASE("exit codes: bad models and tracks are 3, no such device 4") {
   CHECK(!fs::exists(out));
 }
 
-TEST_CASE("Ctrl-C: training stops with 130, the metrics so far, and no model") {
+TEST_CASE("Ctrl-C: training stops with 130, what is unfinished, and no model") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;
-  const fs::path run = folder / "run", metrics = run / "metrics.jsonl";
+  const fs::path run = folder / "run", metrics = run / "unfinished/metrics.jsonl";
   const std::string small = "--hidden 8 --mrbm-hidden 8 --stages greedy --layers 1";
   const CliResult result = interrupted_after(
       metrics, fmt::format("train {} -o '{}' {} --quiet --gaussian-epochs 1000000",
                            pipeline.training_clips(), run.string(), small));
   CHECK(result.exit_code == 130);
-  CHECK(result.standard_error == "mcdbn-cl: error: interrupted\n");
+  CHECK(result.standard_error.starts_with("mcdbn-cl: error: interrupted; "));
   CHECK(!fs::exists(run / "model.safetensors"));
-  CHECK(fs::exists(run / "config.toml"));
+  CHECK(fs::exists(run / "unfinished/config.toml"));
   CHECK(mcdbn::read_text_file(metrics).ends_with("}\n"));
 
   // A sweep stops too, instead of going on with the next configuration.
@@ -128,7 +205,7 @@ TEST_CASE("Ctrl-C: training stops with 130, the metrics so far, and no model") {
       folder.write("sweep.toml", fmt::format("test = ['{}']\n[grid]\nseed = [1, 2]\n",
                                              (pipeline.motion() / "walk_s02_01.bvh").string()));
   const CliResult swept = interrupted_after(
-      folder / "swept/seed=1/metrics.jsonl",
+      folder / "swept/seed=1/unfinished/metrics.jsonl",
       fmt::format("train {} -o '{}' {} --gaussian-epochs 2 --mrbm-epochs 1000000 --sweep '{}'",
                   pipeline.training_clips(), (folder / "swept").string(), small, sweep.string()));
   CHECK(swept.exit_code == 130);

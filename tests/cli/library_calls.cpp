@@ -28,7 +28,8 @@ LibraryTraining train_by_library(const std::vector<std::filesystem::path>& clips
     network.sampling = calibrated_sampling(network, data.modalities, data.tracks, data.poses);
   const ScratchFolder folder;
   save_model(folder / "model.safetensors",
-             {std::move(network), data.modalities, data.clips, record, std::move(stopped)});
+             {std::move(network), data.modalities, data.clips, record, std::move(stopped)},
+             config.half_precision ? StoredNumbers::half : StoredNumbers::single);
   result.model_file = read_text_file(folder / "model.safetensors");
   return result;
 }

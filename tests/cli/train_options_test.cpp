@@ -67,7 +67,7 @@ TEST_CASE("train: every option changes what its help says") {
   const fs::path run = folder / "run";
   const auto model = [&] { return mcdbn::read_text_file(run / "model.safetensors"); };
   const auto trained = [&](const std::string& clips, const std::string& options) {
-    const CliResult result = train(clips, run, kQuick + " " + options);
+    const CliResult result = train(clips, run, kQuick + " --force " + options);
     CAPTURE(result.standard_error);
     CHECK(result.exit_code == 0);
     return result;
@@ -77,7 +77,7 @@ TEST_CASE("train: every option changes what its help says") {
 
   std::vector<OptionRow> rows = setting_option_rows();
   const std::string call =
-      fmt::format("train {} -o '{}' {}", pipeline.training_clips(), run.string(), kQuick);
+      fmt::format("train {} -o '{}' {} --force", pipeline.training_clips(), run.string(), kQuick);
   for (const OptionRow& row : device_rows(call, model)) rows.push_back(row);
   rows.push_back({"data", [&] {
                     trained(pipeline.test_clips(), "");
@@ -134,6 +134,32 @@ TEST_CASE("train: every option changes what its help says") {
                     CHECK(share(" --tracks exact") == "detector = 0.0");
                     CHECK(share(" --tracks detector").starts_with("detector = 0.8"));
                     CHECK(share(" --tracks detector --augment-detector 0.25") == "detector = 0.25");
+                  }});
+  rows.push_back({"--force", [&] {
+                    CHECK(train(pipeline.training_clips(), run, kQuick).exit_code == 2);
+                    trained(pipeline.training_clips(), "");  // which says it
+                  }});
+  rows.push_back({"--resume", [&] {  // of a training that is done; run_folder_test.cpp has others
+                    const std::string resume = fmt::format("train --resume '{}'", run.string());
+                    const CliResult result = run_cli(resume);
+                    CHECK(result.exit_code == 0);
+                    CHECK(result.standard_error.find("is trained to its end") != std::string::npos);
+                    CHECK(run_cli(resume + " --seed 1").exit_code == 2);
+                  }});
+  rows.push_back({"--print-settings", [&] {  // as --config reads them
+                    const CliResult printed = run_cli("train --print-settings " + kQuick);
+                    CHECK(printed.exit_code == 0);
+                    const fs::path file = folder.write("all.toml", printed.standard_output);
+                    REQUIRE(train(pipeline.training_clips(), run,
+                                  fmt::format("--force --config '{}'", file.string()))
+                                .exit_code == 0);
+                    CHECK(model() == plain);
+                    CHECK(mcdbn::read_text_file(run / "config.toml") == printed.standard_output);
+                  }});
+  rows.push_back({"--checkpoint-minutes", [&] {
+                    CHECK(train("x.bvh", run, "--checkpoint-minutes -1").exit_code == 2);
+                    trained(pipeline.training_clips(), "--checkpoint-minutes 0");
+                    CHECK(model() == plain);
                   }});
   rows.push_back({"--sweep", [&] {
                     const CliResult result =

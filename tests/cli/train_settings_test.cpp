@@ -97,7 +97,7 @@ TEST_CASE("the help says each setting's unit, default, reason and range, by grou
   const std::string help = run_cli("train --help").standard_output;
   const auto said = [&](const std::string& words) { return help.find(words) != std::string::npos; };
   CHECK(said("\n  --hidden UNITS=768 "));
-  CHECK(said("hidden units of every CRBM (at least 1)"));
+  CHECK(said("hidden units of every CRBM (at least 1 and at most 100000)"));
   CHECK(said("\n  --gaussian-rate NUMBER=0.001"));
   CHECK(said("\n  --camera-fov DEGREES=45.0"));
   CHECK(said("vertical field of view (above 0 and below"));

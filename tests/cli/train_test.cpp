@@ -49,7 +49,7 @@ TEST_CASE("train --stages leaves stages out") {
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const auto stages = [&](const std::string& options, const std::string& size) {
     const fs::path run = pipeline.folder("stages");
-    const std::string all = size + " --quiet " + options;
+    const std::string all = size + " --quiet --force " + options;
     REQUIRE(train(pipeline.training_clips(), run, all).exit_code == 0);
     return stages_of(run);
   };

@@ -59,8 +59,8 @@ EncodedClip damaged(const Scene& scene, std::size_t i, const TestRunOptions& opt
 
 Motion motion_of(const Scene& scene, const EncodedClip& truth, const MatrixF& pose,
                  const std::optional<TrackFitSettings>& fit) {
-  return fit_to_track(PosePrior::around(pose), scene.modalities, truth.track,
-                      {truth.camera, truth.motion.skeleton}, fit)
+  return fit_to_track(pose, scene.modalities, truth.track, {truth.camera, truth.motion.skeleton},
+                      fit)
       .motion;
 }
 

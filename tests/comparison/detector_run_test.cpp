@@ -77,11 +77,15 @@ TEST_CASE("a detector's test run: the clip by another body, from another camera,
       CHECK(same(truth.track.x_px, want.track.x_px));
       CHECK(same(truth.track.confidence, want.track.confidence));
       CHECK(truth.track.joint_names[2] == "left_elbow");
-      // Nobody is told the body: the answer has the model's.
+      // Nobody is told the body: the answer has the model's, with lengths that the track tells.
       const Skeleton& answered = results[i].samples.at(0).motion.skeleton;
-      CHECK(answered.joints[3].offset ==
-            scene.modalities.pose_features.skeleton().joints[3].offset);
-      CHECK(answered.joints[3].offset != truth.motion.skeleton.joints[3].offset);
+      const Eigen::Vector3d own = scene.modalities.pose_features.skeleton().joints[3].offset;
+      const Eigen::Vector3d offset = answered.joints[3].offset;
+      CHECK(offset.cross(own).norm() < 1e-9 * own.squaredNorm());
+      CHECK(offset.norm() > 0.8 * own.norm());
+      CHECK(offset.norm() < 1.2 * own.norm());
+      CHECK(offset != own);
+      CHECK(offset != truth.motion.skeleton.joints[3].offset);
       CHECK(std::isfinite(results[i].samples.at(0).score.limbs.pa_mpjpe_mm));
     }
     CHECK(results[0].truth.camera.camera_from_world != results[1].truth.camera.camera_from_world);

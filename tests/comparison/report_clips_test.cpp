@@ -143,7 +143,7 @@ TEST_CASE("what a report is told of a clip") {
     const Model model = model_of(device);
     ClipResult result;
     result.truth = truth_of(motion, "walk/08_01.bvh");
-    result.seen = result.truth.track;
+    result.seen.joints = result.truth.track;
     result.trained_on = true;
     result.known_person = "08";
     for (const double turn : {10.0, 20.0}) {

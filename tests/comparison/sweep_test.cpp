@@ -84,6 +84,20 @@ TEST_CASE("sweep file: test clips are beside it, and each value knows where it s
   CHECK(sweep.configurations[1][0].value == -3);
 }
 
+TEST_CASE("sweep file: more configurations than anybody means are refused before they are made") {
+  std::string grid = "test = ['t']\n[grid]\n";
+  for (const char* name : {"seed", "order", "hidden", "batch", "phases", "fps", "layers",
+                           "look-ahead", "least-batches", "mrbm-hidden", "gaussian.rate"})
+    grid += std::string(name) + " = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]\n";
+  CHECK(error_in(grid) == " 100000000000 configurations; a sweep has 10000 at most");
+  std::string half = "[[configuration]]\n";
+  for (const char* name : {"seed", "order", "hidden"})
+    half +=
+        std::string(name) + " = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18]\n";
+  CHECK(error_in("test = ['t']\n" + half + half) ==
+        " 11664 configurations; a sweep has 10000 at most");
+}
+
 TEST_CASE("sweep file: what makes no sense is refused with its line") {
   CHECK(error_in("test = ['t']\n") == " nothing to try: give a [grid] or [[configuration]]");
   CHECK(error_in("[grid]\nseed = [1]\n") == " no 'test': name the clips to score on");
@@ -119,11 +133,11 @@ TEST_CASE("sweep: a line for each configuration, failed ones too, none done twic
     CHECK(begun == std::vector<bool>{false, true});
     CHECK(std::filesystem::exists(folder / "run/order=3/model.safetensors"));
 
-    const ordered_json diverged = sweep().run({said("gaussian.rate", 1e6)});
+    const ordered_json diverged = sweep().run({said("gaussian.rate", 100)});
     CHECK(diverged.at("status") == "failed");
     CHECK(diverged.at("error").get<std::string>().find("`gaussian.rate`") != std::string::npos);
     const ordered_json refused = sweep().run({said("hidden", 0)});
-    CHECK(refused.at("error") == "hidden must be at least 1, not 0");
+    CHECK(refused.at("error") == "hidden must be at least 1 and at most 100000, not 0");
     CHECK(refused.at("settings") == ordered_json{{"hidden", 0}});
 
     begun.clear();

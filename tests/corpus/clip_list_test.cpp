@@ -45,7 +45,7 @@ TEST_CASE("a list of clips: what is wrong is said with its line") {
   refused("", ":1: no clips");
   refused("clip = 3\n", ":1: no list of clips");
   refused("[[clips]]\nfile = \"walk.bvh\"\n", ":1: no list of clips");
-  refused("[[clip]]\nfile = \"walk.bvh\"\nwho = \"ann\"\n", ":3: no key who");
+  refused("[[clip]]\nfile = \"walk.bvh\"\nwho = \"ann\"\n", ":3: no key 'who'");
   refused("[[clip]]\nfile = 3\n", ":2: file: give a text");
   refused("[[clip]]\nfile = \"walk.bvh\"\nperson = \"\"\n", ":3: person: give a text");
   refused("[[clip]]\nperson = \"ann\"\n", ":1: a clip without file");

@@ -64,7 +64,8 @@ TEST_CASE("clip: the calibration pose goes, then the rate becomes the one asked 
 TEST_CASE("clip: rates that are none and clips without frames are refused") {
   const test::ScratchFolder folder;
   const fs::path path = write(folder, "a.bvh", calibrated());
-  for (const double fps : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+  for (const double fps :
+       {-1.0, 1e-300, 0.09, 10'001.0, 1e300, std::nan(""), std::numeric_limits<double>::infinity()})
     CHECK_THROWS_AS(load_clip(path, {.fps = fps}), ConfigError);
   Motion empty = calibrated();
   empty.channels.resize(0, empty.channels.cols());

@@ -90,7 +90,6 @@ void check_set(const TrainingFiles& walks, const CorpusConfig& config,
   const auto level_track = [&](const Track2d& track, const Camera& camera) {
     return turn_track(track, camera, level_camera(camera, config.camera.field_of_view_deg));
   };
-  CHECK(set.people.empty());
   const std::vector<Motion> clips = clips_of(walks, config, phases);
   REQUIRE(set.tracks.size() == clips.size());
   REQUIRE(set.poses.size() == clips.size());
@@ -139,6 +138,13 @@ TEST_CASE("a training set: every clip encoded and scaled for itself and for its 
   check_set(walks, config, {1, 1, 1}, 4);
 }
 
+TEST_CASE("a training set: what detectors see is scaled by their errors too") {
+  const TrainingFiles walks(kWalks);
+  CorpusConfig config = settings();
+  config.augment.detector = 1;
+  check_set(walks, config, {1, 1, 1}, 3);
+}
+
 TEST_CASE("a training set for the greedy stages alone is scaled by its clips alone") {
   const TrainingFiles walks(kWalks);
   CorpusConfig config = settings();
@@ -157,6 +163,27 @@ TEST_CASE("clips are taken on as many grids as were asked for and as their own r
   config.fps = 30.0;  // exactly four and two
   config.phases = 9;
   check_set(walks, config, {4, 2, 2}, 0);
+}
+
+TEST_CASE("a training set and views of it: who is seen, and who does what where that was said") {
+  const TrainingFiles walks(kWalks);
+  CorpusConfig config = settings();
+  config.phases = 3;
+  std::vector<LoadedClip> clips = load_clips(walks.files(), config.keep_first_frame, nullptr);
+  const auto taken = [&] { return mcdbn::make_training_set(clips, config, config.seed, true); };
+  const auto seen = [&] {
+    return mcdbn::make_augmented_views(clips, taken().modalities, config, config.seed);
+  };
+  using Numbers = std::vector<std::size_t>;
+  CHECK(taken().people == Numbers{0, 0, 0, 1, 1, 0, 0});  // on 3, 2 and 2 grids
+  CHECK(taken().groups.empty());
+  CHECK(seen().people == Numbers{0, 0, 0, 1, 1, 1, 0, 0, 0});
+  CHECK(seen().groups.empty());
+  clips[0].action = "walk";
+  clips[2].action = "run";
+  CHECK(taken().people == Numbers{0, 0, 0, 1, 1, 0, 0});
+  CHECK(taken().groups == Numbers{0, 0, 0, 1, 1, 2, 2});
+  CHECK(seen().groups == Numbers{0, 0, 0, 1, 1, 1, 2, 2, 2});
 }
 
 TEST_CASE("a leading calibration pose is dropped from clips and views, or kept") {

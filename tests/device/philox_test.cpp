@@ -45,7 +45,7 @@ cl_uint4 kernel_argument(const RandomKey& key) {
            (static_cast<cl_uint>(key.stream) << 16) | key.phase}};
 }
 
-const RandomKey kKey{
+const RandomKey kPhiloxKey{
     .seed = 0x0123456789abcdef, .step = 0xfedcba98, .stream = 0xbeef, .phase = 0x7ffe};
 
 /// The words of the library's own test kernel, with one more row as a guard.
@@ -57,12 +57,12 @@ void check_words(Device& device, int width, std::uint32_t rows, std::uint32_t co
   const std::vector<std::uint32_t> initial((rows + 1) * columns, kGuard);
   const cl::Buffer out = to_device(device, initial);
   launch(device, device.programs().kernel("pointwise.cl", "philox_words", {{"VEC", width}}),
-         {{columns, rows}}, out, static_cast<cl_int>(columns), kernel_argument(kKey));
+         {{columns, rows}}, out, static_cast<cl_int>(columns), kernel_argument(kPhiloxKey));
   const auto words = to_host<std::uint32_t>(device, out, initial.size());
   int different = 0;
   for (std::uint32_t r = 0; r < rows; ++r)
     for (std::uint32_t c = 0; c < columns; ++c)
-      different += words[r * columns + c] != random_bits(kKey, r, c) ? 1 : 0;
+      different += words[r * columns + c] != random_bits(kPhiloxKey, r, c) ? 1 : 0;
   CHECK(different == 0);
   for (std::uint32_t c = 0; c < columns; ++c) CHECK(words[rows * columns + c] == kGuard);
 }
@@ -149,8 +149,8 @@ kernel void uniform_probe(global const uint* bits, global float* out) {
 TEST_CASE("small: random_uniform scales the host's bits like the device") {
   for (std::uint32_t row = 0; row < 9; ++row)
     for (std::uint32_t column = 0; column < 100; ++column)
-      CHECK(random_uniform(kKey, row, column) ==
-            (random_bits(kKey, row, column) >> 9) * 0x1p-23 + 0x1p-24);
+      CHECK(random_uniform(kPhiloxKey, row, column) ==
+            (random_bits(kPhiloxKey, row, column) >> 9) * 0x1p-23 + 0x1p-24);
 }
 
 TEST_CASE("uniform numbers fill (0, 1) evenly and do not depend on each other") {
@@ -159,7 +159,7 @@ TEST_CASE("uniform numbers fill (0, 1) evenly and do not depend on each other") 
   std::array<int, kBins> bins{};
   double sum = 0;
   for (std::uint32_t c = 0; c < kCount; ++c) {
-    const double u = random_uniform(kKey, 3, c);
+    const double u = random_uniform(kPhiloxKey, 3, c);
     sum += u;
     ++bins[static_cast<std::size_t>(u * kBins)];
   }
@@ -170,27 +170,28 @@ TEST_CASE("uniform numbers fill (0, 1) evenly and do not depend on each other") 
   for (const int count : bins) chi_squared += (count - expected) * (count - expected) / expected;
   CHECK(std::abs(chi_squared - (kBins - 1)) < 5.0 * std::sqrt(2.0 * (kBins - 1)));
 
-  RandomKey next_step = kKey, next_phase = kKey, next_stream = kKey, next_seed = kKey;
+  RandomKey next_step = kPhiloxKey, next_phase = kPhiloxKey, next_stream = kPhiloxKey,
+            next_seed = kPhiloxKey;
   ++next_step.step;
   --next_phase.phase;
   ++next_stream.stream;
   ++next_seed.seed;
   const double limit = 5.0 / std::sqrt(static_cast<double>(kCount));
-  CHECK(std::abs(correlation(kKey, 0, 1, kKey, 0, kCount)) < limit);
-  CHECK(std::abs(correlation(kKey, 0, 0, kKey, 1, kCount)) < limit);
-  CHECK(std::abs(correlation(kKey, 0, 0, kKey, 4, kCount)) < limit);
+  CHECK(std::abs(correlation(kPhiloxKey, 0, 1, kPhiloxKey, 0, kCount)) < limit);
+  CHECK(std::abs(correlation(kPhiloxKey, 0, 0, kPhiloxKey, 1, kCount)) < limit);
+  CHECK(std::abs(correlation(kPhiloxKey, 0, 0, kPhiloxKey, 4, kCount)) < limit);
   for (const RandomKey& other : {next_step, next_phase, next_stream, next_seed})
-    CHECK(std::abs(correlation(kKey, 0, 0, other, 0, kCount)) < limit);
+    CHECK(std::abs(correlation(kPhiloxKey, 0, 0, other, 0, kCount)) < limit);
 }
 
 TEST_CASE("normal numbers are Box-Muller's and have the moments of a normal distribution") {
   constexpr std::uint32_t kCount = 1U << 17;
-  RandomKey second = kKey;
+  RandomKey second = kPhiloxKey;
   second.phase |= 0x8000U;
   double sum = 0, squares = 0, fourth = 0, worst = 0;
   for (std::uint32_t c = 0; c < kCount; ++c) {
-    const double z = random_normal(kKey, 1, c);
-    const double u1 = random_uniform(kKey, 1, c);
+    const double z = random_normal(kPhiloxKey, 1, c);
+    const double u1 = random_uniform(kPhiloxKey, 1, c);
     const double u2 = random_uniform(second, 1, c);
     worst = std::max(worst, std::abs(z - std::sqrt(-2.0 * std::log(u1)) *
                                              std::cos(2.0 * std::numbers::pi * u2)));

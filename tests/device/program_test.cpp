@@ -142,7 +142,16 @@ TEST_CASE("small: kernels are read from MCDBN_KERNEL_DIR, with what they include
       return error_text([&] { device.programs().kernel(file, name); });
     };
     CHECK(kernel("absent.cl", "any").find("MCDBN_KERNEL_DIR") != std::string::npos);
-    CHECK(kernel("broken.cl", "broken").find("missing_name") != std::string::npos);
+    const std::string failure = kernel("broken.cl", "broken");
+    CHECK(failure.find("missing_name") != std::string::npos);
+    CHECK(failure.find('\n') == std::string::npos);
+    const std::string before_log = "(the whole log: ";
+    const auto log = failure.find(before_log);
+    REQUIRE(log != std::string::npos);
+    const std::string path = failure.substr(log + before_log.size());
+    CHECK(read_text_file(path.substr(0, path.size() - 1)).find("missing_name") !=
+          std::string::npos);
+    std::filesystem::remove(path.substr(0, path.size() - 1));
     CHECK(error_text([&] {
             device.programs().kernel("probe.cl", "wrong_name", {{"EXTRA", 3}});
           }).find("wrong_name") != std::string::npos);

@@ -154,6 +154,9 @@ TEST_CASE("rendering says what is wrong and leaves no file behind") {
   RenderOptions options;
   options.sheet_columns = 0;
   CHECK_THROWS_AS(render({clip}, folder / "a.png", options), ConfigError);
+  options = {};
+  options.placement.width_px = options.placement.height_px = 100'000;
+  CHECK_THROWS_AS(render({clip}, folder / "a.png", options), ConfigError);
   RenderClip empty = clip;
   empty.motion.channels.resize(0, empty.motion.channels.cols());
   CHECK_THROWS_AS(render({empty}, folder / "a.png"), InputError);

@@ -225,6 +225,7 @@ TEST_CASE("write_report: every file, a page of its own without network") {
   const test::ScratchFolder folder;
   EvaluationReport report = small_report();
   report.clips[0].name = "</script><b>";
+  report.clips[1].name = "<!--<script>alert(1)</script>";
   write_report(folder / "report", report);
   for (const char* file :
        {"summary.json", "table_3.csv", "table_4.csv", "table_5.csv", "table_6.csv", "table_7.csv",
@@ -234,6 +235,9 @@ TEST_CASE("write_report: every file, a page of its own without network") {
   CHECK(page.starts_with("<!doctype html>"));
   CHECK(page.find("{{") == std::string::npos);
   CHECK(page.find("</script><b>") == std::string::npos);
+  CHECK(page.find("<!--<script>") == std::string::npos);
+  CHECK(page.find("<script>alert") == std::string::npos);
+  CHECK(page.find("\\u003cscript>alert(1)") != std::string::npos);
   for (const char* reference : {"src=", "http:", "https:", "@import", "url("}) {
     std::string text = page;
     const std::string svg = "http://www.w3.org/2000/svg";

@@ -13,7 +13,7 @@ using test::swinging;
 
 namespace {
 
-const Eigen::Matrix3d kCamera = camera_rotation(-70, 25);
+const Eigen::Matrix3d kBodiesCamera = camera_rotation(-70, 25);
 
 Motion scaled(Motion motion, double scale) {
   int column = 0;
@@ -34,13 +34,13 @@ TEST_CASE(
     "pose features: a body's unit and size change nothing, the rate only the velocity's frames") {
   const Motion motion = swinging(small_body(), 40, 50);
   const PoseFeatures features = PoseFeatures::fit({&motion});
-  const MatrixD want = features.encode(motion, kCamera);
+  const MatrixD want = features.encode(motion, kBodiesCamera);
   // Each clip is measured by its own body, not by the first one's.
-  CHECK((features.encode(scaled(motion, 0.01), kCamera) - want).cwiseAbs().maxCoeff() < 1e-9);
-  CHECK((features.encode(scaled(motion, 3), kCamera) - want).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK((features.encode(scaled(motion, 0.01), kBodiesCamera) - want).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK((features.encode(scaled(motion, 3), kBodiesCamera) - want).cwiseAbs().maxCoeff() < 1e-9);
   Motion fast = motion;
   fast.frame_time_s /= 4;
-  const MatrixD faster = features.encode(fast, kCamera);
+  const MatrixD faster = features.encode(fast, kBodiesCamera);
   const Eigen::Index velocity = features.velocity_feature();
   CHECK(faster.leftCols(velocity) == want.leftCols(velocity));
   CHECK((faster.rightCols<3>() - 4 * want.rightCols<3>()).cwiseAbs().maxCoeff() < 1e-9);
@@ -52,8 +52,8 @@ TEST_CASE("pose features: decoded clips have the rate, the body and the root's p
   const PoseFeatures features = PoseFeatures::fit({&motion});
   MatrixD root(25, 3);
   for (int t = 0; t < 25; ++t) root.row(t) << 5 * t, 80 - t, -3 * t + 7;
-  const Motion decoded =
-      features.decode(features.encode(motion, kCamera), kCamera, motion.skeleton, 24, root);
+  const Motion decoded = features.decode(features.encode(motion, kBodiesCamera), kBodiesCamera,
+                                         motion.skeleton, 24, root);
   CHECK(decoded.fps() == doctest::Approx(24));
   CHECK((joint_positions(decoded).leftCols<3>() - root).cwiseAbs().maxCoeff() < 1e-9);
   CHECK((decoded.channels.rightCols(decoded.channels.cols() - 6) -

@@ -11,16 +11,16 @@ using namespace mcdbn;
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 MatrixD example() {
   MatrixD values(4, 5);
   // A plain column, a constant that has no exact binary form, one with a gap, one all missing, one
   // that varies less than counts.
-  values << 1, 0.1, 2, kNan, 5,      //
-      3, 0.1, kNan, kNan, 5 + 1e-8,  //
-      5, 0.1, 6, kNan, 5,            //
-      7, 0.1, 4, kNan, 5 - 1e-8;
+  values << 1, 0.1, 2, kUnknown, 5,          //
+      3, 0.1, kUnknown, kUnknown, 5 + 1e-8,  //
+      5, 0.1, 6, kUnknown, 5,                //
+      7, 0.1, 4, kUnknown, 5 - 1e-8;
   return values;
 }
 

@@ -11,7 +11,7 @@ using namespace mcdbn;
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 
 /// Joints that move in ways of their own, the root too, in another order than the features'.
 Track2d track_at(double fps, int frames) {
@@ -29,14 +29,14 @@ Track2d track_at(double fps, int frames) {
   return track;
 }
 
-const TrackFeatures kFeatures({"Hand", "Foot"}, "Hips");
+const TrackFeatures kWiredFeatures({"Hand", "Foot"}, "Hips");
 
 }  // namespace
 
 TEST_CASE("track features: which number of a track stands in which feature") {
   const Track2d track = track_at(30, 40);
-  const MatrixD features = kFeatures.encode(track);
-  const std::vector<std::string> names = kFeatures.feature_names();
+  const MatrixD features = kWiredFeatures.encode(track);
+  const std::vector<std::string> names = kWiredFeatures.feature_names();
   CHECK(names == std::vector<std::string>{"Hand_x", "Hand_y", "Foot_x", "Foot_y", "root_image_x",
                                           "root_image_y", "log_body_size"});
   for (const int t : {0, 1, 20, 39}) {
@@ -60,16 +60,16 @@ TEST_CASE("track features: gaps are short and sizes smooth by seconds, not by fr
     CAPTURE(fps);
     const int frames = static_cast<int>(4 * fps), bridged = static_cast<int>(0.2 * fps);
     Track2d track = track_at(fps, frames);
-    const MatrixD whole = kFeatures.encode(track);
+    const MatrixD whole = kWiredFeatures.encode(track);
     const auto lose = [&](int first, int count) {
-      track.x_px.block(first, 2, count, 1).setConstant(kNan);
-      track.y_px.block(first, 2, count, 1).setConstant(kNan);
+      track.x_px.block(first, 2, count, 1).setConstant(kUnseen);
+      track.y_px.block(first, 2, count, 1).setConstant(kUnseen);
       track.confidence.block(first, 2, count, 1).setZero();
     };
     lose(5, bridged);
     lose(30, bridged + 1);
     TrackFeatures::FillCount filled;
-    const MatrixD features = kFeatures.encode(track, &filled);
+    const MatrixD features = kWiredFeatures.encode(track, &filled);
     CHECK(filled.interpolated == bridged);
     CHECK(filled.missing == bridged + 1);
     CHECK(features.block(5, 0, bridged, 2).allFinite());
@@ -84,7 +84,8 @@ TEST_CASE("track features: gaps are short and sizes smooth by seconds, not by fr
       track.x_px.row(t) << 640, 640, 640 + 100 * size, 0;
       track.y_px.row(t) << 360 + 150 * size, 360, 360, 0;
     }
-    const Eigen::VectorXd log_size = kFeatures.encode(track).col(6).segment(frames / 4, frames / 2);
+    const Eigen::VectorXd log_size =
+        kWiredFeatures.encode(track).col(6).segment(frames / 4, frames / 2);
     return log_size.maxCoeff() - log_size.minCoeff();
   };
   CHECK(std::abs(swing(15) - swing(60)) < 0.01);
@@ -93,8 +94,8 @@ TEST_CASE("track features: gaps are short and sizes smooth by seconds, not by fr
 
 TEST_CASE("standardizer: what is unknown stands at the mean, and numbers keep their columns") {
   MatrixD values(3, 4);
-  values << 1, 5, kNan, 10,  //
-      2, 5, 7, 30,           //
+  values << 1, 5, kUnseen, 10,  //
+      2, 5, 7, 30,              //
       6, 5, 11, 80;
   const Standardizer scaling = Standardizer::fit({&values});
   REQUIRE(scaling.kept_columns() == std::vector<int>{0, 2, 3});

@@ -34,7 +34,7 @@ Motion parsed(const std::string& asf, const std::string& amc) {
   return parse_asf_amc(asf, "a.asf", amc, "a.amc", nullptr);
 }
 
-std::string changed(std::string text, const std::string& from, const std::string& to) {
+std::string changed_text(std::string text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
   REQUIRE(at != std::string::npos);
   return text.replace(at, from.size(), to);
@@ -86,16 +86,17 @@ TEST_CASE("ASF and AMC: bones turn about their own axes, and an inch is 2.54 cm"
   CHECK((pose.world_from_joint[0] * Eigen::Vector3d::UnitX() + Eigen::Vector3d::UnitZ()).norm() <
         1e-9);
   // In radians the same.
-  const Motion radians = parsed(kAsf, changed(changed(changed(kAmc, ":DEGREES", ":RADIANS"),
-                                                      "0 90 0", "0 1.5707963267948966 0"),
-                                              "thigh 90 0", "thigh 1.5707963267948966 0"));
+  const Motion radians =
+      parsed(kAsf, changed_text(changed_text(changed_text(kAmc, ":DEGREES", ":RADIANS"), "0 90 0",
+                                             "0 1.5707963267948966 0"),
+                                "thigh 90 0", "thigh 1.5707963267948966 0"));
   CHECK((radians.channels.row(0) - motion.channels.row(0)).norm() < 1e-9);
 }
 
 TEST_CASE("ASF and AMC: the order of axes and of freedoms counts") {
-  const std::string asf =
-      changed(changed(kAsf, "dof rx rz", "dof rz rx"), "axis 0 0 90 XYZ", "axis 20 30 40 ZXY");
-  const Motion motion = parsed(asf, changed(kAmc, "thigh 90 0", "thigh 50 60"));
+  const std::string asf = changed_text(changed_text(kAsf, "dof rx rz", "dof rz rx"),
+                                       "axis 0 0 90 XYZ", "axis 20 30 40 ZXY");
+  const Motion motion = parsed(asf, changed_text(kAmc, "thigh 90 0", "thigh 50 60"));
   const auto turn = [](double angle_deg, int axis) {
     return Eigen::AngleAxisd(angle_deg * EIGEN_PI / 180, Eigen::Vector3d::Unit(axis))
         .toRotationMatrix();
@@ -134,8 +135,8 @@ TEST_CASE("ASF and AMC: what is wrong is named with its file and line") {
         Case{false, "thigh 90 0", "thigh 90 0\nthigh 90 0", "a.amc:7: 'thigh' comes twice"},
         Case{false, "\n1\n", "\nfirst\n", "a.amc:4: 'first' where the number of a frame"}}) {
     CAPTURE(c.to);
-    CHECK_THROWS_WITH_AS(parsed(c.asf ? changed(kAsf, c.from, c.to) : kAsf,
-                                c.asf ? kAmc : changed(kAmc, c.from, c.to)),
+    CHECK_THROWS_WITH_AS(parsed(c.asf ? changed_text(kAsf, c.from, c.to) : kAsf,
+                                c.asf ? kAmc : changed_text(kAmc, c.from, c.to)),
                          doctest::Contains(c.message), InputError);
   }
   CHECK_THROWS_WITH_AS(parsed(kAsf, ":DEGREES\n"), doctest::Contains("no frame"), InputError);
@@ -151,7 +152,7 @@ TEST_CASE("motion files: an AMC finds its skeleton beside it") {
   folder.write("1.asf", kAsf);
   CHECK_THROWS_AS(read_motion(amc), InputError);  // neither is its own
   std::vector<std::string> warnings;
-  folder.write("16.asf", changed(kAsf, "length 0.5", "length 1"));
+  folder.write("16.asf", changed_text(kAsf, "length 0.5", "length 1"));
   const Motion of_person = read_motion(amc, &warnings);
   CHECK(of_person.skeleton.joints[2].end_sites[0].norm() == doctest::Approx(3 * 2.54));
   REQUIRE(warnings.size() == 1);

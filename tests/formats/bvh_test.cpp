@@ -139,7 +139,7 @@ TEST_CASE("bad files are refused with file, line and advice") {
   };
   starts("", "clip.bvh:1: the file ends where 'HIERARCHY' should stand");
   starts(std::string("ELF\0\1\2", 6), "clip.bvh:1: is not plain text");
-  starts("\x89PNG\r\n\x1a\n", "clip.bvh:1: '?PNG' where 'HIERARCHY' should stand");
+  starts("\x89PNG\r\n\x1a\n", "clip.bvh:1: '\xEF\xBF\xBDPNG' where 'HIERARCHY' should stand");
   starts(kHierarchy, "clip.bvh:16: the file ends without MOTION");
   starts(replaced(kSmall, "MOTION\n", ""), "clip.bvh:16: 'Frames:' is unknown here");
   starts(replaced(kSmall, "\t\t}\n\t}\n}", "\t\t}\n\t}\n"),
@@ -160,7 +160,9 @@ TEST_CASE("bad files are refused with file, line and advice") {
   starts(replaced(kSmall, "Frames: 2", "Frames: 99999999999"), "clip.bvh:17: the number of");
   starts(replaced(kSmall, "Frames: 2", "Frames: 2147483647"), "clip.bvh:21: only 2 of the 2147");
   starts(replaced(kSmall, "Frames: 2", "Frames: 3"), "clip.bvh:21: only 2 of the 3 frames");
-  starts(replaced(kSmall, "0.04", "0"), "clip.bvh:18: the frame time must be more than 0");
+  for (const char* time : {"0", "-0.04", "1e-300", "1e-9", "0.00009", "10.1", "1e9", "1e300"})
+    starts(replaced(kSmall, "0.04", time),
+           "clip.bvh:18: the frame time must be at least 0.0001 and at most 10 seconds");
   starts(replaced(kSmall, "0.04", "fast"), "clip.bvh:18: 'fast' is not a number");
   starts(replaced(kSmall, "Frame Time: 0.04\n", ""), "clip.bvh:18: '1' where 'Frame' should stand");
   starts(replaced(kSmall, "2 3 4 5 6 7\n", "2 3 4 5 6\n"), "clip.bvh:19: 6 values on this line");

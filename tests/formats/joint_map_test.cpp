@@ -41,7 +41,7 @@ TEST_CASE("joint map: a role and a name on each line") {
 TEST_CASE("joint map: what is wrong is said with its line") {
   CHECK(error_of("head = \"a\"\nleft_heap = \"b\"")
             .starts_with("map.toml:2: no role is called "
-                         "left_heap; there are: pelvis, "));
+                         "'left_heap'; there are: pelvis, "));
   CHECK(error_of("\n\nhead = 3") == "map.toml:3: head: give the name of a joint, in quotes");
   CHECK(error_of("head = \"\"") == "map.toml:1: head: give the name of a joint, in quotes");
   CHECK(error_of("head = [\"a\"]") == "map.toml:1: head: give the name of a joint, in quotes");

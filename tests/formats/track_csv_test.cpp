@@ -9,6 +9,7 @@
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/track_file.hpp"
 
 using namespace mcdbn;
 
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-bool same(const MatrixD& a, const MatrixD& b) {
+bool same_numbers(const MatrixD& a, const MatrixD& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() &&
          (a.array() == b.array() || (a.array().isNaN() && b.array().isNaN())).all();
 }
@@ -55,9 +56,9 @@ TEST_CASE("track CSV: what is written is read back bit by bit") {
   CHECK(text.find("1e-07,4,0.5,,,0\n") != std::string::npos);
   const Track2d back = read_track_csv(folder / "track.csv");
   CHECK(back.joint_names == track.joint_names);
-  CHECK(same(back.x_px, track.x_px));
-  CHECK(same(back.y_px, track.y_px));
-  CHECK(same(back.confidence, track.confidence));
+  CHECK(same_numbers(back.x_px, track.x_px));
+  CHECK(same_numbers(back.y_px, track.y_px));
+  CHECK(same_numbers(back.confidence, track.confidence));
   CHECK(back.fps == track.fps);
   CHECK(back.width_px == 1280);
   CHECK(back.height_px == 720);
@@ -84,6 +85,28 @@ TEST_CASE("track CSV: what other programs write is read") {
   CHECK(std::isnan(track.y_px(2, 1)));
   CHECK(track.confidence(2, 1) == 0);
   CHECK(track.y_px(2, 0) == 8);
+}
+
+TEST_CASE("track CSV: times that are not even are read with a notice, even ones without") {
+  const test::ScratchFolder folder;
+  const auto notices = [&](const std::string& times) {
+    std::vector<std::string> told;
+    read_track(folder.write("a.csv", "# width_px=640 height_px=480\n" + times), {}, &told);
+    std::string all;
+    for (const std::string& one : told) all += one + '\n';
+    return all;
+  };
+  const std::string header = "time_s,Hips_x_px,Hips_y_px\n";
+  CHECK(notices(header + "0,1,2\n0.033,1,2\n0.067,1,2\n0.1,1,2\n").find("time_s") ==
+        std::string::npos);
+  CHECK(notices(header + "0,1,2\n0.04,1,2\n0.12,1,2\n0.16,1,2\n")
+            .find("time_s goes on by 0.04 to 0.08 s: frames are taken as even, 18.75 a second") !=
+        std::string::npos);
+  // Thirty times off, one way and the other.
+  CHECK(notices(header + "0,1,2\n1,1,2\n2,1,2\n").find("says 1 frames a second") !=
+        std::string::npos);
+  CHECK(notices("# fps=900\nHips_x_px,Hips_y_px\n1,2\n").find("says 900 frames a second") !=
+        std::string::npos);
 }
 
 TEST_CASE("track CSV: confidence 0 means missing, an empty confidence says nothing") {
@@ -113,18 +136,25 @@ TEST_CASE("track CSV: what is wrong is named with its file and line") {
         Case{kHeader + "1,2px,1\n", ":2: '2px'"},
         Case{kHeader + "inf,2,1\n", ":2: 'inf'"},
         Case{kHeader + "1,2,-1\n", ":2: confidence -1"},
-        Case{"Hips_x_px,Hips_y_px,Hips_x_px\n1,2,3\n", ":1: column Hips_x_px comes twice"},
-        Case{"Hips_x_px,Hand_x_px,Hand_y_px\n1,2,3\n", ":1: joint Hips has no column Hips_y_px"},
-        Case{"Hips_confidence\n1\n", ":1: joint Hips has no column Hips_x_px"},
+        Case{"Hips_x_px,Hips_y_px,Hips_x_px\n1,2,3\n", ":1: column 'Hips_x_px' comes twice"},
+        Case{"Hips_x_px,Hand_x_px,Hand_y_px\n1,2,3\n",
+             ":1: joint 'Hips' has no column 'Hips_y_px'"},
+        Case{"Hips_confidence\n1\n", ":1: joint 'Hips' has no column 'Hips_x_px'"},
         Case{"\nframe,Hips_x_px,Hips_y_px\n", ":2: unknown column 'frame'"},
         Case{"_x_px,_y_px\n1,2\n", ":1: unknown column '_x_px'"},
         Case{"Hips_x_px,time_s,Hips_y_px\n", ":1: time_s is not the first"},
         Case{"time_s\n1\n", ":1: no joint columns"},
         Case{"time_s,a_x_px,a_y_px\n0,1,1\n0,1,1\n", ":3: time_s does not rise"},
         Case{"time_s,a_x_px,a_y_px\n,1,1\n", ":2: time_s does not rise"},
-        Case{"# fps=0\n" + kHeader, ":1: fps=0"},
-        Case{"# fps=fast\n" + kHeader, ":1: fps=fast"},
-        Case{"# width_px=1.5\n" + kHeader, ":1: width_px"}}) {
+        Case{"# fps=0\n" + kHeader, ":1: 'fps=0' has no usable value"},
+        Case{"# fps=1e-9\n" + kHeader, ":1: 'fps=1e-9' has no usable value"},
+        Case{"# fps=10001\n" + kHeader, "a number of at least 0.1 and at most 10000"},
+        Case{"# width_px=100001\n" + kHeader, ":1: 'width_px=100001'"},
+        Case{"time_s,a_x_px,a_y_px\n0,1,1\n33333333,1,1\n66666666,1,1\n",
+             ": time_s makes 3e-08 frames a second"},
+        Case{"time_s,a_x_px,a_y_px\n0,1,1\n1e-9,1,1\n", ": time_s makes 1e+09 frames"},
+        Case{"# fps=fast\n" + kHeader, ":1: 'fps=fast'"},
+        Case{"# width_px=1.5\n" + kHeader, ":1: 'width_px=1.5'"}}) {
     CAPTURE(c.text);
     const std::string message = message_of(folder.write("bad.csv", c.text));
     CHECK_MESSAGE(message.find("bad.csv:") != std::string::npos, message);

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int kFrames = 6;
+constexpr int kDetailFrames = 6;
 
 /// x, y, confidence of 17 joints about a place.
 json body(double x) {
@@ -27,7 +27,7 @@ json body(double x) {
   return numbers;
 }
 
-json points(double x) {
+json detail_points(double x) {
   json list = json::array();
   const json numbers = body(x);
   for (std::size_t i = 0; i < numbers.size(); i += 3) list.push_back({numbers[i], numbers[i + 1]});
@@ -42,7 +42,7 @@ double place_of(int who, int frame) {
 
 std::string lists_of_people(const std::string& format) {
   json list = json::array();
-  for (int frame = 0; frame < kFrames; ++frame) {
+  for (int frame = 0; frame < kDetailFrames; ++frame) {
     json instances = json::array();
     // Not always in the same order.
     for (const int who : {frame / 2 % 2, 1 - frame / 2 % 2}) {
@@ -53,7 +53,7 @@ std::string lists_of_people(const std::string& format) {
                         {"idx", {who + 1.0}}});
       if (format == "coco")
         list.push_back({{"image_id", frame}, {"keypoints", body(x)}, {"track_id", who + 4}});
-      instances.push_back({{"keypoints", points(x)},
+      instances.push_back({{"keypoints", detail_points(x)},
                            {"keypoint_scores", std::vector<double>(17, 0.5)},
                            {"track_id", who}});
     }
@@ -73,7 +73,7 @@ TEST_CASE("track details: the numbers that a tracker gave people hold") {
     CHECK(reading.format == format);
     REQUIRE(reading.people.size() == 2);
     for (const Track2d& track : reading.people)
-      for (int frame = 1; frame < kFrames; ++frame)
+      for (int frame = 1; frame < kDetailFrames; ++frame)
         CHECK(std::abs(track.x_px(frame, 0) - track.x_px(frame - 1, 0)) == doctest::Approx(700));
   }
 }

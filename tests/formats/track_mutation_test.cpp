@@ -12,6 +12,7 @@
 #include "base/text_file.hpp"
 #include "formats/figure_track.hpp"
 #include "formats/layout_samples.hpp"
+#include "fuzz/mutated.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/track_file.hpp"
 
@@ -21,31 +22,6 @@ using namespace mcdbn::test;
 namespace {
 
 constexpr int kMutations = 300;
-
-std::string mutated(std::string text, std::mt19937& random) {
-  constexpr std::string_view kLetters = "\"[]{},:.-+0123456789eEx_\n\t ;\x01\xFF";
-  const int changes = 1 + static_cast<int>(random() % 3);
-  for (int change = 0; change < changes && !text.empty(); ++change) {
-    const std::size_t at = random() % text.size(), length = random() % 40;
-    switch (random() % 5) {
-      case 0:
-        text[at] = kLetters[random() % kLetters.size()];
-        break;
-      case 1:
-        text.erase(at, length);
-        break;
-      case 2:
-        text.insert(at, text.substr(random() % text.size(), length));
-        break;
-      case 3:
-        text.resize(at);
-        break;
-      default:
-        text.insert(at, 1, kLetters[random() % kLetters.size()]);
-    }
-  }
-  return text;
-}
 
 /// Reads it; the message of what refused it, or nothing.
 std::string refusal(const std::filesystem::path& path, const std::string& format) {

@@ -110,6 +110,14 @@ inline GreedyScene scene_with_history_noise() {
   return scene;
 }
 
+/// Three people, of 3, 22 and 17 frames; those of few frames are drawn more often.
+inline GreedyScene scene_with_rare_people() {
+  GreedyScene scene = scene_of_different_sizes();
+  scene.plan.groups = {0, 1, 0, 1, 2};
+  scene.plan.people_power = 0.25;
+  return scene;
+}
+
 inline CdSettings settings_of(const reference::CdPlan& plan) {
   return {.gibbs_steps = static_cast<std::size_t>(plan.gibbs_steps),
           .rate = plan.rate,
@@ -133,6 +141,7 @@ inline LearningSettings settings_of(const reference::GreedyPlan& plan) {
   settings.look_ahead = static_cast<std::size_t>(plan.look_ahead);
   settings.batch = static_cast<std::size_t>(plan.batch);
   settings.least_batches = static_cast<std::size_t>(plan.least_batches);
+  settings.people_power = plan.people_power;
   settings.gaussian = settings_of(plan.gaussian);
   settings.binary = settings_of(plan.binary);
   settings.mrbm = {.rate = plan.mrbm.rate,
@@ -145,7 +154,7 @@ inline LearningSettings settings_of(const reference::GreedyPlan& plan) {
 
 inline Mcdbn train_on_device(Device& device, const GreedyScene& scene,
                              const EpochObserver& observer = {}, const Mcdbn* start = nullptr) {
-  const MatrixSource source({{"track", scene.tracks}, {"pose", scene.poses}});
+  const MatrixSource source({{"track", scene.tracks}, {"pose", scene.poses}}, scene.plan.groups);
   return train_greedy(device, source, settings_of(scene.plan), observer, start);
 }
 

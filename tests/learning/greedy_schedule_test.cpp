@@ -135,6 +135,12 @@ TEST_CASE("greedy training gives the double reference's parameters: histories wi
   check_training(scene_with_history_noise());
 }
 
+TEST_CASE("greedy training gives the double reference's parameters: rare people drawn more often") {
+  check_training(scene_with_rare_people());
+  CHECK(difference(train_on_host(scene_with_rare_people()).machine,
+                   train_on_host(scene_of_different_sizes()).machine) > 1e3 * kGreedyTolerance);
+}
+
 TEST_CASE("greedy training goes on from the weights that it is given, and leaves them alone") {
   GreedyScene scene = scene_of_equal_sizes();
   // Nobody looks at them: a training that did would be far off.
@@ -177,7 +183,7 @@ TEST_CASE("the same settings give the same bits, watched or not") {
 TEST_CASE("a code that is always on or off gives the MRBM biases of a bounded size") {
   GreedyScene scene = scene_of_different_sizes();
   scene.plan.layers = 1;
-  scene.plan.gaussian.initial_deviation = 300;  // saturates nearly every hidden unit
+  scene.plan.gaussian.initial_deviation = 100;  // saturates nearly every hidden unit
   scene.plan.gaussian.epochs = scene.plan.mrbm.epochs = 1;
   scene.plan.gaussian.rate = scene.plan.gaussian.rate_A = scene.plan.gaussian.rate_B = 1e-30;
   scene.plan.mrbm.rate = 1e-30;

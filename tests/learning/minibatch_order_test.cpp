@@ -115,6 +115,31 @@ TEST_CASE("shuffles: what the last whole mini-batch leaves over differs from epo
   });
 }
 
+TEST_CASE("shuffles: rows come as often as they weigh, in any order") {
+  on_every_device([](Device& device) {
+    constexpr std::uint32_t kEpochs = 200;
+    const std::vector<double> weights{1, 1, 0.5, 4, 3.5};
+    MinibatchSchedule schedule(device, numbers(5), 2, 4, weights);
+    std::vector<double> counts(5);
+    std::vector<std::size_t> first(5);
+    for (std::uint32_t epoch = 1; epoch <= kEpochs; ++epoch) {
+      schedule.shuffle({.seed = 2, .step = epoch});
+      const Order order = order_of(device, schedule);
+      REQUIRE(order.size() == 10);  // as without weights
+      std::vector<double> now(5);
+      for (const std::int32_t row : order) now[static_cast<std::size_t>(row)] += 1;
+      for (std::size_t row = 0; row < 5; ++row) {
+        CHECK(std::abs(now[row] - weights[row]) < 1);  // the weights sum to 10
+        counts[row] += now[row] / kEpochs;
+      }
+      ++first[static_cast<std::size_t>(order.front())];
+    }
+    // A row of weight 0.5 is there or not: four deviations of its mean are 0.14.
+    for (std::size_t row = 0; row < 5; ++row) CHECK(std::abs(counts[row] - weights[row]) < 0.14);
+    for (const std::size_t count : first) CHECK(count > 0);
+  });
+}
+
 TEST_CASE("mini-batches: whole ones only, and no more repetitions than it takes") {
   struct Counts {
     std::int32_t rows;

@@ -24,6 +24,7 @@ const std::vector<Expected<LearningSettings>>& learning_settings() {
       {"look-ahead", [](C& c) { return at(c.look_ahead); }, "5"},
       {"batch", [](C& c) { return at(c.batch); }, "100"},
       {"least-batches", [](C& c) { return at(c.least_batches); }, "40"},
+      {"people-power", [](C& c) { return at(c.people_power); }, "1"},
       {"gaussian.gibbs-steps", [](C& c) { return at(c.gaussian.gibbs_steps); }, "5"},
       {"gaussian.rate", [](C& c) { return at(c.gaussian.rate); }, "0.001"},
       {"gaussian.rate-A", [](C& c) { return at(c.gaussian.rate_A); }, "1e-05"},
@@ -82,6 +83,7 @@ const std::vector<Expected<LearningSettings>>& learning_settings() {
        "0"},
       {"regeneration.sampled", [](C& c) { return at(c.regeneration.sampled); }, "false"},
       {"fine-tuning.steps", [](C& c) { return at(c.fine_tuning.steps); }, "3000"},
+      {"fine-tuning.new-views-every", [](C& c) { return at(c.fine_tuning.new_views_every); }, "0"},
       {"fine-tuning.from-greedy", [](C& c) { return at(c.fine_tuning.from_greedy); }, "true"},
       {"fine-tuning.windows", [](C& c) { return at(c.fine_tuning.windows); }, "48"},
       {"fine-tuning.people-power", [](C& c) { return at(c.fine_tuning.people_power); }, "0.5"},
@@ -229,8 +231,8 @@ TEST_CASE("learning settings: what is out of range is refused by its name") {
     accepted(name, 0);
     accepted(name, 0.999);
   }
-  for (const double value : {-0.1, 1.1})
-    refused("fine-tuning.people-power", value, "at least 0 and at most 1");
+  for (const char* name : {"people-power", "fine-tuning.people-power"})
+    for (const double value : {-0.1, 1.1}) refused(name, value, "at least 0 and at most 1");
   for (const char* name :
        {"gaussian.rate-A", "gaussian.rate-B", "gaussian.weight-decay", "gaussian.initial-deviation",
         "binary.rate-A", "binary.rate-B", "binary.weight-decay", "binary.initial-deviation",
@@ -244,7 +246,7 @@ TEST_CASE("learning settings: what is out of range is refused by its name") {
 TEST_CASE("learning settings: what may be nothing is accepted as nothing") {
   for (const char* name :
        {"seed", "order", "look-ahead", "gaussian.momentum-from-epoch", "binary.momentum-from-epoch",
-        "fine-tuning.steps", "fine-tuning.from-greedy", "fine-tuning.people-power",
+        "fine-tuning.steps", "fine-tuning.from-greedy", "people-power", "fine-tuning.people-power",
         "fine-tuning.settle-frames"})
     check_accepted<LearningSettings>(name, 0);
 }

@@ -229,6 +229,7 @@ struct Recorded : LearningRule {
     frames = visible.front().matrix->to_host();
     seen = step.seen ? step.seen->to_host() : MatrixF();
   }
+  void visit_state(TrainingState&) override {}
   MatrixF frames, seen;
 };
 

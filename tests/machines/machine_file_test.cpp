@@ -4,6 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "base/safetensors.hpp"
 #include "base/scratch_folder.hpp"
 #include "device/every_device.hpp"
@@ -53,7 +56,8 @@ TEST_CASE("small: a CRBM comes back from its file as it was saved, scale and set
     for (const CrbmShape& shape : {CrbmShape{5, 3, 0, kBinary}, CrbmShape{3, 17, 2, kGaussian},
                                    CrbmShape{1, 1, 1, kBinary}}) {
       const CrbmParameters p = random_crbm(shape, 3, 4.0F);
-      ColumnScale scale{random_matrix(1, shape.visible, 8), random_matrix(1, shape.visible, 9)};
+      ColumnScale scale{random_matrix(1, shape.visible, 8),
+                        random_matrix(1, shape.visible, 9).cwiseAbs()};
       save_machine(path, {Crbm(device, p), {scale}, {{"seed", 7}}});
       const SavedMachine got = load_machine(device, path);
       REQUIRE(std::holds_alternative<Crbm>(got.machine));
@@ -100,7 +104,7 @@ TEST_CASE("a machine's file that is not whole is refused, and the message says w
   const auto path = folder / "machine.safetensors";
   on_every_device([&](Device& device) {
     save_machine(path, {Crbm(device, random_crbm({5, 3, 2, kGaussian}, 3, 4.0F)),
-                        {{random_matrix(1, 5, 8), random_matrix(1, 5, 9)}}});
+                        {{random_matrix(1, 5, 8), random_matrix(1, 5, 9).cwiseAbs()}}});
     const Safetensors whole = read_safetensors(path);
     REQUIRE(whole.tensors.size() == 8);
     for (const auto& [name, tensor] : whole.tensors) {
@@ -117,11 +121,40 @@ TEST_CASE("a machine's file that is not whole is refused, and the message says w
       return complaint(device, path, content);
     };
     CHECK(with("kind", "crbm").empty());
-    CHECK(says(with("kind", "other"), "a machine of unknown kind \"other\""));
+    CHECK(says(with("kind", "other"), "kind: a machine of unknown kind 'other'"));
     CHECK(says(with("kind", "cdbn"), "no tensor 0.W"));
-    CHECK(says(with("layers", 3), "damaged model description"));
-    CHECK(says(with("layers", json::array()), "damaged model description"));
+    CHECK(says(with("layers", 3), ": layers: a number where a list is expected"));
+    CHECK(says(with("layers", json::array()), ": layers: 0 values; more are needed"));
+    CHECK(says(with("layers",
+                    json::array({{{"visible", 5}, {"hidden", 3}, {"order", 2}, {"kind", "odd"}}})),
+               ": layers[0].kind: 'odd'; gaussian and binary are known"));
+    CHECK(says(with("scales", {4}), ": scales[0]: a scale of 4 columns"));
+    CHECK(says(with("scales", {5, 5}), ": scales[1]: a scale of 5 columns"));
+    for (const auto& [field, value] :
+         std::vector<std::pair<const char*, json>>{{"visible", -5},
+                                                   {"visible", 1e9},
+                                                   {"hidden", 0},
+                                                   {"hidden", 3.5},
+                                                   {"order", -2},
+                                                   {"order", 4000000000},
+                                                   {"order_A", 3},
+                                                   {"order_B", -1}}) {
+      CAPTURE(field);
+      json layer = {{"visible", 5}, {"hidden", 3}, {"order", 2}, {"kind", "gaussian"}};
+      layer[field] = value;
+      CHECK(says(with("layers", json::array({layer})), std::string(": layers[0].") + field + ": "));
+    }
     CHECK(says(with("format_version", 2), "model format 2, this program reads 1"));
+    for (const auto& [name, tensor] : whole.tensors)
+      for (const float odd : {std::nanf(""), std::numeric_limits<float>::infinity(), -1e38F}) {
+        CAPTURE(name);
+        Safetensors content = whole;
+        content.tensors[name].values.back() = odd;
+        CHECK(says(complaint(device, path, content), "tensor " + name + " holds"));
+      }
+    Safetensors flat = whole;
+    flat.tensors["scale.0.deviation"].values[2] = 0;
+    CHECK(says(complaint(device, path, flat), "tensor scale.0.deviation holds"));
     Safetensors other = whole;
     other.metadata = {{"mcdbn", "{}"}};
     CHECK(says(complaint(device, path, other), "not a machine that mcdbn-cl fitted"));

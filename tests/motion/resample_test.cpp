@@ -19,7 +19,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 
 /// A root that travels and turns about z, x, y, and a hinge below it; channels
 /// 0–2 position, 3–5 rotation, 6 the hinge.
-Motion clip(double fps, int frames, const std::function<double(int, double)>& channel_at) {
+Motion clip_of(double fps, int frames, const std::function<double(int, double)>& channel_at) {
   Motion motion;
   Joint root, hinge;
   root.name = "root";
@@ -47,7 +47,7 @@ TEST_CASE("what is below the cut-off keeps its amplitude and is not delayed") {
     if (channel == 0) return 10 * std::cos(kTurn * 5.0 * t);
     return channel == 6 ? 200 * t : 0.0;  // the hinge turns on at a steady pace
   };
-  const Motion slow = resample(clip(120, 481, wave), 30);
+  const Motion slow = resample(clip_of(120, 481, wave), 30);
   REQUIRE(slow.frames() == 121);
   CHECK(slow.frame_time_s == doctest::Approx(1.0 / 30));
   for (int frame = 10; frame < 111; ++frame) {
@@ -65,13 +65,13 @@ TEST_CASE("what the new rate cannot hold is removed, not folded back") {
     if (channel == 0) return 10 * std::cos(kTurn * 25.0 * t);
     return channel == 4 || channel == 6 ? 10 * std::sin(kTurn * 29.0 * t) : 0.0;
   };
-  const Motion slow = resample(clip(120, 481, wave), 30);
+  const Motion slow = resample(clip_of(120, 481, wave), 30);
   CHECK(slow.channels.middleRows(10, 100).cwiseAbs().maxCoeff() < 0.1);
 }
 
 TEST_CASE("a steady walk keeps its speed and its ends") {
   const auto walk = [](int channel, double t) { return channel == 2 ? 7 + 120 * t : 0.0; };
-  const Motion slow = resample(clip(120, 101, walk), 25);
+  const Motion slow = resample(clip_of(120, 101, walk), 25);
   REQUIRE(slow.frames() == 21);
   for (int frame = 0; frame < slow.frames(); ++frame) {
     CHECK(slow.channels(frame, 2) == doctest::Approx(walk(2, frame / 25.0)));
@@ -84,7 +84,7 @@ TEST_CASE("going up interpolates along the shortest turn, and angles stay contin
     if (channel == 0) return 10 * t;
     return channel == 3 ? (t < 0.05 ? 170.0 : -170.0) : 0.0;
   };
-  const Motion fast = resample(clip(10, 2, swing), 40);
+  const Motion fast = resample(clip_of(10, 2, swing), 40);
   REQUIRE(fast.frames() == 5);
   for (int frame = 0; frame < 5; ++frame) {
     CHECK(fast.channels(frame, 3) == doctest::Approx(170 + 5 * frame));
@@ -94,7 +94,7 @@ TEST_CASE("going up interpolates along the shortest turn, and angles stay contin
 
 TEST_CASE("phase shifts the grid by fractions of the new frame") {
   const auto ramp = [](int channel, double t) { return channel == 0 ? t : 0.0; };
-  const Motion motion = clip(120, 121, ramp);
+  const Motion motion = clip_of(120, 121, ramp);
   const Motion shifted = resample(motion, 30, 0.5);
   REQUIRE(shifted.frames() == 30);
   CHECK(shifted.channels(0, 0) == doctest::Approx(0.5 / 30));
@@ -105,12 +105,12 @@ TEST_CASE("phase shifts the grid by fractions of the new frame") {
 
 TEST_CASE("clips at the rate asked for, and clips of one frame") {
   const auto ramp = [](int channel, double t) { return channel == 0 ? t : 371.0; };
-  const Motion near = clip(29.97, 20, ramp);
+  const Motion near = clip_of(29.97, 20, ramp);
   const Motion unchanged = resample(near, 30);
   CHECK(unchanged.channels == near.channels);
   CHECK(unchanged.frame_time_s == near.frame_time_s);
 
-  const Motion one = clip(120, 1, ramp);
+  const Motion one = clip_of(120, 1, ramp);
   for (const double phase : {0.0, 0.7}) {
     for (const double rate : {30.0, 240.0}) {
       const Motion result = resample(one, rate, phase);
@@ -119,11 +119,11 @@ TEST_CASE("clips at the rate asked for, and clips of one frame") {
       CHECK(result.frame_time_s == doctest::Approx(1 / rate));
     }
   }
-  CHECK(resample(clip(120, 3, ramp), 30).frames() == 1);
+  CHECK(resample(clip_of(120, 3, ramp), 30).frames() == 1);
 }
 
 TEST_CASE("senseless rates are refused") {
-  const Motion motion = clip(120, 5, [](int, double t) { return t; });
+  const Motion motion = clip_of(120, 5, [](int, double t) { return t; });
   CHECK_THROWS_AS(resample(motion, 0), ConfigError);
   CHECK_THROWS_AS(resample(motion, -30), ConfigError);
   CHECK_THROWS_AS(resample(motion, std::nan("")), ConfigError);
@@ -134,7 +134,7 @@ TEST_CASE("senseless rates are refused") {
 
 TEST_CASE("a calibration pose is an authored one that the clip jumps away from") {
   const auto walk = [](int, double t) { return 25.3 + 40 * t; };
-  Motion motion = clip(120, 10, walk);
+  Motion motion = clip_of(120, 10, walk);
   CHECK_FALSE(has_leading_calibration_pose(motion));
   motion.channels.row(0).setZero();
   CHECK(has_leading_calibration_pose(motion));
@@ -146,10 +146,10 @@ TEST_CASE("a calibration pose is an authored one that the clip jumps away from")
   CHECK_FALSE(has_leading_calibration_pose(motion));
 
   // Motion that starts from rest only creeps away.
-  const Motion rest = clip(30, 10, [](int, double t) { return 300 * t * t; });
+  const Motion rest = clip_of(30, 10, [](int, double t) { return 300 * t * t; });
   CHECK_FALSE(has_leading_calibration_pose(rest));
-  CHECK_FALSE(has_leading_calibration_pose(clip(30, 1, walk)));
-  CHECK_THROWS_AS(without_first_frame(clip(30, 1, walk)), ShapeError);
+  CHECK_FALSE(has_leading_calibration_pose(clip_of(30, 1, walk)));
+  CHECK_THROWS_AS(without_first_frame(clip_of(30, 1, walk)), ShapeError);
 }
 
 TEST_CASE("calibration poses of the shared files") {
@@ -164,6 +164,22 @@ TEST_CASE("calibration poses of the shared files") {
     for (const auto& entry : std::filesystem::directory_iterator(test::shared_data() / folder)) {
       CHECK_FALSE(has_leading_calibration_pose(read_bvh(entry.path())));
     }
+  }
+}
+
+TEST_CASE("frames at another rate: as many as fit, and rates and numbers that are none") {
+  CHECK(frames_at_rate(31, 30, 60, 0, 0) == 61);
+  CHECK(frames_at_rate(31, 30, 10, 0, 0) == 11);
+  CHECK(frames_at_rate(31, 30, 10, 0.5, 0) == 10);
+  CHECK(frames_at_rate(1, 0.1, 10'000, 0, 0) == 1);
+  CHECK(frames_at_rate(100, 0.1, 10'000, 0, 0) == 9'900'001);
+  CHECK_THROWS_AS(frames_at_rate(102, 0.1, 10'000, 0, 0), InputError);
+  CHECK_THROWS_AS(frames_at_rate(2'000'000'000, 0.1, 10'000, 0, 0), InputError);
+  for (const double rate : {0.0, -30.0, 1e-300, 0.0999, 10'000.1, 1e300, std::nan("")}) {
+    CAPTURE(rate);
+    CHECK_THROWS_AS(frames_at_rate(10, rate, 30, 0, 0), ConfigError);
+    CHECK_THROWS_AS(frames_at_rate(10, 30, rate, 0, 0), ConfigError);
+    CHECK_THROWS_AS(resample(clip_of(30, 5, [](int, double) { return 0.0; }), rate), ConfigError);
   }
 }
 

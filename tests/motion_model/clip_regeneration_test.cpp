@@ -112,7 +112,8 @@ TEST_CASE("a joint that is never seen, without a camera and without a skeleton; 
   const MatrixF filled = fill_gaps(scene.modalities, scene.features, scene.hidden,
                                    {{std::nullopt, std::nullopt}, TrackFitSettings{}}, truth);
   CHECK_FALSE(has_gap(filled));
-  CHECK(off_in_gap(filled, scene.whole, scene.features) < 0.01F);
+  // Whose bones may have other lengths has them otherwise by a little.
+  CHECK(off_in_gap(filled, scene.whole, scene.features) < 0.02F);
   drop_joints(scene.hidden, 1, 1);
   scene.features = scene.modalities.encode_track(scene.hidden, scene.camera);
   CHECK_THROWS_AS(

@@ -52,11 +52,12 @@ struct ExampleModel {
             EarlyStopping{{"c.bvh", "d.bvh"}, 75, 1.0 / 3.0}};
   }
 
-  /// Its features are the small figure's; scales have columns that never change.
+  /// Its features are the small figure's; scales have columns that never change, and as many that
+  /// do as the lowest layers have units.
   Modalities modalities() const {
     Modalities result = figure.modalities();
-    result.pose_scale = scale(result.pose_features.dimension(), 1, {0, 5});
-    result.track_scale = scale(result.track_features.dimension(), 2, {3});
+    result.pose_scale = scale(result.pose_features.dimension(), 1, pose.front().shape.visible);
+    result.track_scale = scale(result.track_features.dimension(), 2, track.front().shape.visible);
     result.fps = 24.5;
     result.camera = {-35.25, 12.5, 321.5, 50.75, 1280, 721};
     return result;
@@ -73,10 +74,14 @@ struct ExampleModel {
   MatrixF next(std::size_t rows, std::size_t columns) {
     return random_matrix(rows, columns, ++seed_, 1.0F);
   }
-  static Standardizer scale(int columns, unsigned seed, const std::vector<int>& constant) {
+  /// The columns that vary are spread among the others.
+  static Standardizer scale(int columns, unsigned seed, std::size_t varying) {
     MatrixD values =
         random_matrix(20, static_cast<std::size_t>(columns), seed, 3.0F).cast<double>();
-    for (const int column : constant) values.col(column).setConstant(0.1 * (column + 1));
+    const int kept = static_cast<int>(varying);
+    for (int column = 0; column < columns; ++column)
+      if (column * kept / columns == (column + 1) * kept / columns)
+        values.col(column).setConstant(0.1 * (column + 1));
     return Standardizer::fit({&values});
   }
 

@@ -24,18 +24,19 @@ TEST_CASE("pose features: JSON keeps every bit, and damage is noticed") {
   const Motion motion = swinging(small_body_below_still_root(), 20, 30, {"RFoot"});
   const PoseFeatures features = PoseFeatures::fit({&motion});
   const nlohmann::json json = pose_features_json(features);
-  const PoseFeatures copy = pose_features_from(nlohmann::json::parse(json.dump()));
+  const nlohmann::json parsed = nlohmann::json::parse(json.dump());
+  const PoseFeatures copy = pose_features_from({parsed, "file"});
   CHECK(pose_features_json(copy) == json);
   CHECK(copy.encode(motion, kCamera) == features.encode(motion, kCamera));
   CHECK(there_and_back(copy, motion).channels == there_and_back(features, motion).channels);
   for (const char* key : {"skeleton", "root", "joints", "constant_channels"}) {
     nlohmann::json damaged = json;
     damaged.erase(key);
-    CHECK_THROWS_AS(pose_features_from(damaged), InputError);
+    CHECK_THROWS_AS(pose_features_from({damaged, "file"}), InputError);
   }
   nlohmann::json damaged = json;
   damaged["joints"].push_back(99);
-  CHECK_THROWS_AS(pose_features_from(damaged), InputError);
+  CHECK_THROWS_AS(pose_features_from({damaged, "file"}), InputError);
 }
 
 TEST_CASE("modalities: JSON keeps the level view; a model that does not speak of it has none") {
@@ -44,8 +45,8 @@ TEST_CASE("modalities: JSON keeps the level view; a model that does not speak of
   for (const bool level : {true, false}) {
     modalities.level_view = level;
     nlohmann::json json = modalities_json(modalities);
-    CHECK(modalities_from(json).level_view == level);
+    CHECK(modalities_from({json, "file"}).level_view == level);
     json.erase("level_view");
-    CHECK_FALSE(modalities_from(json).level_view);
+    CHECK_FALSE(modalities_from({json, "file"}).level_view);
   }
 }

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "base/safetensors.hpp"
 #include "base/scratch_folder.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -127,6 +130,111 @@ TEST_CASE("every field of a model's description is needed; a missing one is name
       const json::json_pointer where(part);
       for (const auto& [name, value] : about.at(where).items()) check_without(where, name);
     }
+  });
+}
+
+TEST_CASE("every number of a model's description has a range; file and field are named") {
+  on_every_device([](Device& device) {
+    const File file(device);
+    struct Case {
+      const char* field;
+      json value;
+      const char* named = nullptr;  ///< in place of the field
+    };
+    for (const Case& one : std::vector<Case>{
+             {"look_ahead", -1},
+             {"look_ahead", 1'000'000},
+             {"look_ahead", "5"},
+             {"mean_field_steps", -1},
+             {"mean_field_steps", 0},
+             {"mean_field_steps", 1'000'000'000},
+             {"mean_field_steps", 2.5},
+             {"fills_gaps", 1},
+             {"sampling.gibbs_steps", -1},
+             {"sampling.mrbm_gibbs_steps", 1'000'000'000},
+             {"sampling.scale", 1e300},
+             {"sampling.scale", -1},
+             {"sampling.steady", "yes"},
+             {"mrbm_hidden", -1},
+             {"mrbm_hidden", 0},
+             {"mrbm_hidden", 1e12},
+             {"mrbm_hidden", 1'000'000'000'000},
+             {"track[0].visible", 4, "no tensor track.0.W of 4 x 7"},
+             {"track[0].visible", 1'000'000'000},
+             {"track[0].hidden", 100'000, "no tensor track.0.W of 5 x 100000"},
+             {"track[0].order", -1},
+             {"track[0].order", 1000, "no tensor track.0.A of 5000 x 5"},
+             {"track[0].order", 1'000'000'000},
+             {"track[0].kind", "fourier"},
+             {"track[0].kind", 3},
+             {"pose[1].visible", 7},
+             {"pose[2].order_A", 2},
+             {"modalities.fps", 1e9},
+             {"modalities.fps", 1e-9},
+             {"modalities.fps", -1},
+             {"modalities.fps", nullptr},
+             {"modalities.level_view", 1},
+             {"modalities.camera.width_px", -3},
+             {"modalities.camera.height_px", 0},
+             {"modalities.camera.field_of_view_deg", 500},
+             {"modalities.camera.elevation_deg", 91},
+             {"modalities.camera.azimuth_deg", "north"},
+             {"modalities.camera.distance", -1},
+             {"modalities.pose_features.root", -1},
+             {"modalities.pose_features.root", 99},
+             {"modalities.pose_features.joints[1]", 99},
+             {"modalities.pose_features.joints[1]", 0},
+             {"modalities.pose_features.constant_channels[2]", "x"},
+             {"modalities.pose_features.constant_channels", {1, 2}},
+             {"modalities.pose_features.skeleton", "HIERARCHY\n",
+              ": modalities.pose_features.skeleton:2: "},
+             {"modalities.track_features.root", "Nobody"},
+             {"modalities.track_features.joints[0]", "Nobody"},
+             {"modalities.track_features.joints[0]", "Hand",
+              ": modalities.track_features: joints: "},
+             {"modalities.pose_scale.mean[3]", nullptr, ": modalities.pose_scale: mean[3]: "},
+             {"modalities.pose_scale.mean", {1.0}, ": modalities.pose_scale: deviation: "},
+             {"modalities.pose_scale.kept[0]", -1, ": modalities.pose_scale: kept[0]: "},
+             {"modalities.track_scale.kept[1]", 0, ": modalities.track_scale: kept[1]: "},
+             {"modalities.track_scale.kept[4]", 99, ": modalities.track_scale: kept[4]: "},
+             {"modalities.track_scale.kept", {2, 5}, ": track[0].visible: 5 units for frames of 2"},
+             {"training_clips[0].path", 3},
+             {"early_stopping.steps", -1},
+             {"early_stopping.loss", "low"},
+             {"early_stopping.held_out[0]", 3},
+             {"config.hidden", -1},
+             {"config.fps", 1e300},
+             {"config.seed", 0.5}}) {
+      CAPTURE(one.field);
+      CAPTURE(one.value.dump());
+      std::string pointer = std::string("/") + one.field;
+      for (char& c : pointer)
+        if (c == '.' || c == '[') c = '/';
+      std::erase(pointer, ']');
+      json about = file.about();
+      about[json::json_pointer(pointer)] = one.value;
+      const std::string message = file.complaint(about);
+      CAPTURE(message);
+      CHECK(message.starts_with(file.path() + ": "));
+      CHECK(
+          says(message, one.named ? std::string(one.named) : ": " + std::string(one.field) + ": "));
+      CHECK_FALSE(says(message, "json"));
+    }
+  });
+}
+
+TEST_CASE("a tensor with a number that is none is refused by its name") {
+  on_every_device([](Device& device) {
+    const File file(device);
+    for (const auto& [name, tensor] : file.whole().tensors)
+      for (const float odd : {std::nanf(""), std::numeric_limits<float>::infinity(), -1e38F}) {
+        CAPTURE(name);
+        Safetensors content = file.whole();
+        content.tensors[name].values.back() = odd;
+        CHECK(says(file.complaint(content),
+                   file.path() + ": tensor " + name +
+                       " holds a number that is not finite or beyond 1000000"));
+      }
   });
 }
 

@@ -18,12 +18,20 @@ TEST_CASE("a model comes back from its file as it was saved") {
     const auto layer = [&](std::size_t visible, VisibleKind kind, std::uint64_t seed) {
       return CrbmParameters::random({visible, 7, 2, kind}, 0.5, {seed, 0, 1, 0});
     };
-    const CrbmParameters track = layer(5, VisibleKind::gaussian, 1),
+    const auto track_units =
+        static_cast<std::size_t>(figure.modalities().track_scale.output_dimension());
+    const CrbmParameters track = layer(track_units, VisibleKind::gaussian, 1),
                          pose = layer(figure.dimension(), VisibleKind::gaussian, 2);
     const MrbmParameters mrbm = MrbmParameters::random(two_modalities(7, 7, 3), 0.5, {3, 0, 1, 0});
     Mcdbn network{std::vector<Cdbn>(2), Mrbm(device, mrbm), 4, 6};
     network.cdbns[0].layers.emplace_back(device, track);
     network.cdbns[1].layers.emplace_back(device, pose);
+    network.deviation = AnswerDeviation{
+        MatrixF::Constant(static_cast<Eigen::Index>(network.cdbns[1].code_dimension()),
+                          static_cast<Eigen::Index>(network.cdbns[1].layers[0].shape().visible),
+                          0.25F),
+        MatrixF::Constant(1, static_cast<Eigen::Index>(network.cdbns[1].layers[0].shape().visible),
+                          -1.5F)};
     network.sampling = {.gibbs_steps = 0, .mrbm_gibbs_steps = 3, .steady = true, .scale = 0.75};
     network.fills_gaps = false;
     save_model(path, {std::move(network),
@@ -38,6 +46,9 @@ TEST_CASE("a model comes back from its file as it was saved") {
     CHECK(model.network.mrbm.to_host().W[1] == mrbm.W[1]);
     CHECK(model.network.look_ahead == 4);
     CHECK(model.network.mean_field_steps == 6);
+    REQUIRE(model.network.deviation);
+    CHECK(model.network.deviation->C.isConstant(0.25F));
+    CHECK(model.network.deviation->c.isConstant(-1.5F));
     CHECK(model.network.sampling.gibbs_steps == 0);
     CHECK(model.network.sampling.mrbm_gibbs_steps == 3);
     CHECK(model.network.sampling.steady);

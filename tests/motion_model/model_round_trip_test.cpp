@@ -142,7 +142,7 @@ TEST_CASE("histories of A's and B's own, and a learnt deviation, are saved and l
     CrbmShape shape = stack[0].shape;
     shape.own_order_A = 1;
     stack[0].A = stack[0].A.bottomRows(static_cast<Eigen::Index>(shape.visible)).eval();
-    stack[0].visible_deviation = random_matrix(1, shape.visible, 3);
+    stack[0].visible_deviation = random_matrix(1, shape.visible, 3).cwiseAbs();
     stack[0].shape = shape;
     shape = stack[1].shape;
     shape.own_order_B = 0;

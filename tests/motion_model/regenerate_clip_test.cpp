@@ -65,9 +65,7 @@ std::vector<Motion> step_by_step(const Model& model, const Track2d& track,
   std::vector<Motion> motions;
   for (const MatrixF& pose : regenerate(model.network, {seen}, options))
     motions.push_back(resample(
-        fit_to_track(PosePrior::around(pose), model.modalities, at_rate, placement, placement.fit)
-            .motion,
-        track.fps));
+        fit_to_track(pose, model.modalities, at_rate, placement, placement.fit).motion, track.fps));
   return motions;
 }
 

@@ -123,6 +123,41 @@ TEST_CASE("seen clips: the columns of another skeleton, by its names") {
   }
 }
 
+TEST_CASE("seen clips: the view of an unknown camera is found as the clip is seen") {
+  Scene scene;
+  scene.truth = synthesize({.seconds = 4});
+  scene.view = {60, 14, std::nullopt, 45, 1920, 1080};
+  scene.camera = place_camera(scene.truth, scene.view);
+  scene.exact = project_motion(scene.truth, scene.camera);
+  scene.placement.camera.reset();
+  scene.placement.view.field_of_view_deg = 45;
+  for (const bool level : {false, true}) {
+    scene.modalities.level_view = level;
+    scene.pose = scene.modalities.encode_pose(scene.truth, scene.camera.camera_from_world);
+    for (const Track2d& track : {scene.exact, scene.seen(body_25_keypoints())}) {
+      scene.placement.view.pitch_deg.reset();
+      CHECK(finds_view(scene.modalities, scene.placement) == level);
+      const SeenClip seen = scene.see(track);
+      CHECK(seen.view.field_of_view_deg == 45);
+      CHECK(seen.view.pitch_deg.has_value() == level);
+      if (!level) continue;
+      CHECK(std::abs(*seen.view.pitch_deg - 14) < 3);
+      CHECK(std::abs(*seen.view.roll_deg) < 3);
+      // What is seen is seen through the view that was found.
+      const Camera found =
+          scene.modalities.assumed_camera(seen.view, track.width_px, track.height_px);
+      if (track.keypoints.empty())
+        CHECK(seen.features == scene.modalities.encode_track(smooth_track(track), found));
+      scene.placement.view.pitch_deg = 2;  // said, however wrong
+      CHECK(scene.see(track).view.pitch_deg == 2);
+    }
+  }
+  scene.placement.view.roll_deg = 0;
+  CHECK_FALSE(finds_view(scene.modalities, scene.placement));
+  scene.placement = {{scene.camera, scene.truth.skeleton}};
+  CHECK_FALSE(finds_view(scene.modalities, scene.placement));
+}
+
 TEST_CASE("seen clips: too little of a person is an error") {
   Scene scene;
   Track2d track = scene.seen(coco_keypoints());

@@ -77,13 +77,15 @@ TEST_CASE("settings record: a file's faults are named by file, line and setting"
     return message.substr(std::min(message.size(), file.string().size() + 1));
   };
   CHECK(error_in("order = 3\nhiden = 20\n") == "2: hiden is no setting");
-  CHECK(error_in("[gaussian]\nrate = 0\n") == "2: gaussian.rate must be above 0, not 0");
-  CHECK(error_in("hidden = -3\n") == "1: hidden must be at least 1, not -3");
+  CHECK(error_in("[gaussian]\nrate = 0\n") ==
+        "2: gaussian.rate must be above 0 and at most 100, not 0");
+  CHECK(error_in("hidden = -3\n") == "1: hidden must be at least 1 and at most 100000, not -3");
   CHECK(error_in("hidden = 2.5\n") == "1: hidden must be a whole number, not 2.5");
   CHECK(error_in("hidden = 'ten'\n") == "1: hidden must be a whole number, not null");
   CHECK(error_in("fps = true\n") == "1: fps must be a number, not true");
   CHECK(error_in("[augment]\nmirror = 1\n") == "2: augment.mirror must be true or false, not 1");
-  CHECK(error_in("[joint]\n\nrate = -1\n") == "3: joint.rate must be above 0, not -1");
+  CHECK(error_in("[joint]\n\nrate = -1\n") ==
+        "3: joint.rate must be above 0 and at most 100, not -1");
   CHECK_THROWS_AS(read_settings_file(folder.write("no.toml", "order = = 3\n")), ConfigError);
   CHECK_THROWS_AS(read_settings_file(folder / "absent.toml"), ConfigError);
 }

@@ -28,7 +28,11 @@ TEST_CASE("training config: its settings are its parts' and the loss's, with the
   Values want = values_of(LearningSettings{});
   want.merge(values_of(CorpusSettings{}));
   for (const Own& own : own_settings()) want[own.name] = own.default_value;
+  want["half-precision"] = "false";
   CHECK(values_of(TrainingConfig{}) == want);
+  TrainingConfig half;
+  half.half_precision = true;
+  CHECK(changed_by(half) == Values{{"half-precision", "true"}});
   for (const Own& own : own_settings()) {
     TrainingConfig config;
     set(config, own.name, 7);

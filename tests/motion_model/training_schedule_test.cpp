@@ -136,6 +136,22 @@ TEST_CASE("fine-tuning goes on from what the greedy stages made of its start and
   });
 }
 
+TEST_CASE("new views on the way are others and the same in every run") {
+  SmallTraining small;
+  on_every_device([&](Device& device) {
+    const auto trained = [&](std::size_t new_views_every) {
+      small.config.fine_tuning.new_views_every = new_views_every;
+      return small.train(device, small.config, {}).network;
+    };
+    const Mcdbn never = trained(0), often = trained(1);
+    CHECK(same_network(trained(small.config.fine_tuning.steps), never));
+    CHECK_FALSE(same_network(often, never));
+    CHECK(same_network(trained(1), often));
+    REQUIRE(never.deviation);
+    CHECK((never.deviation->of(MatrixF::Zero(1, never.deviation->C.rows())).array() > 0).all());
+  });
+}
+
 TEST_CASE("fine-tuning's progress runs on from that of the greedy stages") {
   SmallTraining small;
   small.config.fine_tuning.steps = 50;

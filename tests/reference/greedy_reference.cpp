@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "mcdbn/base/random.hpp"
 #include "reference/units_reference.hpp"
@@ -34,24 +35,52 @@ std::vector<Window> windows_of(const GreedyCode& code, int first, int ahead) {
   return windows;
 }
 
+/// How often each window is drawn, but for a common factor.
+std::vector<double> weights_of(const GreedyPlan& plan, const GreedyCode& code,
+                               const std::vector<Window>& windows) {
+  std::vector<double> weights;
+  for (const Window& window : windows) {
+    double frames = 0;
+    for (std::size_t clip = 0; clip < code.clips.size(); ++clip)
+      if (plan.groups.at(clip) == plan.groups.at(window.clip))
+        frames += static_cast<double>(code.clips[clip].rows());
+    weights.push_back(std::pow(frames, plan.people_power) / frames);
+  }
+  return weights;
+}
+
 /// The windows of all epochs, mini-batch after mini-batch.
 class Batches {
  public:
-  Batches(const GreedyPlan& plan, const std::vector<Window>& windows, int stream)
+  Batches(const GreedyPlan& plan, const GreedyCode& code, const std::vector<Window>& windows,
+          int stream)
       : plan_(plan),
         stream_(stream),
+        choices_(windows),
         batch_(std::min(static_cast<std::size_t>(plan.batch), windows.size())) {
     do {
       order_.insert(order_.end(), windows.begin(), windows.end());
     } while (static_cast<int>(order_.size() / batch_) < plan.least_batches);
+    if (plan.people_power != 1) weights_ = weights_of(plan, code, windows);
   }
 
   int count() const { return static_cast<int>(order_.size() / batch_); }
 
   /// Exchanges each place, from the last on, with one at or before it; goes on from the order of
-  /// the epoch before.
+  /// the epoch before. With weights, windows are laid out as long as they weigh, and those come
+  /// that lie at equal steps from one drawn place.
   void shuffle(int epoch) {
     const RandomKey key = random_key(plan_, stream_, epoch, kShufflePhase);
+    if (!weights_.empty()) {
+      const double place = random_uniform(key, 0, 1);
+      const double total = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+      for (std::size_t i = 0; i < order_.size(); ++i) {
+        double left = (static_cast<double>(i) + place) / static_cast<double>(order_.size()) * total;
+        std::size_t chosen = 0;
+        while (left >= weights_[chosen]) left -= weights_[chosen++];
+        order_[i] = choices_[chosen];
+      }
+    }
     for (std::size_t i = order_.size(); i-- > 1;) {
       const double share = random_bits(key, static_cast<std::uint32_t>(i), 0) * 0x1p-32;
       const auto other = static_cast<std::size_t>(share * static_cast<double>(i + 1));
@@ -67,6 +96,8 @@ class Batches {
  private:
   const GreedyPlan& plan_;
   int stream_;
+  std::vector<Window> choices_;
+  std::vector<double> weights_;
   std::size_t batch_;
   std::vector<Window> order_;
 };
@@ -163,7 +194,7 @@ GreedyStage train_mrbm(const GreedyPlan& plan, const GreedyCode& track, const Gr
     }
     return sum / 2;
   };
-  Batches batches(plan, windows_of(pose, pose.valid_from, plan.look_ahead), kMrbmStream);
+  Batches batches(plan, pose, windows_of(pose, pose.valid_from, plan.look_ahead), kMrbmStream);
   const Mrbm zero = mrbm.with_parameters(Eigen::VectorXd::Zero(mrbm.flattened().size()));
   // Weights and biases are updated alike but for the decay, so they go through flat vectors.
   Mrbm unit_weights = zero;
@@ -237,7 +268,7 @@ GreedyRun train_layer(const GreedyPlan& plan, const CdPlan& rule, const GreedyCo
   const int order = order_of(initial);
   Crbm crbm = initial;
   Crbm velocity = crbm.with_parameters(Eigen::VectorXd::Zero(crbm.flattened().size()));
-  Batches batches(plan, windows_of(visible, visible.valid_from + order, 0), stream);
+  Batches batches(plan, visible, windows_of(visible, visible.valid_from + order, 0), stream);
   GreedyRun run;
   run.stages.push_back({"crbm", {}});
   int step = 0;

@@ -33,6 +33,8 @@ struct GreedyPlan {
   std::uint64_t seed = 1;
   int order = 1, hidden = 1, layers = 1, mrbm_hidden = 1, look_ahead = 0, batch = 1;
   int least_batches = 1;
+  double people_power = 1;          ///< groups are drawn as their frames to this power
+  std::vector<std::size_t> groups;  ///< of the clips; none: all of one
   CdPlan gaussian, binary;
   MrbmPlan mrbm;
 };

@@ -6,7 +6,7 @@
 
 namespace mcdbn {
 
-/// The numbers that a setting may be; without bounds, any finite one.
+/// The numbers that a setting may be: from somewhere to somewhere, never NaN or infinite.
 struct Range {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
@@ -16,14 +16,22 @@ struct Range {
   std::string text() const;           ///< "at least 0 and below 1"
 };
 
+/// The upper end of what says no other: far beyond any use, and floats still multiply it.
+inline constexpr double kLargest = 1e9;
+
+/// Of no setting; without an end, any finite number.
 constexpr Range any_number() {
   return {};
 }
-constexpr Range at_least(double least) {
-  return {.least = least};
+constexpr Range at_least(double least, double most = kLargest) {
+  return {.least = least, .most = most};
 }
-constexpr Range above(double limit) {
-  return {.least = limit, .with_least = false};
+constexpr Range above(double limit, double most = kLargest) {
+  return {.least = limit, .most = most, .with_least = false};
+}
+/// For what random numbers start from: TOML's whole numbers hold it.
+constexpr Range any_seed() {
+  return {.least = 0, .most = 9e18};
 }
 /// Both ends belong to it.
 constexpr Range within(double least, double most) {

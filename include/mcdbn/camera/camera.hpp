@@ -17,6 +17,9 @@ namespace mcdbn {
 /// A pinhole camera with OpenCV's distortion, or with OpenCV's fisheye lens. Camera axes are
 /// OpenCV's: x right, y down, z forward.
 struct Camera {
+  /// What an image's width and height may be.
+  static constexpr Range kImage_px = within(1, 100'000);
+
   Eigen::Matrix3d camera_from_world = Eigen::Matrix3d::Identity();  ///< rotation
   Eigen::Vector3d translation{0, 0, 0};  ///< x_camera = R·x_world + translation
   double fx_px = 1000, fy_px = 1000, cx_px = 960, cy_px = 540;
@@ -47,7 +50,7 @@ struct CameraPlacement {
   /// The view; how far away the camera stands and its image are for place_camera alone.
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"azimuth", any_number(), "degrees",
+    visit(Setting{"azimuth", within(-360, 360), "degrees",
                   "around the figure, to its left (+x); 0 is in front of one that faces +z"},
           self.azimuth_deg);
     // From right above a figure nothing says which way it faces.

@@ -23,19 +23,19 @@ struct SideSwapSettings {
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     visit(
-        Setting{"switch", above(0), "body heights",
+        Setting{"switch", above(0, 1000), "body heights",
                 "how much less the joints of a limb pair have to jump, all together, for a swap to "
                 "begin or end"},
         self.switch_cost);
-    visit(Setting{"surprise", above(0), "body heights",
+    visit(Setting{"surprise", above(0, 1000), "body heights",
                   "a joint that is off by more than so much from going on as it went says no more "
                   "for it"},
           self.most_surprise);
     visit(
-        Setting{"swapped", at_least(0), "body heights/s",
+        Setting{"swapped", within(0, 1000), "body heights/s",
                 "what a swap costs while it lasts: the sides that a clip has for longer are right"},
         self.swapped_cost_per_s);
-    visit(Setting{"gap", at_least(0), "seconds", "joints are followed over gaps of so long"},
+    visit(Setting{"gap", within(0, 3600), "seconds", "joints are followed over gaps of so long"},
           self.longest_gap_s);
   }
 };

@@ -36,7 +36,8 @@ struct AugmentationSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"views", at_least(1), "views", "of each clip; fewer of more than some two hours"},
+    visit(Setting{"views", within(1, 1e5), "views",
+                  "of each clip; fewer of more than some two hours"},
           self.views);
     visit(Setting{"mirror", on_or_off(), "",
                   "exchange left and right in every other view, where the skeleton has sides"},
@@ -46,18 +47,18 @@ struct AugmentationSettings {
           self.azimuth_deg);
     visit(Setting{"elevation", within(0, 90), "degrees", "the camera rises or sinks likewise"},
           self.elevation_deg);
-    visit(Setting{"distance", at_least(0), "",
+    visit(Setting{"distance", within(0, 10), "",
                   "relative deviation of the camera's distance: for other perspectives"},
           self.distance);
-    visit(Setting{"bone", at_least(0), "",
+    visit(Setting{"bone", within(0, 1), "",
                   "relative deviation of each bone's length, both sides alike: for other people"},
           self.bone);
-    visit(Setting{"turn", at_least(0), "degrees",
+    visit(Setting{"turn", within(0, 180), "degrees",
                   "deviation of how each joint is held throughout a clip: for other postures"},
           self.turn_deg);
     // The clip takes 1 / (1 ± speed) of its time.
-    visit(Setting{"speed", share_below_one(), "", "up to so much faster or slower"}, self.speed);
-    visit(Setting{"noise", at_least(0), "px",
+    visit(Setting{"speed", within(0, 0.9), "", "up to so much faster or slower"}, self.speed);
+    visit(Setting{"noise", within(0, 1000), "px",
                   "mean deviation of the 2D joints of a 200 px figure, up to twice it in a view: "
                   "trackers are no better"},
           self.noise_px);
@@ -76,7 +77,7 @@ struct AugmentationSettings {
                   "share of the views in which limbs and trunk are turned smoothly at random, "
                   "within the limits of the clips' joints"},
           self.limbs_turned);
-    visit(Setting{"limbs-turned-by", at_least(0), "degrees",
+    visit(Setting{"limbs-turned-by", within(0, 180), "degrees",
                   "deviation of that turn about each axis"},
           self.limbs_turned_deg);
     visit(Setting{"arms-anywhere", within(0, 1), "",
@@ -85,12 +86,12 @@ struct AugmentationSettings {
     visit(Setting{"leaning", within(0, 1), "",
                   "share of the views in which all above the hips leans, now this way, now that"},
           self.leaning);
-    visit(Setting{"leaning-by", at_least(0), "degrees", "deviation of that lean"},
+    visit(Setting{"leaning-by", within(0, 180), "degrees", "deviation of that lean"},
           self.leaning_deg);
     visit(Setting{"turning-round", within(0, 1), "",
                   "share of the views in which the person turns round on the way"},
           self.turning_round);
-    visit(Setting{"gravity", at_least(0), "degrees",
+    visit(Setting{"gravity", within(0, 180), "degrees",
                   "deviation of the error in what is taken for down: of phones' and of assumed "
                   "cameras"},
           self.gravity_deg);
@@ -109,7 +110,7 @@ struct AugmentedView {
 /// The clip seen otherwise. The same key gives the same view. What a detector saw are the
 /// skeleton's own joints all the same, as far as its keypoints tell of them.
 /// @param raw at its own rate
-/// @param all_in_sight nothing goes out of sight and no detector loses anything; cameras stay
+/// @param all_in_sight no limb is hidden; what a detector loses is lost all the same
 /// @param pool what new poses are made of; none: there are no new poses
 AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacement& placement,
                              const AugmentationSettings& settings, const RandomKey& key,

@@ -10,6 +10,7 @@
 #include "mcdbn/corpus/augmentation.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/features/modalities.hpp"
+#include "mcdbn/motion/frame_rate.hpp"
 
 namespace mcdbn {
 
@@ -34,9 +35,9 @@ struct CorpusSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"fps", above(0), "Hz", "rate that clips are resampled to, the model's own"},
+    visit(Setting{"fps", kFrameRate_hz, "Hz", "rate that clips are resampled to, the model's own"},
           self.fps);
-    visit(Setting{"phases", at_least(1), "grids",
+    visit(Setting{"phases", within(1, 1000), "grids",
                   "times that each clip is sampled, shifted, where its own rate allows: a fast "
                   "clip's other frames say something, too"},
           self.phases);
@@ -53,7 +54,7 @@ struct TrainingSet {
   std::vector<MatrixF> tracks;      ///< 2D
   std::vector<MatrixF> poses;       ///< 3D
   std::vector<TrainingClip> clips;  ///< files as they were read; of augmented views, each view's
-  /// Who is seen in each of `poses`, counted from 0; empty where nobody asked.
+  /// Who is seen in each of `poses`, counted from 0.
   std::vector<std::size_t> people;
   /// What was seen of each of `tracks`, 1, and what was not, 0, where the track is at its mean;
   /// empty where everything was.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "mcdbn/base/matrices.hpp"
@@ -27,8 +28,9 @@ class Standardizer {
   const RowVectorD& deviation() const { return deviation_; }
 
   nlohmann::json to_json() const;
+  /// @param where it stands, for errors: "model.safetensors: modalities.pose_scale"
   /// @throws InputError
-  static Standardizer from_json(const nlohmann::json& json);
+  static Standardizer from_json(const nlohmann::json& json, const std::string& where = "scaling");
 
  private:
   RowVectorD mean_, deviation_;  ///< [1 x input]

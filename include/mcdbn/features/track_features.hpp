@@ -62,8 +62,9 @@ class TrackFeatures {
   static constexpr double kSizeWindow_s = 1.0;  ///< to either side
 
   nlohmann::json to_json() const;
-  /// @throws InputError
-  static TrackFeatures from_json(const nlohmann::json& json);
+  /// @param where it stands, for errors  @throws InputError
+  static TrackFeatures from_json(const nlohmann::json& json,
+                                 const std::string& where = "track features");
 
  private:
   std::vector<std::string> joint_names_;

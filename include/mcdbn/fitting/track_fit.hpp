@@ -1,9 +1,11 @@
-// The room fitting: poses that are likely beforehand meet the 2D track that shows them. It uses
-// features. Its door is fit_to_track; behind it: root paths, the fit of joints, smoothing. Add
-// here: a cost of the fit.
+// The room fitting: poses that are likely beforehand meet the 2D track that shows them.
+// It uses features. Its door is fit_to_track; behind it: root paths, one problem for all frames of
+// a clip, its costs; Ceres is included here alone. Add here: a cost, as a file of terms/ and lines
+// in window_problem.cpp.
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "mcdbn/base/settings.hpp"
 #include "mcdbn/camera/camera.hpp"
@@ -17,15 +19,15 @@ namespace mcdbn {
 /// [frames x Modalities::pose_scale.output_dimension()] both.
 struct PosePrior {
   MatrixF mean;
-  /// Standard deviation, finite and not negative; below 1e-6 counts as that. The fit takes the RMS
-  /// over an orientation's features for how far TrackFitSettings::turn_deg may turn it, and over
-  /// all velocities of the clip for how far the root's velocity may be off. Height and the root's
-  /// position are not asked.
+  /// Standard deviation, finite and not negative; 0 x 0: nobody knows it, and the settings' typical
+  /// ones are taken. Height and the root's position are not asked.
   MatrixF deviation;
 
-  /// With deviation 1, the spread of the training clips: for a mean that says nothing of how sure
-  /// it is. The fit then has the same deviations for every frame and joint: those of its settings.
-  static PosePrior around(MatrixF mean);
+  PosePrior() = default;
+  /// A mean alone, without a deviation, where a method answers poses and no more.
+  PosePrior(MatrixF mean_, MatrixF deviation_ = {})  // NOLINT(google-explicit-constructor)
+      : mean(std::move(mean_)), deviation(std::move(deviation_)) {}
+  bool has_deviation() const { return deviation.size() > 0; }
 };
 
 /// What is known of a clip besides its track.
@@ -41,68 +43,77 @@ struct KnownOfClip {
   }
 };
 
-/// How far poses may be bent to meet the track. The defaults were chosen on the CMU walkers 02, 32,
-/// 35 and 39, held out of training, over clean, noisy and incomplete tracks together; footing_m
-/// also on Bandai's walks.
+/// What the fit takes for likely: of the prior, of the track, and of a body that moves. Chosen on
+/// six CMU walks of six people who were trained on, with other bodies and detector-like tracks,
+/// of a model of walks and of a general one, and on the exact projections of the same; `doubt` on
+/// these and seven training clips of other actions, of the general model.
 struct TrackFitSettings {
-  double turn_deg = 25;
-  double change = 0.4;
-  double likeness = 0.5;
-  double position_m = 0.1;
-  double footing_m = 0.0125;
+  double turn_deg = 9;
+  double doubt = 0.4;
+  double likeness = 0.75;
+  double lasting_s = 0.17;
+  double root_m_s2 = 3;
+  double detector = 0.009;
+  double noise_lasts_s = 0.35;
   double caution = 2;
-  double proportions_m = 0;
-  double bend_m_s2 = 0.7;
-  double fade_s = 0.1;
+  double proportions = 0.1;
+  double footing_m_s = 0.5;
+  std::size_t solutions = 5;
 
   /// Metres are those of a 1.7 m body.
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
+    visit(Setting{"turn", above(0), "degrees",
+                  "standard deviation of an orientation about each axis where the prior says none"},
+          self.turn_deg);
     visit(
-        Setting{
-            "turn", above(0), "degrees",
-            "standard deviation of an orientation about each axis where PosePrior::deviation is 1"},
-        self.turn_deg);
-    visit(Setting{"change", above(0), "",
-                  "deviation of a turn from those of the frames around it, as a share of its own"},
-          self.change);
+        Setting{"doubt", within(0, 1), "",
+                "how many times larger than that, as a power, an orientation's deviation is taken "
+                "to be where the prior says a larger one: 0 not at all, 1 as it says"},
+        self.doubt);
     // At 1 a joint would turn with its parent and no other way.
     visit(Setting{"likeness", share_below_one(), "",
-                  "correlation of a joint's turn with its parent's"},
+                  "correlation of what is wrong with an orientation with its parent's"},
           self.likeness);
-    visit(Setting{"position", above(0), "m", "standard deviation of the root's position"},
-          self.position_m);
-    visit(Setting{"footing", above(0), "m",
-                  "how far a foot that stands still on the image strays from the depth that it has "
-                  "in the frames around"},
-          self.footing_m);
+    visit(Setting{"lasting", above(0), "seconds",
+                  "how long the prior's errors last: frames so near are one witness"},
+          self.lasting_s);
+    visit(Setting{"root", above(0), "m/s2",
+                  "deviation of the root's acceleration from the prior's, where that says none"},
+          self.root_m_s2);
+    visit(Setting{"detector", above(0), "",
+                  "how far off detectors are for longer than a frame, as a share of the body's "
+                  "height"},
+          self.detector);
+    visit(Setting{"noise-lasts", at_least(0), "seconds", "for how long they are"},
+          self.noise_lasts_s);
     visit(Setting{"caution", above(0), "",
-                  "how many times the track's noise it is taken to be off by"},
+                  "how many times the noise that is new in each frame it is taken to be"},
           self.caution);
-    visit(Setting{"proportions", at_least(0), "m",
-                  "how far, at least, joints are from where a body of the skeleton's proportions "
-                  "has them: for a skeleton that is not the person's own"},
-          self.proportions_m);
-    visit(Setting{"bend", above(0), "m/s2",
-                  "how fast the answer's error changes (RMS of its acceleration): with the track's "
-                  "noise it says over how many frames to smooth"},
-          self.bend_m_s2);
-    visit(Setting{"fade", above(0), "seconds",
-                  "how long a joint's correction outlives the joint's last observation"},
-          self.fade_s);
+    visit(Setting{"proportions", above(0), "",
+                  "deviation of the logarithm of a bone's length from the model's, for a skeleton "
+                  "that is not the person's own"},
+          self.proportions);
+    visit(Setting{"footing", above(0), "m/s", "how fast a foot that stands slips"},
+          self.footing_m_s);
+    visit(Setting{"solutions", at_least(1), "",
+                  "at most, each with the noise and the standing feet that the one before tells"},
+          self.solutions);
   }
 };
 
 /// A motion that meets its track.
 struct FittedClip {
-  Motion motion;  ///< at the model's rate
+  Motion motion;  ///< at the model's rate; on the model's skeleton with the lengths that were
+                  ///< found, if none was known
   Track2d shown;  ///< all its joints as the camera sees them; image size as the track's
   Camera camera;  ///< that sees `motion` so, in the skeleton's file units
 };
 
-/// The likeliest motion given a prior and the 2D track. The root goes where the track shows it;
-/// with settings, orientations are turned so that joints lie where the track shows them, and feet
-/// that stand say how fast the root travels. Without a camera only the path's shape is known: it
+/// The likeliest motion given a prior and the 2D track: one maximum a posteriori problem for the
+/// clip's orientations, its root, and, without `known.skeleton`, the lengths of its bones, left and
+/// right alike (docs/concepts.md, The fit). Without settings only the root is put where the track
+/// shows it. Without a camera only the path's shape is known: it
 /// starts above the origin, at the height that the features say.
 /// @param features what decodes features to poses, and the joints to look at
 /// @param track at the model's rate, as many frames as the prior; joined by name

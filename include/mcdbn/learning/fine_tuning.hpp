@@ -10,6 +10,8 @@
 
 namespace mcdbn {
 
+class Checkpoints;
+
 /// The mini-batches after which the parameters that were kept stood, and their loss on the clips
 /// held out.
 struct KeptStep {
@@ -31,9 +33,11 @@ struct FineTuned {
 /// before those fared worse. The observer may throw to stop.
 /// @param held_out sequences that are not learnt from and say when to stop, or none
 /// @param make_loss of the last modality
+/// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
 /// @throws DivergenceError saying what to lower, ShapeError
 FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& source,
                     const SequenceSource* held_out, const LearningSettings& settings,
-                    const SequenceLossMaker& make_loss, const EpochObserver& observer = {});
+                    const SequenceLossMaker& make_loss, const EpochObserver& observer = {},
+                    Checkpoints* checkpoints = nullptr);
 
 }  // namespace mcdbn

@@ -14,13 +14,17 @@
 
 namespace mcdbn {
 
+class Checkpoints;
+
 /// Algorithm 1: the last modality's CDBN layer by layer (3D), those before it, then the MRBM on
 /// their codes. Two modalities or more.
 /// The observer may throw to stop.
 /// @param start weights to start from; nothing: small random ones, as the settings' deviations say
+/// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
 /// @throws DivergenceError saying what to lower
 Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningSettings& learning,
-                   const EpochObserver& observer = {}, const Mcdbn* start = nullptr);
+                   const EpochObserver& observer = {}, const Mcdbn* start = nullptr,
+                   Checkpoints* checkpoints = nullptr);
 
 struct TrainedCdbn {
   Cdbn cdbn;
@@ -41,14 +45,15 @@ std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings&
 TrainedCdbn train_cdbn(Device& device, Sequences visible, const std::vector<CrbmShape>& layers,
                        const LearningSettings& learning, std::uint16_t first_stream = 0,
                        const EpochObserver& observer = {}, const std::string& name = "cdbn",
-                       const Cdbn* start = nullptr);
+                       const Cdbn* start = nullptr, Checkpoints* checkpoints = nullptr);
 
 /// One layer of Algorithm 1: CD-k on every window of `visible` for settings.epochs epochs.
 /// @param initial its visible_mean is taken from `visible`
 /// @param stream separates this layer's random numbers from those of the others
 Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
                 const CdSettings& settings, const LearningSettings& learning, std::uint16_t stream,
-                const EpochObserver& observer = {}, const std::string& stage = "crbm");
+                const EpochObserver& observer = {}, const std::string& stage = "crbm",
+                Checkpoints* checkpoints = nullptr);
 
 /// An MRBM's first weights: small random ones, and visible biases with which the mean field starts
 /// near the codes' own means rather than at one half.
@@ -59,6 +64,6 @@ MrbmParameters small_weights(const MrbmShape& shape, std::span<const Sequences> 
 /// same frames, the first modality's look_ahead frames later.
 Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
                 const LearningSettings& learning, std::uint16_t stream,
-                const EpochObserver& observer = {});
+                const EpochObserver& observer = {}, Checkpoints* checkpoints = nullptr);
 
 }  // namespace mcdbn

@@ -27,16 +27,17 @@ struct MachineSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"seed", at_least(0), "", "of every random number"}, self.seed);
-    visit(Setting{"order", at_least(1), "frames",
+    visit(Setting{"seed", any_seed(), "", "of every random number"}, self.seed);
+    visit(Setting{"order", within(1, size_limits::kHistory.most), "frames",
                   "history that a machine with one sees, in every layer"},
           self.order);
-    visit(Setting{"hidden", at_least(1), "units", "hidden units, in every layer"}, self.hidden);
-    // As many layers have random numbers of their own (greedy_schedule.cpp).
-    visit(Setting{"layers", within(1, 64), "machines", "of a stack, each on the code of the last"},
+    visit(Setting{"hidden", size_limits::kUnits, "units", "hidden units, in every layer"},
+          self.hidden);
+    visit(Setting{"layers", size_limits::kLayers, "machines",
+                  "of a stack, each on the code of the last"},
           self.layers);
-    visit(Setting{"batch", at_least(1), "rows", "of a mini-batch"}, self.batch);
-    visit(Setting{"least-batches", at_least(1), "mini-batches",
+    visit(Setting{"batch", within(1, 1e5), "rows", "of a mini-batch"}, self.batch);
+    visit(Setting{"least-batches", within(1, 1e6), "mini-batches",
                   "of an epoch, at least: few rows are gone over several times in it"},
           self.least_batches);
     visit_group("gaussian", self.gaussian, visit);

@@ -8,6 +8,8 @@
 
 namespace mcdbn {
 
+class TrainingState;
+
 /// Windows of a mini-batch: `count` of `frames` frames, one after another. Frames before `first`
 /// are history, those before `lead` settle, the rest are judged.
 struct SequenceWindows {
@@ -25,6 +27,8 @@ class SequenceLoss {
   virtual void differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) = 0;
   /// The weighted loss, its mean since the last call. Waits for the queue.
   virtual double read_and_reset() = 0;
+  /// Its sums, on their way into a checkpoint or back.
+  virtual void visit_state(TrainingState& state) = 0;
 };
 
 /// Makes a loss for windows of that shape.

@@ -47,6 +47,9 @@ class SequenceSource {
   virtual ~SequenceSource() = default;
   /// All of them; they live as long as the source. May take a while the first time.
   virtual SynchronizedClips sequences() const = 0;
+  /// Makes others of the same modalities, if it can: those of before are gone.
+  /// @param round says which; the first sequences are those of round 0  @return whether it did
+  virtual bool renew(std::size_t /*round*/) const { return false; }
 };
 
 /// Sequences of one modality that the source keeps.

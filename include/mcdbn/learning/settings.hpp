@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "mcdbn/base/settings.hpp"
+#include "mcdbn/machines/size_limits.hpp"
 
 namespace mcdbn {
 
@@ -33,29 +34,29 @@ struct CdSettings {
     visit(Setting{"gibbs-steps", within(1, 1000), "steps",
                   "k of CD-k: more follow the likelihood's gradient closer and take longer"},
           self.gibbs_steps);
-    visit(Setting{"rate", above(0), "", "learning rate of W and the biases"}, self.rate);
-    visit(Setting{"rate-A", at_least(0), "",
+    visit(Setting{"rate", above(0, 100), "", "learning rate of W and the biases"}, self.rate);
+    visit(Setting{"rate-A", within(0, 100), "",
                   "learning rate of A (history to visible); small, or A explains all by itself"},
           self.rate_A);
-    visit(Setting{"rate-B", at_least(0), "", "learning rate of B (history to hidden)"},
+    visit(Setting{"rate-B", within(0, 100), "", "learning rate of B (history to hidden)"},
           self.rate_B);
     visit(Setting{"momentum", share_below_one(), "",
                   "share of a step that goes on in the next: evens out what draws do to it"},
           self.momentum);
-    visit(Setting{"momentum-from-epoch", at_least(0), "epochs",
+    visit(Setting{"momentum-from-epoch", within(0, 1e7), "epochs",
                   "no momentum in so many first epochs, whose gradients still turn"},
           self.momentum_from_epoch);
-    visit(Setting{"weight-decay", at_least(0), "",
+    visit(Setting{"weight-decay", within(0, 1000), "",
                   "decay of W, A and B, times the rate: keeps weights that say little small"},
           self.weight_decay);
-    visit(Setting{"initial-deviation", at_least(0), "",
+    visit(Setting{"initial-deviation", within(0, 100), "",
                   "spread of the first weights where no fine-tuning follows, which has its own"},
           self.initial_deviation);
-    visit(Setting{"history-noise", at_least(0), "",
+    visit(Setting{"history-noise", within(0, 100), "",
                   "deviation of normal noise on the history, new in every mini-batch: what runs on "
                   "its own output learns to stay on course"},
           self.history_noise);
-    visit(Setting{"epochs", at_least(1), "epochs",
+    visit(Setting{"epochs", within(1, 1e7), "epochs",
                   "rounds over the data; without fine-tuning 100, binary 50"},
           self.epochs);
     visit(
@@ -63,7 +64,7 @@ struct CdSettings {
                 "persistent contrastive divergence: chains go on from one mini-batch to the next, "
                 "each under the history of its window"},
         self.persistent);
-    visit(Setting{"fast-rate", at_least(0), "",
+    visit(Setting{"fast-rate", within(0, 100), "",
                   "rate of fast weights, which keep persistent chains moving; 0: none"},
           self.fast_rate);
     visit(Setting{"sample-visible", on_or_off(), "",
@@ -72,10 +73,10 @@ struct CdSettings {
     visit(Setting{"sparsity-target", between(0, 1), "",
                   "how often a hidden unit should be on, where sparsity-strength counts"},
           self.sparsity_target);
-    visit(Setting{"sparsity-strength", at_least(0), "",
+    visit(Setting{"sparsity-strength", within(0, 1000), "",
                   "how hard hidden units are pulled to that target: keeps all of them in use"},
           self.sparsity_strength);
-    visit(Setting{"l1", at_least(0), "",
+    visit(Setting{"l1", within(0, 1000), "",
                   "pull of W, A and B towards zero, times the rate: leaves few weights large"},
           self.l1);
     visit(Setting{"adam", on_or_off(), "",
@@ -87,7 +88,7 @@ struct CdSettings {
           self.final_rate);
     visit(Setting{"cosine", on_or_off(), "", "rates fall along a cosine, else in a line"},
           self.cosine);
-    visit(Setting{"deviation-rate", at_least(0), "",
+    visit(Setting{"deviation-rate", within(0, 100), "",
                   "rate of the deviation of Gaussian units; with a history they have none"},
           self.deviation_rate);
   }
@@ -109,21 +110,22 @@ struct MrbmSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"rate", above(0), "",
+    visit(Setting{"rate", above(0, 100), "",
                   "learning rate; falls in a line to a fiftieth over the second half"},
           self.rate);
     visit(
         Setting{
-            "weight-decay", at_least(0), "",
+            "weight-decay", within(0, 1000), "",
             "decoupled decay of the weights, times the rate: keeps those small that say little"},
         self.weight_decay);
-    visit(Setting{"initial-deviation", at_least(0), "",
+    visit(Setting{"initial-deviation", within(0, 100), "",
                   "spread of the first weights where no fine-tuning follows, which has its own"},
           self.initial_deviation);
-    visit(Setting{"mean-field-steps", at_least(1), "steps",
+    visit(Setting{"mean-field-steps", size_limits::kMeanFieldSteps, "steps",
                   "unrolled steps of eq 32 and 33: more come nearer to their fixed point"},
           self.mean_field_steps);
-    visit(Setting{"epochs", at_least(1), "epochs", "rounds over the codes; without fine-tuning 30"},
+    visit(Setting{"epochs", within(1, 1e7), "epochs",
+                  "rounds over the codes; without fine-tuning 30"},
           self.epochs);
     visit(Setting{"joint-likelihood", on_or_off(), "",
                   "learns the joint likelihood by contrastive divergence, in place of MinVI"},
@@ -150,6 +152,7 @@ struct MrbmSettings {
 /// Fine-tuning: MinVI through the whole stack (fine_tuning.hpp).
 struct FineTuningSettings {
   std::size_t steps = 3000;
+  std::size_t new_views_every = 0;
   bool from_greedy = true;
   std::size_t windows = 48;
   double people_power = 0.5;
@@ -163,29 +166,33 @@ struct FineTuningSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(
-        Setting{"steps", at_least(0), "mini-batches", "how long the stage lasts; 0 leaves it out"},
-        self.steps);
+    visit(Setting{"steps", within(0, 1e9), "mini-batches",
+                  "how long the stage lasts; 0 leaves it out"},
+          self.steps);
+    // 3,000 mini-batches learn six views of 60 CMU clips by heart.
+    visit(Setting{"new-views-every", within(0, 1e9), "mini-batches",
+                  "after which other augmented views are drawn, where the source can; 0: never"},
+          self.new_views_every);
     visit(Setting{"from-greedy", on_or_off(), "",
                   "the greedy stages come first, on the same views and from weights of the size "
                   "that fine-tuning wants; else they are left out"},
           self.from_greedy);
-    visit(Setting{"windows", at_least(1), "windows", "of a mini-batch"}, self.windows);
+    visit(Setting{"windows", within(1, 1e5), "windows", "of a mini-batch"}, self.windows);
     visit(Setting{"people-power", within(0, 1), "",
                   "windows are drawn from people as their frames to this power: 1: every frame "
                   "counts alike; 0: every person, told by their bones"},
           self.people_power);
     // The loss judges steps from frame to frame, too.
-    visit(Setting{"window-frames", at_least(2), "frames", "judged frames of a window"},
+    visit(Setting{"window-frames", within(2, 1000), "frames", "judged frames of a window"},
           self.window_frames);
-    visit(Setting{"settle-frames", at_least(0), "frames",
+    visit(Setting{"settle-frames", within(0, 1000), "frames",
                   "free-running frames before the judged ones, whose own errors they inherit"},
           self.settle_frames);
-    visit(Setting{"rate", above(0), "", "Adam's rate; falls along a cosine to a fiftieth"},
+    visit(Setting{"rate", above(0, 100), "", "Adam's rate; falls along a cosine to a fiftieth"},
           self.rate);
     visit(
         Setting{
-            "weight-decay", at_least(0), "",
+            "weight-decay", within(0, 1000), "",
             "decoupled decay of the weights, times the rate: keeps those small that say little"},
         self.weight_decay);
     visit(Setting{"dropout", share_below_one(), "",
@@ -194,10 +201,10 @@ struct FineTuningSettings {
     visit(Setting{"average", share_below_one(), "",
                   "what a step keeps of the parameters' moving average, which is the result"},
           self.average);
-    visit(Setting{"reverse", at_least(0), "",
+    visit(Setting{"reverse", within(0, 1000), "",
                   "weight of the other direction, 2D from 3D, which stays trained by it"},
           self.reverse);
-    visit(Setting{"mean-field-steps", at_least(1), "steps",
+    visit(Setting{"mean-field-steps", size_limits::kMeanFieldSteps, "steps",
                   "unrolled steps of eq 32 and 33, in training and in the model"},
           self.mean_field_steps);
   }
@@ -237,6 +244,7 @@ struct LearningSettings {
   std::size_t batch = 100;
   /// The rates and epochs that suit an hour of motion would stop long before a minute's was learnt.
   std::size_t least_batches = 40;
+  double people_power = 1;
 
   CdSettings gaussian;
   CdSettings binary{.gibbs_steps = 1, .rate = 1e-2, .rate_A = 1e-3, .rate_B = 1e-3};
@@ -261,22 +269,28 @@ struct LearningSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"seed", at_least(0), "", "of every random number"}, self.seed);
-    visit(Setting{"order", at_least(0), "frames", "history that every CRBM sees (N)"}, self.order);
-    visit(Setting{"hidden", at_least(1), "units", "hidden units of every CRBM"}, self.hidden);
-    // As many layers have random numbers of their own (greedy_schedule.cpp).
-    visit(Setting{"layers", within(1, 64), "CRBMs", "in each CDBN, each on the code of the last"},
+    visit(Setting{"seed", any_seed(), "", "of every random number"}, self.seed);
+    visit(Setting{"order", size_limits::kHistory, "frames", "history that every CRBM sees (N)"},
+          self.order);
+    visit(Setting{"hidden", size_limits::kUnits, "units", "hidden units of every CRBM"},
+          self.hidden);
+    visit(Setting{"layers", size_limits::kLayers, "CRBMs",
+                  "in each CDBN, each on the code of the last"},
           self.layers);
-    visit(Setting{"mrbm-hidden", at_least(1), "units", "hidden units of the MRBM"},
+    visit(Setting{"mrbm-hidden", size_limits::kUnits, "units", "hidden units of the MRBM"},
           self.mrbm_hidden);
-    visit(Setting{"look-ahead", at_least(0), "frames",
+    visit(Setting{"look-ahead", size_limits::kLookAhead, "frames",
                   "how much later the 2D is that 3D is inferred from; 0 is causal, the paper's"},
           self.look_ahead);
-    visit(Setting{"batch", at_least(1), "windows", "of a mini-batch of the greedy stages"},
+    visit(Setting{"batch", within(1, 1e5), "windows", "of a mini-batch of the greedy stages"},
           self.batch);
-    visit(Setting{"least-batches", at_least(1), "mini-batches",
+    visit(Setting{"least-batches", within(1, 1e6), "mini-batches",
                   "of an epoch, at least: few clips are gone over several times in it"},
           self.least_batches);
+    visit(Setting{"people-power", within(0, 1), "",
+                  "mini-batches of the greedy stages are drawn from people as their frames to this "
+                  "power; fine-tuning has its own"},
+          self.people_power);
     visit_group("gaussian", self.gaussian, visit);
     visit_group("binary", self.binary, visit);
     visit_group("mrbm", self.mrbm, visit);

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
+#include "mcdbn/machines/answer_deviation.hpp"
 #include "mcdbn/machines/cdbn.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 
@@ -39,6 +41,8 @@ struct Mcdbn {
   /// The CDBN itself fills in missing values of what is present. Else they are left at their mean,
   /// as a network that was trained as a whole has learnt to see them.
   bool fills_gaps = true;
+  /// Of the last modality as the others tell it; unset where nobody learnt it.
+  std::optional<AnswerDeviation> deviation = {};
 
   std::size_t modality_count() const { return cdbns.size(); }
   const Modality& modality(std::size_t m) const { return mrbm.shape().modalities[m]; }

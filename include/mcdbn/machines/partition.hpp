@@ -15,13 +15,13 @@ struct AisSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"temperatures", at_least(1), "temperatures",
+    visit(Setting{"temperatures", within(1, 1e6), "temperatures",
                   "from the base distribution to the machine: more weigh chains more evenly"},
           self.temperatures);
-    visit(Setting{"chains", at_least(2), "chains",
+    visit(Setting{"chains", within(2, 1e6), "chains",
                   "whose weights are averaged: the standard error falls with their root"},
           self.chains);
-    visit(Setting{"seed", at_least(0), "", "of every random number"}, self.seed);
+    visit(Setting{"seed", any_seed(), "", "of every random number"}, self.seed);
   }
 };
 

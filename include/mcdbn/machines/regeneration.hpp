@@ -44,4 +44,15 @@ std::vector<MatrixF> regenerate(const Mcdbn& network, const std::vector<MatrixF>
 /// The mean-field answer to one sequence of the first modality: regenerate at temperature 0.
 MatrixF single_answer(const Mcdbn& network, const MatrixF& first);
 
+/// An answer and the code that it was decoded from.
+struct CodedAnswer {
+  MatrixF mean;  ///< [frames x dimension]
+  MatrixF code;  ///< hidden units of the top layer [frames x code]
+};
+
+/// The second modality from the first with the codes: AnswerDeviation::of them says how sure the
+/// answers are. @return as regenerate does
+std::vector<CodedAnswer> coded_answers(const Mcdbn& network, const std::vector<MatrixF>& first,
+                                       const RegenerationOptions& options = {});
+
 }  // namespace mcdbn

@@ -17,10 +17,10 @@ struct ChainSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"steps", at_least(1), "steps",
+    visit(Setting{"steps", within(1, 1e6), "steps",
                   "Gibbs steps of a chain: more forget its start better and take longer"},
           self.steps);
-    visit(Setting{"seed", at_least(0), "", "of every random number"}, self.seed);
+    visit(Setting{"seed", any_seed(), "", "of every random number"}, self.seed);
     visit(Setting{"means", on_or_off(), "",
                   "the last step gives the visible units' means, which show more than draws"},
           self.means);

@@ -14,6 +14,7 @@ struct Sequences {
   struct Clip {
     std::size_t first = 0;
     std::size_t frames = 0;
+    double weight = 1;  ///< of each frame in the draw of mini-batches
   };
   Matrix values;  ///< [all frames x dimension]
   std::vector<Clip> clips;
@@ -30,6 +31,8 @@ struct Sequences {
 
   /// Rows that have a code and `order` coded rows before them within their clip.
   std::vector<std::int32_t> window_rows(std::size_t order) const;
+  /// Of rows in ascending order, as their clips' frames weigh; none where all weigh the same.
+  std::vector<double> weights(std::span<const std::int32_t> rows) const;
 };
 
 }  // namespace mcdbn

@@ -29,12 +29,6 @@ inline constexpr PlantedFoot kPlantedInCapture{};
 /// centimetres off.
 inline constexpr PlantedFoot kPlantedInAnswer{.within_m = 0.05};
 
-/// The same as one camera sees it: a foot stands that it sees where it saw it in the frames around.
-struct StandingOnImage {
-  double still_m = 0.0025;       ///< how far apart it is seen, on a 1.7 m body
-  double around_s = 2.0 / 15.0;  ///< deviation of the Gaussian that says which frames are around
-};
-
 /// A joint's step to a frame from the one before.
 struct JointStep {
   Eigen::RowVector3d moved;  ///< in the positions' unit

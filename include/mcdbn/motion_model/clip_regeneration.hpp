@@ -27,10 +27,8 @@ std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
                                     const RegenerationOptions& options,
                                     TrackFindings* findings = nullptr);
 
-/// What a method answers to a track's standardized features: standardized poses, both
-/// [frames x dimension]; one, or several.
-using PoseAnswer = std::function<MatrixF(const MatrixF& features)>;
-using PoseAnswers = std::function<std::vector<MatrixF>(const MatrixF& features)>;
+/// Several answers.
+using PoseAnswers = std::function<std::vector<PosePrior>(const MatrixF& features)>;
 
 /// The same by any method. @param single says what the track itself does not show
 std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d& track,

@@ -31,9 +31,13 @@ struct Model {
   std::optional<EarlyStopping> early_stopping = {};
 };
 
+/// The same file with numbers of 16 bits takes half the room.
+enum class StoredNumbers { single, half };
+
 /// One .safetensors file: tensors `pose.0.W` …, metadata with format version, modalities, skeleton
 /// and settings. Written atomically. @throws InputError
-void save_model(const std::filesystem::path& path, const Model& model);
+void save_model(const std::filesystem::path& path, const Model& model,
+                StoredNumbers stored = StoredNumbers::single);
 /// @throws InputError
 Model load_model(Device& device, const std::filesystem::path& path);
 /// The file's own account of itself, for people: sizes, main settings, training clips, early

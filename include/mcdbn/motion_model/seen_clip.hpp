@@ -21,32 +21,41 @@ struct ClipPlacement : KnownOfClip {
   MatrixD skeleton_channels = {};
 };
 
+/// What a method answers to a track's standardized features [frames x dimension]: what is likely of
+/// the poses, or standardized poses alone.
+using PoseAnswer = std::function<PosePrior(const MatrixF& features)>;
+
 /// The features of a track of which parts are out of sight for long, with what an answer to the
 /// rest shows there in place of NaN; the answer to that fills them anew, in rounds.
 /// @param features standardized 2D of `track` [frames x dimension], NaN where joints are missing
-/// @param answer standardized 3D [frames x dimension] to such features, its own guess for NaN
+/// @param answer to such features, its own guess for NaN
 /// @return the same where nothing is missing
 /// @throws InputError if next to nothing of the person is seen, as fit_to_track does
 MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const Track2d& track,
-                  const ClipPlacement& placement,
-                  const std::function<MatrixF(const MatrixF&)>& answer);
+                  const ClipPlacement& placement, const PoseAnswer& answer);
+
+/// Whether the clip is asked how its camera looks: none is known, pitch or roll is not said either,
+/// and the model knows what it sees through others than its own (Modalities::level_view).
+bool finds_view(const Modalities& modalities, const KnownOfClip& known);
 
 /// A track as a model sees it.
 struct SeenClip {
   MatrixF features;  ///< standardized 2D, nothing missing
   Track2d joints;    ///< the model's joints by name, for fit_to_track
   TrackFeatures::FillCount filled;
+  /// Of the camera that is assumed where none is known: what was said, and what the clip tells of
+  /// pitch and roll where nobody said them: feet stand on level ground.
+  AssumedView view;
 };
 
 /// What a model sees of a track. Where the columns are the model's joints by name, that is the
 /// track, its gaps filled (fill_gaps). Where they are a detector's, or another skeleton's, the
 /// joints are told from them by their roles, and what lies between a place and its joint is taken
-/// off as the answer has it, in the rounds that fill the gaps.
+/// off as the answer has it, in the rounds that fill the gaps. In these the view is found, too.
 /// @param track at the model's rate  @param answer as of fill_gaps
 /// @throws InputError if the track shows too little of the model's joints; as fill_gaps
 SeenClip see_clip(const Modalities& modalities, const Track2d& track,
-                  const ClipPlacement& placement,
-                  const std::function<MatrixF(const MatrixF&)>& answer);
+                  const ClipPlacement& placement, const PoseAnswer& answer);
 
 /// Whether a track's columns are joined with the model's joints by name: the root and two others at
 /// least are there.

@@ -18,14 +18,14 @@ struct PoseLossWeights {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"positions", at_least(0), "",
+    visit(Setting{"positions", within(0, 1e6), "",
                   "weight of joints' squared distances from the truth, in units of 5 cm"},
           self.positions);
-    visit(Setting{"velocities", at_least(0), "",
+    visit(Setting{"velocities", within(0, 1e6), "",
                   "weight of squared differences of joints' steps from frame to frame, in units of "
                   "1 cm"},
           self.velocities);
-    visit(Setting{"contacts", at_least(0), "",
+    visit(Setting{"contacts", within(0, 1e6), "",
                   "weight of the same through the world, the root's travel included, of feet that "
                   "are planted in truth: against sliding"},
           self.contacts);
@@ -40,6 +40,7 @@ struct TrainingConfig : CorpusSettings, LearningSettings {
   /// Of few nobody can be spared: without one of nine CMU walkers the error on strangers is 28.7
   /// instead of 23.6 mm, and the one held out did better to the end.
   std::size_t hold_out_among = 20;
+  bool half_precision = false;
 
   /// With LearningSettings::greedy, paper or paper_stable.
   static TrainingConfig greedy();
@@ -55,10 +56,13 @@ struct TrainingConfig : CorpusSettings, LearningSettings {
     CorpusSettings::visit(self, visit);
     LearningSettings::visit(self, visit);
     visit_group("fine-tuning", self.pose_loss, visit);
-    visit(Setting{"fine-tuning.hold-out-among", at_least(0), "people",
+    visit(Setting{"fine-tuning.hold-out-among", within(0, 1e6), "people",
                   "of at least so many one is held out, and fine-tuning stops when they fare "
                   "worse; 0: never"},
           self.hold_out_among);
+    visit(Setting{"half-precision", on_or_off(), "",
+                  "the model's numbers are stored in 16 bits each, in half the room"},
+          self.half_precision);
   }
 };
 

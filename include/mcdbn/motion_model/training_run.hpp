@@ -1,28 +1,62 @@
 #pragma once
 
-#include <filesystem>
+#include <functional>
+#include <string>
 #include <vector>
 
+#include "mcdbn/base/settings.hpp"
 #include "mcdbn/corpus/training_set.hpp"
 #include "mcdbn/learning/epoch_report.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
+#include "mcdbn/motion_model/run_folder.hpp"
 #include "mcdbn/motion_model/training_config.hpp"
 
 namespace mcdbn {
 
+class Checkpoints;
+
 struct TrainedRun {
   Model model;
-  double training_s = 0;  ///< without reading clips
+  double training_s = 0;  ///< without reading clips, and before an interruption
 };
 
-/// Trains on clips and writes a run folder: config.toml, the settings; metrics.jsonl, a line for
-/// each epoch; and at last model.safetensors.
+/// How a training keeps what it has; nothing of the model depends on it.
+struct CheckpointSettings {
+  double minutes = 5;
+
+  template <typename Self, typename Visit>
+  static void visit(Self& self, const Visit& visit) {
+    constexpr double kWeek = 7 * 24 * 60;
+    visit(Setting{"checkpoint-minutes", within(0, kWeek), "minutes",
+                  "between checkpoints: as much work is lost at most when the machine goes down; "
+                  "an interruption writes one in any case"},
+          self.minutes);
+  }
+};
+
+/// Who hears of a training while it runs.
+struct TrainingWatch {
+  EpochObserver epoch = {};  ///< after its line is written; may throw to stop
+  std::function<void(const std::string&)> warning = {};  ///< what went wrong and is no end
+};
+
+/// Trains on clips and sets how the model draws samples.
 /// @param data of make_training_set(clips, config)
 /// @param clips gone once the views of them are made
-/// @param observer hears of each epoch after it has its line; may throw to stop
-/// @throws InputError if a file cannot be written, ConfigError, DivergenceError
+/// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
+/// @throws ConfigError, DivergenceError
+TrainedRun train_model(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
+                       const TrainingConfig& config, const EpochObserver& observer = {},
+                       Checkpoints* checkpoints = nullptr);
+
+/// The same into a run folder: metrics.jsonl gets a line for each epoch, checkpoints are written
+/// now and then, and at last the model. A folder with a checkpoint goes on from there, to the same
+/// bits on the same device.
+/// @param data, clips of the folder's own settings and clips
+/// @throws InputError if a file cannot be written, or the checkpoint is of other clips; Interrupted
+/// once a checkpoint is written, if that was asked for (base/interruption.hpp)
 TrainedRun train_to_folder(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
-                           const TrainingConfig& config, const std::filesystem::path& run,
-                           const EpochObserver& observer = {});
+                           RunFolder& run, const CheckpointSettings& settings = {},
+                           const TrainingWatch& watch = {});
 
 }  // namespace mcdbn

@@ -10,6 +10,8 @@
 
 namespace mcdbn {
 
+class Checkpoints;
+
 /// What a training run makes.
 struct TrainedNetwork {
   Mcdbn network;
@@ -26,13 +28,17 @@ TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Mod
 /// held out (person_to_hold_out) and says when to stop.
 /// @param views augmented ones  @throws DivergenceError
 TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& views,
-                         const TrainingConfig& config, const EpochObserver& observer = {});
+                         const TrainingConfig& config, const EpochObserver& observer = {},
+                         Checkpoints* checkpoints = nullptr);
 
 /// The greedy stages (Algorithm 1) on the clips as they are, or on augmented views of them and then
 /// fine-tuning, or that alone, as config.fine_tuning says.
 /// @param clips as make_training_set took them, for the views; gone once those are made
-/// The observer may throw to stop. @throws DivergenceError, InputError
+/// The observer may throw to stop.
+/// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
+/// @throws DivergenceError, InputError
 TrainedNetwork train_network(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
-                             const TrainingConfig& config, const EpochObserver& observer = {});
+                             const TrainingConfig& config, const EpochObserver& observer = {},
+                             Checkpoints* checkpoints = nullptr);
 
 }  // namespace mcdbn

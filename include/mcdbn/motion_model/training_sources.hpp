@@ -30,18 +30,24 @@ class ClipSource : public SequenceSource {
   const TrainingSet& set_;
 };
 
-/// Augmented views of clips (make_augmented_views), made when they are first asked for.
+/// Augmented views of clips (make_augmented_views), made when they are first asked for, and others
+/// at each renewal.
 class ViewSource : public SequenceSource {
  public:
-  /// @param clips at their own rate, gone once the views are made  @param modalities must live on
+  /// @param clips at their own rate, gone once the last views are made: at once, unless
+  ///        config.fine_tuning.new_views_every says that there will be others
+  /// @param modalities must live on
   ViewSource(std::vector<LoadedClip> clips, const Modalities& modalities,
              const TrainingConfig& config)
       : clips_(std::move(clips)), modalities_(modalities), config_(config) {}
 
   const TrainingSet& views() const;
   SynchronizedClips sequences() const override { return ClipSource(views()).sequences(); }
+  bool renew(std::size_t round) const override;
 
  private:
+  void make_views(std::size_t round) const;
+
   mutable std::vector<LoadedClip> clips_;
   const Modalities& modalities_;
   TrainingConfig config_;

@@ -1,0 +1,30 @@
+#include "default_model.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn::cli {
+
+void add_model_option(CLI::App& command, std::filesystem::path& model) {
+  command
+      .add_option("--model", model,
+                  "Trained model; left out, the general one that comes with the program")
+      ->type_name("FILE");
+}
+
+std::filesystem::path model_or_default(const std::filesystem::path& said) {
+  if (!said.empty()) return said;
+  std::error_code unknown;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  const auto model =
+      program.parent_path().parent_path() / "share" / "mcdbn-cl" / "default_model.safetensors";
+  if (unknown || !std::filesystem::exists(model))
+    throw ConfigError(
+        fmt::format("no --model, and none comes with this program: {} is missing", model.string()));
+  spdlog::info("no --model: the general one, {}", model.string());
+  return model;
+}
+
+}  // namespace mcdbn::cli

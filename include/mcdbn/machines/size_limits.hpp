@@ -1,0 +1,17 @@
+#pragma once
+
+#include "mcdbn/base/settings.hpp"
+
+/// How large machines may be: of settings, and of what a file says before memory is taken for it.
+/// Products of three of them still fit into 64 bits.
+namespace mcdbn::size_limits {
+
+inline constexpr Range kUnits = within(1, 100'000);   ///< of a layer
+inline constexpr Range kHistory = within(0, 1000);    ///< frames that a machine sees of the past
+inline constexpr Range kLookAhead = within(0, 1000);  ///< frames
+/// Machines of a stack. As many have random numbers of their own (greedy_schedule.cpp).
+inline constexpr Range kLayers = within(1, 64);
+inline constexpr Range kMeanFieldSteps = within(1, 1000);
+inline constexpr Range kGibbsSteps = within(0, 1000);
+
+}  // namespace mcdbn::size_limits

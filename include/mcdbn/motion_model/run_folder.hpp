@@ -1,0 +1,63 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "mcdbn/corpus/clip_list.hpp"
+#include "mcdbn/motion_model/model_file.hpp"
+#include "mcdbn/motion_model/training_config.hpp"
+
+namespace mcdbn {
+
+/// The folder of a training. What is being trained lies in its folder `unfinished`: run.json, the
+/// settings and the clips that the training was begun with; config.toml; metrics.jsonl; the last
+/// two checkpoints. When all is done model.safetensors, config.toml and metrics.jsonl are put where
+/// they belong, in place of those of a training before, and `unfinished` is gone: the three always
+/// belong together. While one program trains there no other can (FolderLock).
+class RunFolder {
+ public:
+  /// Makes the folder and notes what is going to be trained.
+  /// @param replace where there is a training already, finished or not: its `unfinished` goes now,
+  /// its model when the new one is there
+  /// @throws ConfigError if there is one and it is not to be replaced, Error if another program
+  /// trains there, InputError
+  static RunFolder begin(const std::filesystem::path& path, const TrainingConfig& config,
+                         const std::vector<ListedClip>& clips, bool replace);
+  /// One that was interrupted.
+  /// @throws InputError if there is none, Error if another program trains there
+  static RunFolder resume(const std::filesystem::path& path);
+
+  RunFolder(RunFolder&&) noexcept;
+  ~RunFolder();
+
+  const TrainingConfig& config() const { return config_; }
+  const std::vector<ListedClip>& clips() const { return clips_; }
+  /// Whether all is done already.
+  bool is_complete() const { return complete_; }
+  std::filesystem::path unfinished() const;
+  std::filesystem::path model() const;  ///< where it will be
+
+  /// Takes back what begin() made, if nothing was learnt since: a training that was refused before
+  /// its first epoch needs no `replace` the next time. @return whether it did
+  bool take_back();
+
+  /// The model is there: everything is put where it belongs. On a full disk the checkpoint before
+  /// the last makes room; if that will not do the model goes to the folder for temporary files.
+  /// @throws InputError saying where what was trained lies
+  void complete(const Model& model);
+
+ private:
+  class Lock;
+
+  RunFolder(std::filesystem::path path, std::unique_ptr<Lock> lock);
+  void put_in_place();
+
+  std::filesystem::path path_;
+  std::unique_ptr<Lock> lock_;
+  TrainingConfig config_;
+  std::vector<ListedClip> clips_;
+  bool begun_here_ = false, complete_ = false;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,33 @@
+#!/usr/bin/env python3
+"""Makes a model ready to be passed on: share_model.py MODEL OUT ACKNOWLEDGEMENT
+
+Training clips keep their names and fingerprints and lose the folders that they lay in; the
+acknowledgement goes into the metadata. Numbers stay as they are.
+"""
+
+import json
+import pathlib
+import struct
+import sys
+
+
+def shared(header: dict, acknowledgement: str) -> dict:
+    about = json.loads(header["__metadata__"]["mcdbn"])
+    for clip in about["training_clips"]:
+        clip["path"] = pathlib.Path(clip["path"]).name
+    metadata = {"acknowledgement": acknowledgement, "mcdbn": json.dumps(about)}
+    return {**header, "__metadata__": metadata}
+
+
+def main() -> None:
+    source, target, acknowledgement = sys.argv[1:]
+    content = pathlib.Path(source).read_bytes()
+    (length,) = struct.unpack_from("<Q", content)
+    header = shared(json.loads(content[8 : 8 + length]), acknowledgement)
+    text = json.dumps(header, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 8)
+    pathlib.Path(target).write_bytes(struct.pack("<Q", len(text)) + text + content[8 + length :])
+
+
+if __name__ == "__main__":
+    main()

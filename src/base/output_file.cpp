@@ -1,0 +1,147 @@
+#include "base/output_file.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Where links lead, which may be to what does not exist yet.
+fs::path followed(fs::path path) {
+  constexpr int kMostLinks = 40;  // as Linux follows
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
+    const fs::path target = fs::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / target;
+  }
+  return path;
+}
+
+/// Short, so that any name that fits its folder can be written.
+fs::path temporary_beside(const fs::path& place) {
+  static int count = 0;
+  return place.parent_path() /
+         fmt::format(".mcdbn-{}-{}{}", ::getpid(), ++count, place.extension().string());
+}
+
+const char* kind_of(fs::file_type type) {
+  switch (type) {
+    case fs::file_type::block:
+    case fs::file_type::character:
+      return "a device";
+    case fs::file_type::fifo:
+      return "a pipe";
+    case fs::file_type::socket:
+      return "a socket";
+    default:
+      return "no file";
+  }
+}
+
+/// @throws InputError if what is there is not to be replaced
+void check_place(const fs::path& path, const std::vector<fs::path>& inputs) {
+  std::error_code error;
+  const fs::file_type type = fs::status(path, error).type();
+  if (type == fs::file_type::not_found || type == fs::file_type::none) return;
+  if (type == fs::file_type::directory) {
+    if (!fs::is_empty(path, error))
+      throw InputError(
+          fmt::format("{}: is a folder with files in it; give another name", path.string()));
+  } else if (type != fs::file_type::regular) {
+    throw InputError(
+        fmt::format("{}: is {}, which is not replaced; name a file", path.string(), kind_of(type)));
+  }
+  for (const fs::path& input : inputs)
+    if (fs::equivalent(input, path, error))
+      throw InputError(
+          fmt::format("{}: is read, so it cannot be written; give another name", path.string()));
+}
+
+void move(const fs::path& temporary, const fs::path& place) {
+  std::error_code error;
+  fs::rename(temporary, place, error);
+  if (error)
+    throw InputError(fmt::format("{}: cannot be replaced: {}", place.string(), error.message()));
+}
+
+}  // namespace
+
+thread_local OutputBatch* OutputBatch::current = nullptr;
+
+OutputFile::OutputFile(const fs::path& path)
+    : path_(followed(path.filename().empty() ? path.parent_path() : path)),
+      temporary_(temporary_beside(path_)) {
+  // As it was named: a link of the system's own, /dev/stdout, leads to no name.
+  check_place(path, OutputBatch::current ? OutputBatch::current->inputs_ : std::vector<fs::path>{});
+}
+
+OutputFile::~OutputFile() {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+}
+
+void OutputFile::put_in_place() {
+  if (OutputBatch::current)
+    OutputBatch::current->waiting_.push_back({temporary_, path_});
+  else
+    move(temporary_, path_);
+  temporary_.clear();
+}
+
+OutputBatch::OutputBatch(const std::vector<fs::path>& inputs) {
+  std::ranges::copy_if(inputs, std::back_inserter(inputs_), [](const fs::path& input) {
+    std::error_code error;
+    return fs::exists(input, error);
+  });
+  current = this;
+}
+
+OutputBatch::~OutputBatch() {
+  current = nullptr;
+  std::error_code ignored;
+  for (const Waiting& waiting : waiting_) fs::remove_all(waiting.temporary, ignored);
+  // Those with something in them stay.
+  for (auto folder = made_folders_.rbegin(); folder != made_folders_.rend(); ++folder)
+    fs::remove(*folder, ignored);
+}
+
+void OutputBatch::put_in_place() {
+  for (const Waiting& waiting : waiting_) move(waiting.temporary, waiting.place);
+  waiting_.clear();
+  made_folders_.clear();
+}
+
+void check_output(const fs::path& path) {
+  check_place(path, OutputBatch::current ? OutputBatch::current->inputs_ : std::vector<fs::path>{});
+  const fs::path folder = followed(path).parent_path();
+  std::error_code error;
+  if (!folder.empty() && !fs::is_directory(folder, error))
+    throw InputError(fmt::format("{}: cannot be written: there is no folder {}", path.string(),
+                                 folder.string()));
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  if (OutputBatch* batch = OutputBatch::current) {
+    std::vector<fs::path> missing;  // the deepest first
+    for (fs::path at = folder; !at.empty() && !fs::exists(at, error); at = at.parent_path())
+      if (!at.filename().empty()) missing.push_back(at);
+    batch->made_folders_.insert(batch->made_folders_.end(), missing.rbegin(), missing.rend());
+  }
+  fs::create_directories(folder, error);
+  if (error)
+    throw InputError(
+        fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+namespace mcdbn {
+
+/// A file, or a folder of files, that is written under a temporary name beside its place and put
+/// there when it is whole. Whoever reads the place sees what was there before or all of the new.
+/// A link is written through.
+class OutputFile {
+ public:
+  /// Takes nothing from the disk yet.
+  /// @throws InputError if the place is taken by a device, a pipe or a folder with files, or by
+  /// what an OutputBatch was told not to replace
+  explicit OutputFile(const std::filesystem::path& path);
+  /// Removes what was not put in place.
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// Where to write: of the same extension and in the same folder as the place.
+  const std::filesystem::path& temporary() const { return temporary_; }
+  /// At once, or with all others of the OutputBatch if there is one. @throws InputError
+  void put_in_place();
+
+ private:
+  std::filesystem::path path_, temporary_;
+};
+
+/// While it lives, the outputs that this thread writes wait beside their places, and
+/// put_in_place() puts them all there: the outputs of a command come all or none.
+class OutputBatch {
+ public:
+  /// @param inputs files and folders that are read, and so not to be replaced; others are passed
+  /// over
+  explicit OutputBatch(const std::vector<std::filesystem::path>& inputs = {});
+  /// Removes what was not put in place, with the folders that were made for it.
+  ~OutputBatch();
+  OutputBatch(const OutputBatch&) = delete;
+  OutputBatch& operator=(const OutputBatch&) = delete;
+
+  /// @throws InputError if it is not all there now: one that failed undoes none before it
+  void put_in_place();
+
+ private:
+  friend class OutputFile;
+  friend class OutputsAtOnce;
+  friend void make_folder(const std::filesystem::path& folder);
+  friend void check_output(const std::filesystem::path& path);
+
+  struct Waiting {
+    std::filesystem::path temporary, place;
+  };
+  static thread_local OutputBatch* current;
+
+  std::vector<std::filesystem::path> inputs_, made_folders_;
+  std::vector<Waiting> waiting_;
+};
+
+/// While it lives, outputs are put in place at once, whatever batch there is: those that are there
+/// to be read while the command runs, and those of it that have a way of their own to come all or
+/// none.
+class OutputsAtOnce {
+ public:
+  OutputsAtOnce() : held_back_(std::exchange(OutputBatch::current, nullptr)) {}
+  ~OutputsAtOnce() { OutputBatch::current = held_back_; }
+  OutputsAtOnce(const OutputsAtOnce&) = delete;
+  OutputsAtOnce& operator=(const OutputsAtOnce&) = delete;
+
+ private:
+  OutputBatch* held_back_;
+};
+
+/// What can be said of an output before the work is done.
+/// @throws InputError as OutputFile does, and where the folder that it goes to does not exist
+void check_output(const std::filesystem::path& path);
+
+/// The folder, and those that it lies in, unless they exist. @throws InputError
+void make_folder(const std::filesystem::path& folder);
+
+}  // namespace mcdbn

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace mcdbn {
+
+/// The text with control bytes but line ends escaped as \x1b, and what is no UTF-8 replaced.
+std::string printable(std::string_view text);
+
+/// A piece of input in quotes, for messages: not more than its beginning, and printable.
+std::string shown(std::string_view text);
+
+}  // namespace mcdbn

@@ -1,0 +1,32 @@
+#include "device/training_state.hpp"
+
+#include <fmt/format.h>
+
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+
+void TrainingState::matrix(const std::string& name, Matrix& value) {
+  const std::vector<std::size_t> shape{value.rows(), value.columns()};
+  if (!restores_) {
+    const MatrixF host = value.to_host();
+    content_.matrices[prefix_ + name] = {shape, {host.data(), host.data() + host.size()}};
+    return;
+  }
+  const auto found = content_.matrices.find(prefix_ + name);
+  if (found == content_.matrices.end() || found->second.shape != shape)
+    throw InputError(fmt::format("the checkpoint is of another training: no {} of {} x {}",
+                                 prefix_ + name, value.rows(), value.columns()));
+  value.upload(Eigen::Map<const MatrixF>(found->second.values.data(),
+                                         static_cast<Eigen::Index>(value.rows()),
+                                         static_cast<Eigen::Index>(value.columns())));
+}
+
+const nlohmann::json& TrainingState::at(const std::string& name) const {
+  const auto found = content_.numbers.find(prefix_ + name);
+  if (found == content_.numbers.end() || !(found->is_number() || found->is_boolean()))
+    throw InputError(fmt::format("the checkpoint is of another training: no {}", prefix_ + name));
+  return *found;
+}
+
+}  // namespace mcdbn

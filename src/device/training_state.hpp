@@ -1,0 +1,72 @@
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "base/safetensors.hpp"
+#include "mcdbn/device/parameters.hpp"
+
+namespace mcdbn {
+
+/// What a training changes as it goes, by name, on its way into a checkpoint or back out of one.
+/// Whatever has a state names all of it in one function, visit_state(TrainingState&), which serves
+/// both ways. What follows from it, or is made anew in each mini-batch, is no part of it.
+class TrainingState {
+ public:
+  /// The numbers and matrices of one stage, as a checkpoint keeps them.
+  struct Content {
+    nlohmann::json numbers = nlohmann::json::object();
+    std::map<std::string, Safetensors::Tensor> matrices;
+  };
+
+  /// Fills `content`. Reading matrices waits for the queue.
+  static TrainingState saving(Content& content) { return {content, false}; }
+  /// Gives what is in `content` to those who visit.
+  static TrainingState restoring(Content& content) { return {content, true}; }
+
+  /// Whether what is visited is being brought back: what follows from it has to be made anew.
+  bool restores() const { return restores_; }
+
+  /// The same with `prefix` before every name, for parts of which there are several.
+  TrainingState under(const std::string& prefix) const {
+    TrainingState state(content_, restores_);
+    state.prefix_ = prefix_ + prefix;
+    return state;
+  }
+
+  /// Finite numbers, and booleans. @throws InputError if there is none of that name
+  template <typename Number>
+  void number(const std::string& name, Number& value) {
+    if (restores_)
+      value = at(name).get<Number>();
+    else
+      content_.numbers[prefix_ + name] = value;
+  }
+  /// Of the shape that it had when it was saved. @throws InputError if there is none
+  void matrix(const std::string& name, Matrix& value);
+  /// One that is made when it is first wanted: it is empty where it was.
+  /// @param make an empty one
+  template <typename Make>
+  void matrix_if_any(const std::string& name, Matrix& value, const Make& make) {
+    bool any = !value.empty();
+    number(name + "?", any);
+    if (any && value.empty()) value = make();
+    if (any) matrix(name, value);
+  }
+  /// All of them.
+  void parameters(const std::string& name, const Parameters& value) {
+    Matrix all = value.all();  // shares the buffer
+    matrix(name, all);
+  }
+
+ private:
+  TrainingState(Content& content, bool restores) : content_(content), restores_(restores) {}
+  const nlohmann::json& at(const std::string& name) const;
+
+  Content& content_;
+  bool restores_;
+  std::string prefix_;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,146 @@
+#include "fitting/clip_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/upper_median.hpp"
+#include "fitting/robust_residuals.hpp"
+#include "fitting/rotation.hpp"
+#include "fitting/turned_bones.hpp"
+#include "mcdbn/motion/planted_foot.hpp"
+#include "motion/body_size.hpp"
+#include "motion/foot_joints.hpp"
+#include "motion/mirror.hpp"
+
+namespace mcdbn {
+namespace {
+
+bool hangs_from(const std::vector<int>& parents, int turn, int other) {
+  while (turn >= 0 && turn != other) turn = parents[static_cast<std::size_t>(turn)];
+  return turn == other;
+}
+
+/// By orientation, its length: left and right have the same.
+std::vector<int> length_groups(const PoseFeatures& features, const std::vector<int>& parents) {
+  const std::vector<int>& joints = features.joints();
+  const std::vector<int> opposite = opposite_joints(features.skeleton());
+  std::vector<int> groups;
+  int count = 0;
+  for (std::size_t turn = 0; turn < joints.size(); ++turn) {
+    int group = -1;
+    for (std::size_t other = 0; other < turn && !opposite.empty(); ++other) {
+      if (opposite[static_cast<std::size_t>(joints[turn])] == joints[other] &&
+          !hangs_from(parents, static_cast<int>(turn), static_cast<int>(other)))
+        group = groups[other];
+    }
+    groups.push_back(group < 0 ? count++ : group);
+  }
+  return groups;
+}
+
+}  // namespace
+
+ClipEvidence::ClipEvidence(const PoseFeatures& features, const Motion& answer,
+                           const MatrixD& travelled, const TrackRays& track, const Camera& camera)
+    : skeleton_(answer.skeleton),
+      camera_(camera),
+      units_per_m_(file_units_per_metre(answer.skeleton)) {
+  std::vector<int> joints;
+  for (const std::string& name : track.joint_names) joints.push_back(skeleton_.find(name));
+  const TurnedBones bones(features, skeleton_, joints);
+  turn_above_ = bones.turn_above();
+  clip.parents = bones.parents();
+  clip.lengths = length_groups(features, clip.parents);
+  clip.frame_time_s = 1 / track.fps;
+  clip.root.resize(answer.frames(), 3);
+  clip.travelled = travelled * camera.camera_from_world.transpose() / units_per_m_;
+  const std::vector<int> feet = foot_joints(skeleton_);
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    if (std::ranges::find(feet, joints[k]) == feet.end()) continue;
+    clip.feet.push_back(k);
+    feet_.push_back(joints[k]);
+  }
+  for (int t = 0; t < answer.frames(); ++t) {
+    const WorldPose pose = forward_kinematics(skeleton_, answer.channels.row(t));
+    const Eigen::Vector3d root = pose.position[static_cast<std::size_t>(bones.root())];
+    clip.root.row(t) =
+        (camera.camera_from_world * root + camera.translation).transpose() / units_per_m_;
+    std::vector<SeenJoint> seen;
+    for (auto& levers : bones.levers(pose, camera.camera_from_world)) {
+      const auto k = static_cast<Eigen::Index>(seen.size());
+      for (Lever& lever : levers) lever.bone /= units_per_m_;
+      seen.push_back({std::move(levers), track.rays.row(t).segment<2>(2 * k).transpose(),
+                      track.confidence(t, k)});
+    }
+    clip.seen.push_back(std::move(seen));
+  }
+  clip.planted = MatrixD::Zero(answer.frames(), std::ssize(feet_));
+}
+
+void ClipEvidence::find_planted(const Motion& motion) {
+  const MatrixD positions = joint_positions(motion);
+  for (Eigen::Index t = 1; t < clip.planted.rows(); ++t) {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const int foot : feet_) lowest = std::min(lowest, step_to(positions, foot, t).height);
+    for (std::size_t f = 0; f < feet_.size(); ++f) {
+      const JointStep step = step_to(positions, feet_[f], t);
+      clip.planted(t, static_cast<Eigen::Index>(f)) = kPlantedInAnswer.surely(
+          (step.height - lowest) / units_per_m_, step.moved.norm() / units_per_m_ * motion.fps());
+    }
+  }
+}
+
+MatrixD ClipEvidence::turned(MatrixD features, const PosteriorPoint& point) const {
+  for (Eigen::Index t = 0; t < features.rows(); ++t) {
+    for (Eigen::Index k = 0; k < point.turns.cols() / 3; ++k) {
+      const Eigen::Matrix3d rotation =
+          rotation_of(point.turns.row(t).segment<3>(3 * k).transpose());
+      auto block = features.row(t).segment<PoseFeatures::kBlock>(PoseFeatures::kBlock * k);
+      block.head<3>() *= rotation.transpose();
+      block.tail<3>() *= rotation.transpose();
+    }
+  }
+  return features;
+}
+
+MatrixD ClipEvidence::root(const PosteriorPoint& point) const {
+  // x_camera = R·x_world + t, row by row.
+  return (((clip.root + point.shift) * units_per_m_).rowwise() - camera_.translation.transpose()) *
+         camera_.camera_from_world;
+}
+
+Skeleton ClipEvidence::body(const PosteriorPoint& point) const {
+  Skeleton body = skeleton_;
+  for (std::size_t joint = 0; joint < body.joints.size(); ++joint) {
+    const int turn = turn_above_[joint];
+    if (turn >= 0)
+      body.joints[joint].offset *=
+          std::exp(point.log_lengths[clip.lengths[static_cast<std::size_t>(turn)]]);
+  }
+  return body;
+}
+
+double ClipEvidence::usual_residual(const PosteriorPoint& point) const {
+  std::vector<double> residuals;
+  for (Eigen::Index t = 0; t < clip.frames(); ++t) {
+    const auto& seen = clip.seen[static_cast<std::size_t>(t)];
+    for (std::size_t joint = 0; joint < seen.size(); ++joint) {
+      if (!(seen[joint].confidence > 0)) continue;
+      const Eigen::Vector3d x = place_of(clip, point, t, joint);
+      if (!(x.z() > 0)) continue;
+      const Eigen::Vector2d residual =
+          std::sqrt(seen[joint].confidence) * (x.head<2>() / x.z() - seen[joint].ray);
+      residuals.push_back(residual.x());
+      residuals.push_back(residual.y());
+    }
+  }
+  return robust_deviation(std::move(residuals));
+}
+
+double ClipEvidence::usual_depth_m() const {
+  const Eigen::VectorXd depths = clip.root.col(2);
+  return depths.size() == 0 ? 0 : upper_median({depths.begin(), depths.end()});
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "camera/track_rays.hpp"
+#include "fitting/clip_posterior.hpp"
+#include "mcdbn/features/pose_features.hpp"
+
+namespace mcdbn {
+
+/// An answer beside the track that it is to meet, as what the posterior is made of.
+class ClipEvidence {
+ public:
+  /// @param answer the prior's mean, where the camera sees it  @param travelled [frames x 3] world
+  ///        axes, file units: the prior's velocity, summed up
+  /// @param track of the answer's joints; those that it lacks are left out
+  ClipEvidence(const PoseFeatures& features, const Motion& answer, const MatrixD& travelled,
+               const TrackRays& track, const Camera& camera);
+
+  PosteriorClip clip;  ///< deviations and planted feet still to be told
+
+  /// Which feet stand in a motion of the same skeleton's joints, into `clip`: by how low and slow
+  /// they are (kPlantedInAnswer), the ground being the lowest foot of the frame.
+  void find_planted(const Motion& motion);
+
+  /// The answer's features, turned. @return [frames x dimension] along the camera's axes
+  MatrixD turned(MatrixD features, const PosteriorPoint& point) const;
+  /// Its root. @return [frames x 3] world, file units
+  MatrixD root(const PosteriorPoint& point) const;
+  /// Its body. @return the answer's skeleton, bones as long as the point has them
+  Skeleton body(const PosteriorPoint& point) const;
+
+  /// How far from the rays the joints are: 1.4826 times the median residual, x/z and y/z, times the
+  /// root of its confidence; 0 where nothing is seen.
+  double usual_residual(const PosteriorPoint& point) const;
+  /// The root's usual distance from the camera, m on a 1.7 m body.
+  double usual_depth_m() const;
+
+ private:
+  Skeleton skeleton_;
+  Camera camera_;
+  double units_per_m_;
+  std::vector<int> feet_;        ///< joints of the skeleton, as clip.feet
+  std::vector<int> turn_above_;  ///< by joint of the skeleton, what turns its bone, or −1
+};
+
+}  // namespace mcdbn

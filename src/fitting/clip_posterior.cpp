@@ -1,0 +1,94 @@
+#include "fitting/clip_posterior.hpp"
+
+#include <algorithm>
+#include <future>
+#include <utility>
+
+#include "fitting/window_problem.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// Memory and time of a window's equations grow with its frames, so that those of a clip do.
+constexpr Eigen::Index kWindowFrames = 300;
+/// On either side, over several times what an error lasts: further away nothing is heard.
+constexpr Eigen::Index kOverlapFrames = 30;
+
+struct Window {
+  Eigen::Index first, frames;
+};
+
+/// Every frame is in one window at least; neighbours share 2·kOverlapFrames.
+std::vector<Window> windows_of(Eigen::Index frames) {
+  if (frames <= kWindowFrames + 2 * kOverlapFrames) return {{0, frames}};
+  std::vector<Window> windows;
+  for (Eigen::Index own = 0; own < frames; own += kWindowFrames) {
+    const Eigen::Index first = std::max<Eigen::Index>(0, own - kOverlapFrames);
+    const Eigen::Index last = std::min(frames, own + kWindowFrames + kOverlapFrames);
+    windows.push_back({first, last - first});
+  }
+  return windows;
+}
+
+/// Puts a window's solution beside what stands, which fades out over the frames that both have.
+/// @param known frames that stand already
+void join(PosteriorPoint& whole, Eigen::Index known, const PosteriorPoint& part,
+          Eigen::Index first) {
+  const Eigen::Index shared = known - first;
+  for (Eigen::Index t = 0; t < part.turns.rows(); ++t) {
+    const double share =
+        t < shared ? static_cast<double>(t + 1) / static_cast<double>(shared + 1) : 1.0;
+    for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
+      (whole.*rows).row(first + t) =
+          (1 - share) * (whole.*rows).row(first + t) + share * (part.*rows).row(t);
+  }
+}
+
+}  // namespace
+
+PosteriorPoint PosteriorPoint::zero(const PosteriorClip& clip) {
+  const auto turns = 3 * static_cast<Eigen::Index>(clip.parents.size());
+  const int lengths =
+      clip.lengths.empty() ? 0 : 1 + *std::max_element(clip.lengths.begin(), clip.lengths.end());
+  return {MatrixD::Zero(clip.frames(), turns), MatrixD::Zero(clip.frames(), 3),
+          Eigen::VectorXd::Zero(lengths)};
+}
+
+PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
+                           const TrackFitSettings& settings, PosteriorPoint from) {
+  const std::vector<Window> windows = windows_of(clip.frames());
+  const auto solved = [&](const Window& window, bool lengths_too) {
+    WindowProblem problem(clip, noise, settings, from, window.first, window.frames);
+    problem.solve(lengths_too);
+    return problem.solution();
+  };
+  if (windows.size() == 1) return solved(windows.front(), clip.body_unknown);
+  if (clip.body_unknown) from.log_lengths = solved(windows[windows.size() / 2], true).log_lengths;
+  PosteriorPoint whole = from;
+  Eigen::Index known = 0;
+  for (std::size_t i = 0; i < windows.size(); i += 2) {  // two at once
+    std::future<PosteriorPoint> second;
+    if (i + 1 < windows.size())
+      second = std::async(std::launch::async, solved, windows[i + 1], false);
+    join(whole, std::max(known, windows[i].first), solved(windows[i], false), windows[i].first);
+    known = windows[i].first + windows[i].frames;
+    if (!second.valid()) continue;
+    join(whole, known, second.get(), windows[i + 1].first);
+    known = windows[i + 1].first + windows[i + 1].frames;
+  }
+  return whole;
+}
+
+Eigen::Vector3d place_of(const PosteriorClip& clip, const PosteriorPoint& point, Eigen::Index frame,
+                         std::size_t joint) {
+  const auto& levers = clip.seen[static_cast<std::size_t>(frame)][joint].levers;
+  std::vector<double const*> unknowns;
+  unknowns.reserve(2 * levers.size() + 1);
+  for (const Lever& lever : levers) unknowns.push_back(&point.turns(frame, 3 * lever.turn));
+  unknowns.push_back(&point.shift(frame, 0));
+  for (const Lever& lever : levers)
+    unknowns.push_back(&point.log_lengths[clip.lengths[static_cast<std::size_t>(lever.turn)]]);
+  return JointPlace(levers, clip.root.row(frame).transpose(), true).at(unknowns.data());
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fitting/lever.hpp"
+#include "mcdbn/base/matrices.hpp"
+#include "mcdbn/fitting/track_fit.hpp"
+
+namespace mcdbn {
+
+/// One joint as one frame saw it, along `ray` (x/z and y/z).
+struct SeenJoint {
+  std::vector<Lever> levers;  ///< root to joint, as the prior's mean has them
+  Eigen::Vector2d ray{0, 0};
+  double confidence = 0;  ///< the ray's variance is the track's over this; 0: not seen
+};
+
+/// What is likely of a clip before its track is looked at, and its track. Metres of a 1.7 m body,
+/// camera axes.
+struct PosteriorClip {
+  std::vector<int> parents;                  ///< by orientation, an earlier one, or −1
+  std::vector<int> lengths;                  ///< by orientation, which length its bones have
+  MatrixD turn_deviation_rad;                ///< [frames x orientations] about each axis
+  double root_m_s2 = 1;                      ///< deviation of the acceleration of what is wrong
+                                             ///< with the travelled way
+  MatrixD root;                              ///< [frames x 3] where it is at first
+  MatrixD travelled;                         ///< [frames x 3] the prior's velocity, summed up
+  std::vector<std::vector<SeenJoint>> seen;  ///< by frame and joint
+  std::vector<std::size_t> feet;             ///< indices among the joints
+  MatrixD planted;  ///< [frames x feet] how surely each stands, 0…1, from
+                    ///< the frame before
+  bool body_unknown = false;
+  double frame_time_s = 1;
+
+  Eigen::Index frames() const { return root.rows(); }
+};
+
+/// How far off rays are, x/z and y/z each: a part that is new in every frame and one that lasts.
+struct RayNoise {
+  double white = 0, lasting = 0;
+};
+
+/// A motion as it differs from the prior's mean.
+struct PosteriorPoint {
+  MatrixD turns;                ///< [frames x 3·orientations] radians, camera axes
+  MatrixD shift;                ///< [frames x 3] of the root
+  Eigen::VectorXd log_lengths;  ///< by length, the body's over the skeleton's
+
+  static PosteriorPoint zero(const PosteriorClip& clip);
+};
+
+/// The likeliest motion given prior and track: nonlinear least squares over all frames at once, of
+/// the costs in terms/. Long clips are solved in windows that overlap, with the body of the middle
+/// one.
+/// @param from where to start
+PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
+                           const TrackFitSettings& settings, PosteriorPoint from);
+
+/// Where the joint is. @return camera axes
+Eigen::Vector3d place_of(const PosteriorClip& clip, const PosteriorPoint& point, Eigen::Index frame,
+                         std::size_t joint);
+
+}  // namespace mcdbn

@@ -1,0 +1,42 @@
+#include "fitting/seen_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fitting/track_smoothing.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr double kHeight_m = 1.7;  ///< of the body that lengths are of
+/// What a solution leaves of the noise that it was told, as seen on detector-like tracks of CMU
+/// walkers.
+constexpr double kResidualOfNoise = 0.88;
+/// What a few proportions do not tell of a body and of where a detector sees its joints, and what
+/// is not a detector any more, as shares of a detector's noise.
+constexpr double kLeastOfOther = 0.7, kMost = 3;
+/// A noise that changes by less is not worth another solution.
+constexpr double kSmallChange = 0.1;
+
+}  // namespace
+
+SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m, bool own_skeleton,
+                     const TrackFitSettings& settings) {
+  const double focal_px = std::sqrt(camera.fx_px * camera.fy_px);
+  measured_ = std::max(kLeastNoise_px, track_noise_px) / focal_px;
+  usual_ = settings.detector * kHeight_m / std::max(depth_m, 1e-9);
+  least_ = own_skeleton ? measured_ : kLeastOfOther * usual_;
+  rays_.white = std::max(kLeastNoise_px, settings.caution * track_noise_px) / focal_px;
+  rays_.lasting = usual_;
+}
+
+bool SeenNoise::learn(double residual) {
+  const double before = std::hypot(rays_.white, rays_.lasting);
+  const double told = residual * residual / (kResidualOfNoise * kResidualOfNoise * before);
+  const double both = std::clamp(told, least_, std::max({least_, measured_, kMost * usual_}));
+  rays_.lasting = std::sqrt(std::max(0.0, both * both - measured_ * measured_));
+  const double after = std::hypot(rays_.white, rays_.lasting);
+  return std::abs(after - before) > kSmallChange * before;
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "fitting/clip_posterior.hpp"
+#include "mcdbn/camera/camera.hpp"
+
+namespace mcdbn {
+
+/// What is known of how far off a track's rays are. The part that is new in every frame is told by
+/// the track itself. The part that lasts is at first a usual detector's, then what the solutions
+/// tell: one that comes nearer to the rays than their noise lets expect shows that there is less of
+/// it, the more so the nearer it comes. So an exact projection is found out in two solutions, and a
+/// detector's track stays one.
+class SeenNoise {
+ public:
+  /// @param track_noise_px new in every frame, of x and y each
+  /// @param depth_m of the person, on a 1.7 m body
+  /// @param own_skeleton else the body is never known so well that the lasting part vanishes
+  SeenNoise(double track_noise_px, const Camera& camera, double depth_m, bool own_skeleton,
+            const TrackFitSettings& settings);
+
+  const RayNoise& rays() const { return rays_; }
+  /// @param residual how far from the rays a solution's joints are, x/z and y/z each
+  /// @return whether that makes another solution worth while
+  bool learn(double residual);
+
+ private:
+  double measured_, usual_, least_;  ///< on the rays: of the track, of detectors, of both parts
+  RayNoise rays_;
+};
+
+}  // namespace mcdbn

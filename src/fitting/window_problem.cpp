@@ -1,0 +1,213 @@
+#include "fitting/window_problem.hpp"
+
+#include <ceres/loss_function.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/interruption.hpp"
+#include "fitting/one_thread_solver.hpp"
+#include "fitting/robust_residuals.hpp"
+#include "fitting/slow_process.hpp"
+#include "fitting/terms/linear_term.hpp"
+#include "fitting/terms/reprojection.hpp"
+#include "fitting/terms/standing_foot.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr int kMostIterations = 25;
+/// A step that lowers the energy by less than this share is the last one.
+constexpr double kSmallGain = 1e-3;
+/// A joint that is nearer to the camera than this share of the root's first distance says nothing.
+constexpr double kNearest = 0.1;
+/// What hardly stands is not worth an equation.
+constexpr double kHardlyStands = 0.05;
+/// From so many deviations on a foot that slips counts by its distance, not the square.
+constexpr double kSlips = 2;
+
+ceres::LossFunction* scaled(ceres::LossFunction* loss, double weight) {
+  return new ceres::ScaledLoss(loss, weight, ceres::TAKE_OWNERSHIP);
+}
+
+void append(std::vector<double*>& to, const std::vector<double*>& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
+                             const TrackFitSettings& settings, const PosteriorPoint& from,
+                             Eigen::Index first, Eigen::Index frames)
+    : clip_(clip),
+      settings_(settings),
+      noise_(noise),
+      first_(first),
+      turns_(static_cast<int>(clip.parents.size())),
+      x_{from.turns.middleRows(first, frames), from.shift.middleRows(first, frames),
+         from.log_lengths} {
+  find_used();
+  add_rays();
+  add_turns();
+  add_root();
+  add_feet();
+  if (clip_.body_unknown) add_lengths();
+}
+
+void WindowProblem::solve(bool lengths_too) {
+  check_interruption();
+  for (double& length : x_.log_lengths)
+    if (problem_.HasParameterBlock(&length) && !lengths_too)
+      problem_.SetParameterBlockConstant(&length);
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+  options.max_num_iterations = kMostIterations;
+  options.function_tolerance = kSmallGain;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  const OneThreadSolver one_thread;
+  ceres::Solve(options, &problem_, &summary);
+  turn_unused();
+}
+
+const std::vector<SeenJoint>& WindowProblem::seen(Eigen::Index t) const {
+  return clip_.seen[static_cast<std::size_t>(first_ + t)];
+}
+
+void WindowProblem::find_used() {
+  used_.assign(clip_.parents.size(), false);
+  for (Eigen::Index t = 0; t < x_.turns.rows(); ++t)
+    for (const SeenJoint& joint : seen(t))
+      if (joint.confidence > 0)
+        for (const Lever& lever : joint.levers) used_[static_cast<std::size_t>(lever.turn)] = true;
+  for (std::size_t turn = used_.size(); turn-- > 0;)
+    if (used_[turn] && clip_.parents[turn] >= 0)
+      used_[static_cast<std::size_t>(clip_.parents[turn])] = true;
+}
+
+JointPlace WindowProblem::place(Eigen::Index t, std::size_t joint) const {
+  return {seen(t)[joint].levers, clip_.root.row(first_ + t).transpose(), clip_.body_unknown};
+}
+
+std::vector<double*> WindowProblem::moving_blocks(Eigen::Index t, std::size_t joint) {
+  std::vector<double*> blocks;
+  for (const Lever& lever : seen(t)[joint].levers) blocks.push_back(turn_at(t, lever.turn));
+  blocks.push_back(shift_at(t));
+  return blocks;
+}
+
+std::vector<double*> WindowProblem::length_blocks(std::size_t joint) {
+  std::vector<double*> blocks;
+  if (!clip_.body_unknown) return blocks;
+  for (const Lever& lever : seen(0)[joint].levers)
+    blocks.push_back(&x_.log_lengths[clip_.lengths[static_cast<std::size_t>(lever.turn)]]);
+  return blocks;
+}
+
+double WindowProblem::share_of_parent(Eigen::Index t, int turn) const {
+  const int parent = clip_.parents[static_cast<std::size_t>(turn)];
+  return parent < 0 ? 0
+                    : settings_.likeness * clip_.turn_deviation_rad(first_ + t, turn) /
+                          clip_.turn_deviation_rad(first_ + t, parent);
+}
+
+/// Noise that lasts says the same in frame after frame, so that its energy is a rate over time.
+void WindowProblem::add_rays() {
+  const double same_frames = std::max(1.0, 2 * settings_.noise_lasts_s / clip_.frame_time_s);
+  const double lasting = noise_.lasting * noise_.lasting, white = noise_.white * noise_.white;
+  const double weight = (white + lasting) / (white + same_frames * lasting);
+  for (Eigen::Index t = 0; t < x_.turns.rows(); ++t) {
+    for (std::size_t joint = 0; joint < seen(t).size(); ++joint) {
+      const SeenJoint& at = seen(t)[joint];
+      if (!(at.confidence > 0)) continue;
+      std::vector<double*> blocks = moving_blocks(t, joint);
+      append(blocks, length_blocks(joint));
+      problem_.AddResidualBlock(
+          new Reprojection(place(t, joint), kNearest * clip_.root(first_ + t, 2), at.ray,
+                           std::sqrt((white + lasting) / at.confidence)),
+          scaled(new ceres::CauchyLoss(kCauchy), weight), blocks);
+    }
+  }
+}
+
+/// What an orientation turns otherwise than its parent makes likely is a slow process about zero.
+void WindowProblem::add_turns() {
+  const SlowProcess process(settings_.lasting_s, clip_.frame_time_s);
+  const Eigen::Vector3d zero(0, 0, 0);
+  for (int turn = 0; turn < turns_; ++turn) {
+    if (!used_[static_cast<std::size_t>(turn)]) continue;
+    const int parent = clip_.parents[static_cast<std::size_t>(turn)];
+    const double own = parent < 0 ? 1 : std::sqrt(1 - settings_.likeness * settings_.likeness);
+    for (Eigen::Index t = 0; t < x_.turns.rows(); ++t) {
+      const double deviation = own * clip_.turn_deviation_rad(first_ + t, turn);
+      const double share = share_of_parent(t, turn);
+      std::vector<double*> blocks{turn_at(t, turn)};
+      std::vector<double> shares{1};
+      if (parent >= 0) {
+        blocks.push_back(turn_at(t, parent));
+        shares.push_back(-share);
+      }
+      problem_.AddResidualBlock(new LinearTerm(shares, zero, deviation / std::sqrt(process.point)),
+                                nullptr, blocks);
+      if (t == 0 || t + 1 == x_.turns.rows()) continue;
+      blocks = {turn_at(t - 1, turn), turn_at(t, turn), turn_at(t + 1, turn)};
+      shares = {1, -2, 1};
+      if (parent >= 0) {
+        append(blocks, {turn_at(t - 1, parent), turn_at(t, parent), turn_at(t + 1, parent)});
+        for (const double step : {1, -2, 1}) shares.push_back(-step * share);
+      }
+      problem_.AddResidualBlock(new LinearTerm(shares, zero, deviation / std::sqrt(process.bend)),
+                                nullptr, blocks);
+    }
+  }
+}
+
+/// The root's way bends as the prior's velocity does, up to so much acceleration.
+void WindowProblem::add_root() {
+  const double bend_m = clip_.root_m_s2 * clip_.frame_time_s * clip_.frame_time_s;
+  for (Eigen::Index t = 1; t + 1 < x_.turns.rows(); ++t) {
+    const MatrixD otherwise =
+        clip_.travelled.middleRows(first_ + t - 1, 3) - clip_.root.middleRows(first_ + t - 1, 3);
+    const Eigen::Vector3d wanted = otherwise.row(0) - 2 * otherwise.row(1) + otherwise.row(2);
+    problem_.AddResidualBlock(new LinearTerm({1, -2, 1}, wanted, bend_m), nullptr,
+                              {shift_at(t - 1), shift_at(t), shift_at(t + 1)});
+  }
+}
+
+void WindowProblem::add_feet() {
+  for (std::size_t f = 0; f < clip_.feet.size(); ++f) {
+    const std::size_t foot = clip_.feet[f];
+    for (Eigen::Index t = 1; t < x_.turns.rows(); ++t) {
+      const double surely = clip_.planted(first_ + t, static_cast<Eigen::Index>(f));
+      if (surely < kHardlyStands) continue;
+      std::vector<double*> blocks = moving_blocks(t - 1, foot);
+      append(blocks, moving_blocks(t, foot));
+      append(blocks, length_blocks(foot));
+      const double deviation_m = settings_.footing_m_s * clip_.frame_time_s / std::sqrt(surely);
+      problem_.AddResidualBlock(new StandingFoot(place(t - 1, foot), place(t, foot), deviation_m),
+                                new ceres::HuberLoss(kSlips), blocks);
+    }
+  }
+}
+
+void WindowProblem::add_lengths() {
+  for (double& length : x_.log_lengths)
+    if (problem_.HasParameterBlock(&length))
+      problem_.AddResidualBlock(
+          new LinearTerm({1}, Eigen::VectorXd::Zero(1), settings_.proportions), nullptr, &length);
+}
+
+void WindowProblem::turn_unused() {
+  for (Eigen::Index t = 0; t < x_.turns.rows(); ++t)
+    for (int turn = 0; turn < turns_; ++turn) {
+      if (used_[static_cast<std::size_t>(turn)]) continue;
+      const int parent = clip_.parents[static_cast<std::size_t>(turn)];
+      if (parent < 0) continue;
+      x_.turns.row(t).segment<3>(3 * turn) =
+          share_of_parent(t, turn) * x_.turns.row(t).segment<3>(3 * parent);
+    }
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <ceres/problem.h>
+
+#include <vector>
+
+#include "fitting/clip_posterior.hpp"
+#include "fitting/terms/joint_place.hpp"
+
+namespace mcdbn {
+
+/// The posterior of some frames of a clip as a problem for Ceres. Unknown are, by frame, a turn of
+/// every orientation that moves a joint which is seen, and a shift of the root; and the lengths.
+class WindowProblem {
+ public:
+  /// @param from where to start, of the whole clip
+  WindowProblem(const PosteriorClip& clip, const RayNoise& noise, const TrackFitSettings& settings,
+                const PosteriorPoint& from, Eigen::Index first, Eigen::Index frames);
+
+  /// @param lengths_too else the body stays as it is
+  void solve(bool lengths_too);
+
+  /// Of these frames. What moves no seen joint turns as its parent makes likely.
+  const PosteriorPoint& solution() const { return x_; }
+
+ private:
+  void find_used();
+  void add_rays();
+  void add_turns();
+  void add_root();
+  void add_feet();
+  void add_lengths();
+  void turn_unused();
+
+  const std::vector<SeenJoint>& seen(Eigen::Index t) const;
+  /// What a turn of its parent by one makes one expect of a turn; 0 without a parent.
+  double share_of_parent(Eigen::Index t, int turn) const;
+  double* turn_at(Eigen::Index t, int turn) { return x_.turns.row(t).data() + 3 * turn; }
+  double* shift_at(Eigen::Index t) { return x_.shift.row(t).data(); }
+  JointPlace place(Eigen::Index t, std::size_t joint) const;
+  std::vector<double*> moving_blocks(Eigen::Index t, std::size_t joint);
+  std::vector<double*> length_blocks(std::size_t joint);
+
+  const PosteriorClip& clip_;
+  const TrackFitSettings& settings_;
+  RayNoise noise_;
+  Eigen::Index first_;
+  int turns_;
+  std::vector<bool> used_;
+  PosteriorPoint x_;
+  ceres::Problem problem_;
+};
+
+}  // namespace mcdbn

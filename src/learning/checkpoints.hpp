@@ -1,0 +1,93 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "base/interruption.hpp"
+#include "device/training_state.hpp"
+
+namespace mcdbn {
+
+/// The checkpoints of one training: what its finished stages made and where the running one stands,
+/// in one file, written whole or not at all; the last two are kept, so that there is one to go on
+/// from if the other is damaged.
+class Checkpoints {
+ public:
+  using Visit = std::function<void(TrainingState&)>;
+
+  struct Options {
+    std::filesystem::path folder;           ///< holds checkpoint.safetensors, and the one before it
+    std::chrono::duration<double> every{};  ///< from one to the next
+    /// The training's own: what it writes beside its parameters.
+    Visit more = [](TrainingState&) {};
+    /// Hears of one that could not be written; the training goes on.
+    std::function<void(const std::string&)> warn = [](const std::string&) {};
+  };
+
+  /// Reads what is there to go on from. @throws InputError if none that is there can be read
+  explicit Checkpoints(Options options);
+
+  /// A stage begins, or goes on where it stood, or was over long ago: then `result`, and if it goes
+  /// on `running` too, are brought back. Every stage of a training, in order.
+  /// @param result what is wanted of it when it is over  @param running what else it changes
+  /// @return mini-batches that are behind it; nothing: it is over
+  std::optional<std::size_t> begin(const std::string& stage, Visit result, Visit running);
+  /// The stage is over: its result stays in the checkpoints to come, the first of which is written.
+  void end();
+
+  /// Whether it is time for the next one.
+  bool due() const { return Clock::now() - last_ >= options_.every; }
+  /// @param done mini-batches of the running stage  @throws InputError if it cannot be written
+  void write(std::size_t done);
+  /// The same; what goes wrong is a warning.
+  void try_to_write(std::size_t done);
+
+  static bool exist_in(const std::filesystem::path& folder);
+  /// The one before the last makes room for what matters more.
+  static void drop_previous(const std::filesystem::path& folder);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Stages {
+    std::map<std::string, TrainingState::Content> over;
+    std::string running;
+    std::size_t done = 0;
+    TrainingState::Content now, more;
+  };
+  static Stages read(const std::filesystem::path& path);
+
+  Options options_;
+  std::optional<Stages> found_;
+  std::map<std::string, TrainingState::Content> over_;
+  std::string stage_;  ///< the running one; empty between two
+  Visit result_, running_;
+  Clock::time_point last_ = Clock::now();
+};
+
+/// One stage of a training as it goes through its mini-batches: it stops between two of them, and
+/// writes checkpoints, if there are any.
+class StageRun {
+ public:
+  /// As Checkpoints::begin. @param checkpoints none: nothing is kept
+  StageRun(Device& device, Checkpoints* checkpoints, const std::string& stage,
+           const Checkpoints::Visit& result, const Checkpoints::Visit& running);
+
+  bool is_over() const { return !done_; }
+  /// Mini-batches behind it as it goes on.
+  std::size_t done() const { return done_.value_or(0); }
+  /// After each mini-batch that is enqueued. @throws Interrupted once a checkpoint is written
+  void after_step(std::size_t done);
+  void end();
+
+ private:
+  Device& device_;
+  /// From the first mini-batch on; before, while kernels are built, nothing is lost.
+  std::optional<InterruptionDeferred> deferred_;
+  Checkpoints* checkpoints_;
+  std::optional<std::size_t> done_ = 0;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+
+#include "mcdbn/device/device.hpp"
+#include "mcdbn/learning/sequence_source.hpp"
+#include "mcdbn/learning/settings.hpp"
+
+namespace mcdbn {
+
+/// What training takes of a device's memory at least, in bytes, by what it is for.
+struct MemoryNeed {
+  double parameters = 0;  ///< and what optimizers keep of each
+  double windows = 0;     ///< what a mini-batch leaves behind for its gradient
+  double frames = 0;      ///< the data and their codes
+
+  double total() const { return parameters + windows + frames; }
+};
+
+/// @param dimensions of each modality's frames  @param frames of all clips or views together
+MemoryNeed memory_need(std::span<const std::size_t> dimensions, double frames,
+                       const LearningSettings& settings);
+
+/// Compares it with the whole memory of the device, before anything is asked for.
+/// @throws ConfigError that names both and what to lower
+void check_memory(const MemoryNeed& need, const DeviceInfo& device,
+                  const LearningSettings& settings);
+
+/// The greedy stages need a window of frames: the history of every layer and the look-ahead.
+/// @param longest frames of the longest clip
+/// @throws ConfigError that names both and what to lower
+void check_window(std::size_t longest, const LearningSettings& settings);
+
+}  // namespace mcdbn

@@ -1,0 +1,53 @@
+#include "mcdbn/machines/answer_deviation.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// A residual smaller than this share of its column's RMS counts as that: the logarithm of a chance
+/// zero would weigh more than all others.
+constexpr double kSmallest = 0.02;
+
+}  // namespace
+
+MatrixF AnswerDeviation::of(const MatrixF& code) const {
+  if (code.cols() != C.rows()) throw ShapeError("answer deviation: the code has other units");
+  return ((code * C).rowwise() + c.row(0)).array().exp();
+}
+
+AnswerDeviation AnswerDeviation::fit(const MatrixF& code, const MatrixF& residuals) {
+  if (code.rows() != residuals.rows() || code.rows() < 2)
+    throw ShapeError("answer deviation: wants two frames and more, as many codes as residuals");
+  const MatrixD squares = residuals.cast<double>().array().square();
+  const RowVectorD mean_square =
+      squares.colwise().mean().cwiseMax(std::numeric_limits<float>::min());
+  const MatrixD logs =
+      0.5 * squares.cwiseMax(kSmallest * kSmallest * mean_square.replicate(squares.rows(), 1))
+                .array()
+                .log();
+  const RowVectorD mean_log = logs.colwise().mean(),
+                   mean_code = code.cast<double>().colwise().mean();
+  const MatrixD centered = code.cast<double>().rowwise() - mean_code;
+  MatrixD normal = centered.transpose() * centered;
+  normal.diagonal().array() += 1.0;
+  const MatrixD slope = normal.llt().solve(centered.transpose() * (logs.rowwise() - mean_log));
+  AnswerDeviation deviation{slope.cast<float>(), (mean_log - mean_code * slope).cast<float>()};
+  const MatrixD ratios = squares.array() / deviation.of(code).cast<double>().array().square();
+  deviation.c += (0.5 * ratios.colwise().mean().array().log()).matrix().cast<float>();
+  return deviation;
+}
+
+void AnswerDeviation::calibrate(const MatrixF& residuals, const MatrixF& deviations) {
+  if (residuals.rows() != deviations.rows() || residuals.cols() != deviations.cols() ||
+      residuals.size() == 0)
+    throw ShapeError("answer deviation: calibration wants a deviation for each residual");
+  const double ratio = (residuals.array() / deviations.array()).cast<double>().square().mean();
+  c.array() += static_cast<float>(0.5 * std::log(ratio));
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,194 @@
+#include "mcdbn/motion_model/run_folder.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "base/folder_lock.hpp"
+#include "base/text_file.hpp"
+#include "base/utf8.hpp"
+#include "learning/checkpoints.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion_model/settings_record.hpp"
+
+namespace mcdbn {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char *kModelFile = "model.safetensors", *kMetricsFile = "metrics.jsonl",
+                     *kRunFile = "run.json", *kUnfinished = "unfinished";
+/// The model at last: while it is among the unfinished files the others may be, too.
+constexpr std::array kResults{"config.toml", kMetricsFile, kModelFile};
+
+/// What is recorded is text.
+void check_names(const ListedClip& clip) {
+  const std::string file = clip.file.string();
+  require_utf8(file, file + ": its name");
+  require_utf8(clip.person, file + ": its person");
+  require_utf8(clip.action, file + ": its action");
+}
+
+[[noreturn]] void fail_record(const fs::path& record) {
+  throw InputError(fmt::format("{}: not what mcdbn-cl train wrote; train anew", record.string()));
+}
+
+bool holds_training(const fs::path& path) {
+  for (const char* name : kResults)
+    if (fs::exists(path / name)) return true;
+  return fs::exists(path / kUnfinished);
+}
+
+void write_record(const fs::path& path, const TrainingConfig& config,
+                  const std::vector<ListedClip>& clips) {
+  json record = {{"settings", settings_json(config)},
+                 {"skeleton", static_cast<int>(config.skeleton)},
+                 {"clips", json::array()}};
+  for (const ListedClip& clip : clips)
+    record["clips"].push_back({{"file", fs::absolute(clip.file).lexically_normal().string()},
+                               {"person", clip.person},
+                               {"action", clip.action}});
+  write_text_file(path, record.dump(1) + '\n');
+}
+
+}  // namespace
+
+/// Which headers that users see need not know.
+class RunFolder::Lock : public FolderLock {
+ public:
+  using FolderLock::FolderLock;
+};
+
+RunFolder::RunFolder(fs::path path, std::unique_ptr<Lock> lock)
+    : path_(std::move(path)), lock_(std::move(lock)) {}
+RunFolder::RunFolder(RunFolder&&) noexcept = default;
+RunFolder::~RunFolder() = default;
+
+fs::path RunFolder::unfinished() const {
+  return path_ / kUnfinished;
+}
+
+fs::path RunFolder::model() const {
+  return path_ / kModelFile;
+}
+
+RunFolder RunFolder::begin(const fs::path& path, const TrainingConfig& config,
+                           const std::vector<ListedClip>& clips, bool replace) {
+  for (const ListedClip& clip : clips) check_names(clip);
+  make_folder(path);  // gone again, if nothing is kept in it, with the command's other outputs
+  const OutputsAtOnce at_once;
+  RunFolder run(path, std::make_unique<Lock>(path));
+  if (holds_training(path) && !replace)
+    throw ConfigError(fmt::format(
+        "{}: holds a training already; `force` trains anew in its place, `resume` goes on with one "
+        "that was interrupted",
+        path.string()));
+  run.config_ = config;
+  run.clips_ = clips;
+  run.begun_here_ = true;
+  std::error_code error;
+  fs::remove_all(run.unfinished(), error);
+  make_folder(run.unfinished());
+  write_text_file(run.unfinished() / kResults[0], settings_toml(config));
+  write_record(run.unfinished() / kRunFile, config, clips);
+  return run;
+}
+
+RunFolder RunFolder::resume(const fs::path& path) {
+  if (!holds_training(path))
+    throw InputError(fmt::format("{}: holds no training to go on with", path.string()));
+  RunFolder run(path, std::make_unique<Lock>(path));
+  if (fs::exists(run.unfinished() / kModelFile)) run.put_in_place();
+  const fs::path record = run.unfinished() / kRunFile;
+  if (!fs::exists(record)) {
+    if (!fs::exists(run.model()))
+      throw InputError(fmt::format(
+          "{}: the training there was interrupted before it began; begin it with --force",
+          path.string()));
+    std::error_code error;
+    fs::remove_all(run.unfinished(), error);
+    run.complete_ = true;
+    return run;
+  }
+  try {
+    const json content = json::parse(read_text_file(record));
+    run.config_ = settings_from_json(content.at("settings"));
+    run.config_.skeleton = content.at("skeleton").get<SkeletonUse>();
+    for (const json& clip : content.at("clips"))
+      run.clips_.emplace_back(clip.at("file").get<std::string>(), clip.at("person"),
+                              clip.at("action"));
+  } catch (const json::exception&) {
+    fail_record(record);
+  } catch (const std::out_of_range&) {  // names that are none
+    fail_record(record);
+  }
+  return run;
+}
+
+bool RunFolder::take_back() {
+  std::error_code error;
+  const fs::path metrics = unfinished() / kMetricsFile;
+  const bool learnt = Checkpoints::exist_in(unfinished()) ||
+                      fs::exists(unfinished() / kModelFile, error) ||
+                      (fs::exists(metrics, error) && !fs::is_empty(metrics, error));
+  if (!begun_here_ || complete_ || learnt) return false;
+  fs::remove_all(unfinished(), error);
+  return true;
+}
+
+void RunFolder::complete(const Model& model) {
+  const OutputsAtOnce at_once;
+  const fs::path file = unfinished() / kModelFile;
+  const auto save = [&](const fs::path& to) -> std::optional<std::string> {
+    try {
+      save_model(to, model, config_.half_precision ? StoredNumbers::half : StoredNumbers::single);
+      return {};
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  auto failure = save(file);
+  if (failure) {
+    Checkpoints::drop_previous(unfinished());
+    failure = save(file);
+  }
+  if (failure) {
+    std::error_code error;
+    const fs::path elsewhere =
+        fs::temp_directory_path(error) / fmt::format("mcdbn-cl-{}.safetensors", ::getpid());
+    if (error || save(elsewhere))
+      throw InputError(fmt::format(
+          "{}; make room, then go on from the last checkpoint: mcdbn-cl train --resume {}",
+          *failure, path_.string()));
+    throw InputError(fmt::format("{}; the model lies in {}: make room and move it to {}", *failure,
+                                 elsewhere.string(), this->model().string()));
+  }
+  put_in_place();
+}
+
+void RunFolder::put_in_place() {
+  // From here on nothing has to be trained, however this ends.
+  std::error_code error;
+  fs::remove(unfinished() / kRunFile, error);
+  fs::remove(this->model(), error);
+  for (const char* name : kResults) {
+    const fs::path from = unfinished() / name;
+    if (!fs::exists(from, error)) continue;
+    fs::rename(from, path_ / name, error);
+    if (error)
+      throw InputError(
+          fmt::format("{}: cannot be put in place: {}", from.string(), error.message()));
+  }
+  fs::remove_all(unfinished(), error);
+  complete_ = true;
+}
+
+}  // namespace mcdbn

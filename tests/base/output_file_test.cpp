@@ -1,0 +1,126 @@
+#include "base/output_file.hpp"
+
+#include <doctest/doctest.h>
+#include <sys/stat.h>
+
+#include <fstream>
+#include <set>
+
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "mcdbn/base/errors.hpp"
+
+using namespace mcdbn;
+namespace fs = std::filesystem;
+
+TEST_CASE("a file is written through links, also to what is not there yet") {
+  const test::ScratchFolder folder;
+  fs::create_directory(folder / "sub");
+  const fs::path file = folder.write("sub/file.txt", "old");
+  fs::create_symlink("sub/file.txt", folder / "link.txt");
+  fs::create_symlink(folder / "link.txt", folder / "link of a link.txt");
+  fs::create_symlink("new.txt", folder / "sub/ahead.txt");
+  write_text_file(folder / "link of a link.txt", "new");
+  CHECK(read_text_file(file) == "new");
+  CHECK(fs::is_symlink(folder / "link of a link.txt"));
+  CHECK(fs::is_symlink(folder / "link.txt"));
+  write_text_file(folder / "sub/ahead.txt", "ahead");
+  CHECK(read_text_file(folder / "sub/new.txt") == "ahead");
+  CHECK(fs::is_symlink(folder / "sub/ahead.txt"));
+  CHECK(test::entries_of(folder / "sub") ==
+        std::set<std::string>{"file.txt", "new.txt", "ahead.txt"});
+}
+
+TEST_CASE("what is no regular file is not replaced") {
+  const test::ScratchFolder folder;
+  REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  fs::create_symlink("pipe", folder / "link");
+  for (const fs::path& path : {folder / "pipe", folder / "link", fs::path("/dev/null")}) {
+    CAPTURE(path);
+    CHECK_THROWS_AS(write_text_file(path, "x"), InputError);
+    CHECK_THROWS_AS(check_output(path), InputError);
+  }
+  CHECK(fs::is_fifo(folder / "pipe"));
+  CHECK(fs::is_character_file("/dev/null"));
+  fs::create_symlink("loop", folder / "loop");
+  CHECK_THROWS_AS(write_text_file(folder / "loop/x", "x"), InputError);
+  CHECK(test::entries_of(folder / "") == std::set<std::string>{"pipe", "link", "loop"});
+}
+
+TEST_CASE("the reason why a file cannot be written is said") {
+  const test::ScratchFolder folder;
+  const auto message = [&](const auto& write) -> std::string {
+    try {
+      write();
+      return {};
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  const fs::path missing = folder / "missing/a.txt";
+  CHECK(message([&] { write_text_file(missing, "x"); }) ==
+        missing.string() + ": cannot be written: No such file or directory");
+  CHECK(message([&] { check_output(missing); }) == missing.string() +
+                                                       ": cannot be written: there is no folder " +
+                                                       (folder / "missing").string());
+  CHECK(message([&] { check_output(folder / "a.txt"); }).empty());
+  CHECK(message([&] { check_output("a.txt"); }).empty());
+}
+
+TEST_CASE("outputs of a batch come all or none") {
+  const test::ScratchFolder folder;
+  folder.write("a.txt", "old");
+  const auto write_all = [&] {
+    write_text_file(folder / "a.txt", "new");
+    make_folder(folder / "made/inside");
+    write_text_file(folder / "made/inside/b.txt", "new");
+    OutputFile several(folder / "several");
+    fs::create_directory(several.temporary());
+    {
+      const OutputsAtOnce at_once;
+      write_text_file(several.temporary() / "c.txt", "new");
+    }
+    several.put_in_place();
+  };
+  {
+    const OutputBatch batch;
+    write_all();
+    CHECK(read_text_file(folder / "a.txt") == "old");
+    CHECK(!fs::exists(folder / "made/inside/b.txt"));
+  }
+  CHECK(read_text_file(folder / "a.txt") == "old");
+  CHECK(test::entries_of(folder / "") == std::set<std::string>{"a.txt"});
+  {
+    OutputBatch batch;
+    write_all();
+    {
+      const OutputsAtOnce at_once;
+      write_text_file(folder / "now.txt", "at once");
+    }
+    CHECK(read_text_file(folder / "now.txt") == "at once");
+    batch.put_in_place();
+  }
+  CHECK(read_text_file(folder / "a.txt") == "new");
+  CHECK(read_text_file(folder / "made/inside/b.txt") == "new");
+  CHECK(read_text_file(folder / "several/c.txt") == "new");
+  CHECK(test::entries_of(folder / "") ==
+        std::set<std::string>{"a.txt", "made", "several", "now.txt"});
+  write_text_file(folder / "a.txt", "without a batch");
+  CHECK(read_text_file(folder / "a.txt") == "without a batch");
+}
+
+TEST_CASE("a batch does not replace what is read, whatever it is called") {
+  const test::ScratchFolder folder;
+  const fs::path input = folder.write("input.txt", "read");
+  fs::create_hard_link(input, folder / "other name.txt");
+  fs::create_symlink("input.txt", folder / "link.txt");
+  fs::create_directory(folder / "frames");
+  const OutputBatch batch({input, folder / "absent", folder / "frames"});
+  for (const char* name : {"input.txt", "other name.txt", "link.txt", "frames"}) {
+    CAPTURE(name);
+    CHECK_THROWS_AS(check_output(folder / name), InputError);
+    CHECK_THROWS_AS(write_text_file(folder / name, "x"), InputError);
+  }
+  CHECK_NOTHROW(check_output(folder / "output.txt"));
+  CHECK_NOTHROW(check_output(folder / "absent"));
+}

@@ -1,0 +1,70 @@
+// The general model that comes with the program.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/safetensors.hpp"
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "run_cli.hpp"
+
+using namespace mcdbn::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path kProgram = MCDBN_CLI;
+
+fs::path shipped() {
+  return fs::path(MCDBN_SOURCE_DIR) / "cli" / "default_model.safetensors";
+}
+
+}  // namespace
+
+TEST_CASE("the default model: small, whom to thank, and nothing of the machine it was made on") {
+  CHECK(fs::file_size(shipped()) <= 10'000'000);
+  const auto metadata = mcdbn::read_safetensors(shipped()).metadata;
+  CHECK(metadata.at("acknowledgement").find("mocap.cs.cmu.edu") != std::string::npos);
+  const auto about = nlohmann::json::parse(metadata.at("mcdbn"));
+  CHECK(about.at("training_clips").size() > 50);
+  for (const auto& clip : about.at("training_clips"))
+    CHECK(clip.at("path").get<std::string>().find('/') == std::string::npos);
+}
+
+TEST_CASE("the default model: info, regenerate and evaluate take it and say so") {
+  const CliResult info = run_cli("info --json");
+  REQUIRE(info.exit_code == 0);
+  CHECK(nlohmann::json::parse(info.standard_output).contains("acknowledgement"));
+
+  const ScratchFolder folder;
+  const std::string motion = (folder / "motion").string(), track = (folder / "track.csv").string();
+  REQUIRE(run_cli(fmt::format("synthesize --action walk --clips 1 --seconds 1.5 -o '{}'", motion))
+              .exit_code == 0);
+  const std::string clip = fs::directory_iterator(motion)->path().string();
+  REQUIRE(run_cli(fmt::format("project '{}' --like openpose -o '{}'", clip, track)).exit_code == 0);
+  const auto regenerate = [&](const std::string& model, const std::string& name) {
+    const CliResult result = run_cli(fmt::format("regenerate --input '{}' {} -o '{}' --fit none",
+                                                 track, model, (folder / name).string()));
+    CAPTURE(result.standard_error);
+    REQUIRE(result.exit_code == 0);
+    CHECK((result.standard_error.find("no --model") != std::string::npos) == model.empty());
+    return mcdbn::read_text_file(folder / name);
+  };
+  CHECK(regenerate("", "a.bvh") ==
+        regenerate(fmt::format("--model '{}'", shipped().string()), "b.bvh"));
+  const CliResult evaluated =
+      run_cli(fmt::format("evaluate --test '{}' --baselines none --fit none", clip));
+  CAPTURE(evaluated.standard_error);
+  CHECK(evaluated.exit_code == 0);
+}
+
+TEST_CASE("the default model: a program without one asks for --model") {
+  const ScratchFolder folder;
+  fs::create_directory(folder / "bin");
+  fs::copy(kProgram, folder / "bin");
+  const CliResult alone = run_program(folder / "bin" / kProgram.filename(), "info");
+  CHECK(alone.exit_code == 2);
+  CHECK(alone.standard_error.find("--model") != std::string::npos);
+}

@@ -1,0 +1,93 @@
+// Inputs at the edge of what there is to see: one frame, nothing that moves, nothing that was seen.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "base/text_file.hpp"
+#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "tiny_pipeline.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The first frame of one of the pipeline's clips, so many times.
+fs::path still_clip(const ScratchFolder& folder, const std::string& name, int frames) {
+  Motion motion = read_bvh(TinyPipeline::instance().motion() / "walk_s02_01.bvh");
+  const RowVectorD first = motion.channels.row(0);
+  motion.channels = first.replicate(frames, 1);
+  write_bvh(folder / name, motion);
+  return folder / name;
+}
+
+/// The lines of a track with every number behind the header gone.
+std::string unseen(const std::string& track) {
+  std::string result;
+  int line = 0;
+  for (const char c : track) {
+    if (c == '\n') ++line;
+    if (line < 2 || c == ',' || c == '\n') result += c;
+  }
+  return result;
+}
+
+void check_run(const std::string& arguments, int exit_code, const std::string& words = {}) {
+  CAPTURE(arguments);
+  const CliResult result = run_cli(arguments);
+  CAPTURE(result.standard_error);
+  CHECK(result.exit_code == exit_code);
+  CHECK(result.standard_error.find(words) != std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("a clip of one frame is seen, drawn and answered; nothing is learnt or goes on from it") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  const std::string clip = still_clip(folder, "one.bvh", 1).string(),
+                    track = (folder / "one.csv").string(), out = (folder / "out").string();
+  const std::string model = TinyPipeline::instance().model().string();
+  check_run("info " + clip, 0);
+  check_run("project " + clip + " -o " + track, 0, "1 frames");
+  check_run("render " + clip + " -o " + out + ".png", 0);
+  check_run("regenerate --model " + model + " --input " + track + " -o " + out + ".bvh", 0);
+  CHECK(read_bvh(out + ".bvh").frames() == 1);
+  check_run("generate --model " + model + " --seed-clip " + clip + " -o " + out + "_2.bvh", 3,
+            "one.bvh: the seed clip has 1 frames");
+  check_run("train " + clip + " -o " + out + "_run --quiet", 2, "the longest clip has 1;");
+  CHECK(!fs::exists(out + "_2.bvh"));
+}
+
+TEST_CASE("a clip in which nothing moves trains beside others, and its track is answered") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  const std::string clip = still_clip(folder, "still.bvh", 40).string(),
+                    track = (folder / "still.csv").string(), run = (folder / "run").string(),
+                    out = (folder / "out.bvh").string();
+  check_run("project " + clip + " -o " + track, 0);
+  check_run("train " + clip + " " + TinyPipeline::instance().training_clips() + " -o " + run +
+                " --quiet --augment-views 4 " + kTinyGreedy +
+                " --fine-tuning-steps 3 --fine-tuning-windows 4",
+            0);
+  check_run("regenerate --model " + run + "/model.safetensors --input " + track + " -o " + out, 0);
+  const Motion answer = read_bvh(out);
+  CHECK(answer.frames() == 40);
+  CHECK(answer.channels.allFinite());
+}
+
+TEST_CASE("a track that shows nobody is described, and refused by its name") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const std::string whole = (folder / "whole.csv").string(), out = (folder / "out.bvh").string();
+  check_run("project " + (pipeline.motion() / "walk_s02_01.bvh").string() + " -o " + whole, 0);
+  const std::string none = folder.write("none.csv", unseen(read_text_file(whole))).string();
+  const CliResult described = run_cli("info --json " + none);
+  CHECK(described.exit_code == 0);
+  CHECK(described.standard_output.find("\"people_seen\": 0") != std::string::npos);
+  check_run("regenerate --model " + pipeline.model().string() + " --input " + none + " -o " + out,
+            3, none + ": the 2D track never shows");
+  CHECK(!fs::exists(out));
+}

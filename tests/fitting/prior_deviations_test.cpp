@@ -1,0 +1,53 @@
+// How far orientations may turn, from what a prior says.
+
+#include "fitting/prior_deviations.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "features/clip_modalities.hpp"
+#include "fitting/two_second_walk.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+/// Of one orientation whose six numbers were told to be so many degrees off.
+double deviation_deg(double told_deg, const TrackFitSettings& settings) {
+  const Modalities modalities = modalities_of({two_second_walk()}, {});
+  const auto& kept = modalities.pose_scale.kept_columns();
+  PosePrior prior(MatrixF::Zero(1, std::ssize(kept)), MatrixF::Zero(1, std::ssize(kept)));
+  // A turn of deviation s moves two unit vectors by 2 s² each; here all of it by one number.
+  const double told_rad = told_deg * std::numbers::pi / 180;
+  prior.deviation(0, 0) =
+      static_cast<float>(2 * told_rad / modalities.pose_scale.deviation()[kept[0]]);
+  const int turn = kept[0] / PoseFeatures::kBlock;
+  return turn_deviations_rad(prior, modalities, settings)(0, turn) * 180 / std::numbers::pi;
+}
+
+}  // namespace
+
+TEST_CASE("prior deviations: up to the typical one as told, beyond it a power of that") {
+  TrackFitSettings settings;
+  settings.turn_deg = 10;
+  settings.doubt = 0.5;
+  CHECK(deviation_deg(0, settings) == doctest::Approx(0.1));
+  CHECK(deviation_deg(5, settings) == doctest::Approx(5).epsilon(1e-5));
+  CHECK(deviation_deg(40, settings) == doctest::Approx(20).epsilon(1e-5));
+  settings.doubt = 1;
+  CHECK(deviation_deg(40, settings) == doctest::Approx(40).epsilon(1e-5));
+  settings.doubt = 0;
+  CHECK(deviation_deg(40, settings) == doctest::Approx(10).epsilon(1e-5));
+}
+
+TEST_CASE("prior deviations: a prior that says none has the typical one") {
+  const Modalities modalities = modalities_of({two_second_walk()}, {});
+  const MatrixF mean = MatrixF::Zero(2, std::ssize(modalities.pose_scale.kept_columns()));
+  TrackFitSettings settings;
+  settings.turn_deg = 18;
+  const MatrixD turns = turn_deviations_rad(PosePrior(mean), modalities, settings);
+  CHECK((turns.array() - std::numbers::pi / 10).abs().maxCoeff() < 1e-12);
+}

@@ -1,0 +1,53 @@
+#include "fitting/seen_noise.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace mcdbn;
+
+namespace {
+
+constexpr double kFocal_px = 1000, kDepth_m = 4;
+const double kUsual = TrackFitSettings{}.detector * 1.7 / kDepth_m;
+
+SeenNoise noise_of(double track_px, bool own_skeleton) {
+  Camera camera;
+  camera.fx_px = camera.fy_px = kFocal_px;
+  return {track_px, camera, kDepth_m, own_skeleton, {}};
+}
+
+}  // namespace
+
+TEST_CASE("seen noise: a track is a detector's until a solution says otherwise") {
+  const SeenNoise noise = noise_of(1, true);
+  CHECK(noise.rays().lasting == doctest::Approx(kUsual));
+  CHECK(noise.rays().white == doctest::Approx(2 * 1 / kFocal_px));  // TrackFitSettings::caution
+  CHECK(noise_of(0, true).rays().white == doctest::Approx(0.25 / kFocal_px));
+}
+
+TEST_CASE("seen noise: a detector's track stays one") {
+  SeenNoise noise = noise_of(0.5, false);
+  noise.learn(0.88 * kUsual);
+  CHECK(noise.rays().lasting == doctest::Approx(kUsual).epsilon(0.1));
+  CHECK_FALSE(noise.learn(0.88 * kUsual));
+}
+
+TEST_CASE("seen noise: an exact projection is found out, of an own skeleton alone") {
+  SeenNoise own = noise_of(0, true), other = noise_of(0, false);
+  CHECK(own.learn(0.25 * kUsual));
+  CHECK(own.rays().lasting < 0.1 * kUsual);
+  own.learn(0.03 * kUsual);
+  CHECK(own.rays().lasting == doctest::Approx(0).scale(kUsual));
+  CHECK(other.learn(0.25 * kUsual));
+  CHECK(std::hypot(other.rays().lasting, 0.25 / kFocal_px) == doctest::Approx(0.7 * kUsual));
+}
+
+TEST_CASE("seen noise: a worse detector is one too, up to a limit") {
+  SeenNoise worse = noise_of(0.5, false);
+  CHECK(worse.learn(1.5 * kUsual));
+  CHECK(worse.rays().lasting > 1.5 * kUsual);
+  SeenNoise wild = noise_of(0.5, false);
+  wild.learn(100 * kUsual);
+  CHECK(wild.rays().lasting == doctest::Approx(3 * kUsual).epsilon(0.01));
+}

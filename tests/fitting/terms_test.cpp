@@ -1,0 +1,148 @@
+// Every cost against finite differences, and its residuals against their formulas.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "fitting/rotation.hpp"
+#include "fitting/terms/linear_term.hpp"
+#include "fitting/terms/reprojection.hpp"
+#include "fitting/terms/standing_foot.hpp"
+
+using namespace mcdbn;
+
+namespace {
+
+/// Unknowns of a cost, block by block.
+struct Unknowns {
+  std::vector<std::vector<double>> blocks;
+
+  Unknowns(const ceres::CostFunction& cost, unsigned seed, double size) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0, size);
+    for (const int count : cost.parameter_block_sizes()) {
+      blocks.emplace_back();
+      for (int i = 0; i < count; ++i) blocks.back().push_back(normal(random));
+    }
+  }
+  std::vector<double const*> pointers() const {
+    std::vector<double const*> result;
+    for (const auto& block : blocks) result.push_back(block.data());
+    return result;
+  }
+};
+
+Eigen::VectorXd residuals(const ceres::CostFunction& cost, const Unknowns& at) {
+  Eigen::VectorXd result(cost.num_residuals());
+  REQUIRE(cost.Evaluate(at.pointers().data(), result.data(), nullptr));
+  return result;
+}
+
+/// Analytic Jacobians, of all blocks at once and of each alone, against central differences.
+void check_jacobians(const ceres::CostFunction& cost, Unknowns at) {
+  const int rows = cost.num_residuals();
+  std::vector<std::vector<double>> values;
+  std::vector<double*> all;
+  for (const auto& block : at.blocks)
+    values.emplace_back(static_cast<std::size_t>(rows) * block.size(), 777.0);
+  for (auto& value : values) all.push_back(value.data());
+  Eigen::VectorXd miss(rows);
+  REQUIRE(cost.Evaluate(at.pointers().data(), miss.data(), all.data()));
+  CHECK((miss - residuals(cost, at)).norm() < 1e-12);
+  for (std::size_t b = 0; b < at.blocks.size(); ++b) {
+    CAPTURE(b);
+    std::vector<double> alone(values[b].size(), 777.0);
+    std::vector<double*> one(at.blocks.size(), nullptr);
+    one[b] = alone.data();
+    REQUIRE(cost.Evaluate(at.pointers().data(), miss.data(), one.data()));
+    CHECK(alone == values[b]);
+    for (std::size_t i = 0; i < at.blocks[b].size(); ++i) {
+      constexpr double kStep = 1e-6;
+      const double here = at.blocks[b][i];
+      at.blocks[b][i] = here + kStep;
+      const Eigen::VectorXd after = residuals(cost, at);
+      at.blocks[b][i] = here - kStep;
+      const Eigen::VectorXd slope = (after - residuals(cost, at)) / (2 * kStep);
+      at.blocks[b][i] = here;
+      for (int row = 0; row < rows; ++row)
+        CHECK(values[b][static_cast<std::size_t>(row) * at.blocks[b].size() + i] ==
+              doctest::Approx(slope[row]).epsilon(1e-5).scale(1 + std::abs(slope[row])));
+    }
+  }
+}
+
+const std::vector<Lever> kArm{{0, {0.1, -0.5, 0.05}}, {2, {-0.2, 0.1, 0.15}}, {3, {0, 0.25, -0.1}}};
+const Eigen::Vector3d kRoot{0.3, -0.2, 4};
+
+}  // namespace
+
+TEST_CASE("terms: a joint is where its root, its turns and its lengths put it") {
+  const JointPlace place(kArm, kRoot, true);
+  const double turns[3][3] = {{0.3, -0.1, 0.2}, {0, 0, 0}, {-0.4, 0.5, 1}};
+  const double shift[3] = {0.01, 0.02, -0.3}, lengths[3] = {0.1, -0.05, 0};
+  double const* const unknowns[] = {turns[0],    turns[1],    turns[2],   shift,
+                                    &lengths[0], &lengths[1], &lengths[2]};
+  Eigen::Vector3d wanted = kRoot + Eigen::Vector3d(0.01, 0.02, -0.3);
+  for (std::size_t i = 0; i < 3; ++i)
+    wanted += std::exp(lengths[i]) *
+              (rotation_of(Eigen::Map<const Eigen::Vector3d>(turns[i])) * kArm[i].bone);
+  CHECK((place.at(unknowns) - wanted).norm() < 1e-12);
+}
+
+TEST_CASE("terms: reprojection") {
+  for (const bool body_unknown : {false, true}) {
+    CAPTURE(body_unknown);
+    const Reprojection cost({kArm, kRoot, body_unknown}, 0.4, {0.1, -0.05}, 0.003);
+    for (unsigned seed = 1; seed <= 3; ++seed) check_jacobians(cost, {cost, seed, 0.3});
+    const Eigen::VectorXd still = residuals(cost, {cost, 1, 0.0});
+    const Eigen::Vector3d x = kRoot + kArm[0].bone + kArm[1].bone + kArm[2].bone;
+    CHECK(still[0] == doctest::Approx((x.x() / x.z() - 0.1) / 0.003));
+    CHECK(still[1] == doctest::Approx((x.y() / x.z() + 0.05) / 0.003));
+  }
+  // Behind the camera it says nothing.
+  const Reprojection behind({kArm, {0, 0, -1}, false}, 0.4, {0.1, -0.05}, 0.003);
+  CHECK(residuals(behind, {behind, 1, 0.1}).norm() == 0);
+  check_jacobians(behind, {behind, 1, 0.1});
+}
+
+TEST_CASE("terms: a standing foot") {
+  std::vector<Lever> later = kArm;
+  later[1].bone << 0.05, 0.2, 0.1;
+  for (const bool body_unknown : {false, true}) {
+    CAPTURE(body_unknown);
+    const Eigen::Vector3d further = kRoot + Eigen::Vector3d(0.1, 0, 0.2);
+    const StandingFoot cost({kArm, kRoot, body_unknown}, {later, further, body_unknown}, 0.02);
+    for (unsigned seed = 1; seed <= 3; ++seed) check_jacobians(cost, {cost, seed, 0.3});
+    const Eigen::Vector3d moved = further - kRoot + later[1].bone - kArm[1].bone;
+    CHECK((residuals(cost, {cost, 1, 0.0}) - moved / 0.02).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("terms: a weighted sum of unknowns") {
+  const LinearTerm cost({1, -2, 0.5}, Eigen::Vector3d(0.1, 0.2, -0.3), 0.04);
+  const Unknowns at(cost, 5, 1);
+  check_jacobians(cost, at);
+  for (int i = 0; i < 3; ++i)
+    CHECK(residuals(cost, at)[i] ==
+          doctest::Approx((at.blocks[0][i] - 2 * at.blocks[1][i] + 0.5 * at.blocks[2][i] -
+                           Eigen::Vector3d(0.1, 0.2, -0.3)[i]) /
+                          0.04));
+}
+
+TEST_CASE("terms: the left Jacobian is how a rotation follows its vector") {
+  for (const Eigen::Vector3d& turn :
+       {Eigen::Vector3d(0.4, -1, 0.3), Eigen::Vector3d(1e-5, 0, 2e-5)}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      constexpr double kStep = 1e-6;
+      const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(axis);
+      const Eigen::Matrix3d change =
+          (rotation_of(turn + step) - rotation_of(turn - step)) / (2 * kStep);
+      const Eigen::Matrix3d wanted =
+          cross_matrix(left_jacobian(turn).col(axis)) * rotation_of(turn);
+      CHECK((change - wanted).norm() < 1e-8);
+    }
+  }
+}

@@ -1,0 +1,131 @@
+#include "mcdbn/motion_model/run_folder.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <set>
+
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion_model/settings_record.hpp"
+
+using namespace mcdbn;
+namespace fs = std::filesystem;
+
+namespace {
+
+TrainingConfig odd_config() {
+  TrainingConfig config = TrainingConfig::greedy();
+  config.seed = 77;
+  config.fps = 29.97;
+  config.gaussian.rate = 0.1 + 0.2;  // all digits come back
+  config.skeleton = SkeletonUse::humanoid;
+  return config;
+}
+
+const std::vector<ListedClip> kClips{{"/clips/b.bvh", "Anna", "walk"}, {"relative/a.bvh"}};
+
+}  // namespace
+
+TEST_CASE("a run folder keeps what a training was begun with") {
+  const test::ScratchFolder folder;
+  const fs::path path = folder / "new/run";
+  RunFolder::begin(path, odd_config(), kClips, false);
+  CHECK(test::entries_of(path) == std::set<std::string>{"unfinished"});
+  const RunFolder run = RunFolder::resume(path);
+  CHECK(!run.is_complete());
+  CHECK(settings_json(run.config()) == settings_json(odd_config()));
+  CHECK(run.config().skeleton == SkeletonUse::humanoid);
+  REQUIRE(run.clips().size() == 2);
+  CHECK(run.clips()[0].file == "/clips/b.bvh");
+  CHECK(run.clips()[0].person == "Anna");
+  CHECK(run.clips()[0].action == "walk");
+  CHECK(run.clips()[1].file == fs::absolute("relative/a.bvh"));
+  CHECK_THROWS_AS(RunFolder::resume(path), Error);  // `run` has it
+}
+
+TEST_CASE("a run folder that holds a training is kept unless it is to be replaced") {
+  for (const char* name :
+       {"model.safetensors", "config.toml", "metrics.jsonl", "unfinished/run.json"}) {
+    CAPTURE(name);
+    const test::ScratchFolder folder;
+    fs::create_directory(folder / "unfinished");
+    folder.write(name, "of before");
+    if (!std::string(name).starts_with("unfinished")) fs::remove(folder / "unfinished");
+    CHECK_THROWS_AS(RunFolder::begin(folder / "", odd_config(), kClips, false), ConfigError);
+    CHECK(read_text_file(folder / name) == "of before");
+    CHECK_NOTHROW(RunFolder::begin(folder / "", odd_config(), kClips, true));
+  }
+  const test::ScratchFolder other;
+  other.write("notes.txt", "a user's own");
+  CHECK_NOTHROW(RunFolder::begin(other / "", odd_config(), kClips, false));
+  CHECK(read_text_file(other / "notes.txt") == "a user's own");
+}
+
+TEST_CASE("a run folder that was left while its files were put in place is put right") {
+  const test::ScratchFolder folder;
+  const auto at = [&](const char* name) { return folder / name; };
+  // As it is after config.toml was moved.
+  fs::create_directory(folder / "unfinished");
+  folder.write("config.toml", "new config");
+  folder.write("metrics.jsonl", "old metrics");
+  folder.write("unfinished/metrics.jsonl", "new metrics");
+  folder.write("unfinished/model.safetensors", "new model");
+  folder.write("unfinished/checkpoint.safetensors", "x");
+  const RunFolder run = RunFolder::resume(folder / "");
+  CHECK(run.is_complete());
+  CHECK(read_text_file(at("config.toml")) == "new config");
+  CHECK(read_text_file(at("metrics.jsonl")) == "new metrics");
+  CHECK(read_text_file(at("model.safetensors")) == "new model");
+  CHECK(!fs::exists(at("unfinished")));
+}
+
+TEST_CASE("one that was left when only the rest was to be removed is whole") {
+  const test::ScratchFolder folder;
+  fs::create_directory(folder / "unfinished");
+  folder.write("model.safetensors", "new model");
+  folder.write("unfinished/checkpoint.safetensors", "x");
+  CHECK(RunFolder::resume(folder / "").is_complete());
+  CHECK(read_text_file(folder / "model.safetensors") == "new model");
+  CHECK(!fs::exists(folder / "unfinished"));
+}
+
+TEST_CASE("what a training that never began wrote is taken back, what was learnt is not") {
+  const test::ScratchFolder folder;
+  folder.write("model.safetensors", "of before");
+  {
+    RunFolder run = RunFolder::begin(folder / "", odd_config(), kClips, true);
+    folder.write("unfinished/metrics.jsonl", "");  // opened, and no epoch came
+    CHECK(run.take_back());
+  }
+  CHECK(test::entries_of(folder / "") == std::set<std::string>{"model.safetensors"});
+  for (const char* learnt : {"metrics.jsonl", "checkpoint.safetensors",
+                             "checkpoint.previous.safetensors", "model.safetensors"}) {
+    CAPTURE(learnt);
+    RunFolder run = RunFolder::begin(folder / "", odd_config(), kClips, true);
+    folder.write(std::string("unfinished/") + learnt, "x");
+    CHECK(!run.take_back());
+    CHECK(fs::exists(folder / "unfinished/run.json"));
+  }
+  RunFolder::begin(folder / "", odd_config(), kClips, true);
+  CHECK(!RunFolder::resume(folder / "").take_back());  // another command's
+  CHECK(fs::exists(folder / "unfinished/run.json"));
+}
+
+TEST_CASE("what is no run folder is refused, and so is what is no text") {
+  const test::ScratchFolder folder;
+  CHECK_THROWS_AS(RunFolder::resume(folder / "absent"), InputError);
+  CHECK_THROWS_AS(RunFolder::resume(folder / ""), InputError);
+  fs::create_directory(folder / "unfinished");
+  CHECK_THROWS_AS(RunFolder::resume(folder / ""), InputError);
+  for (const char* text : {"", "{}", "[1]", R"({"settings": {}, "skeleton": 0, "clips": [{}]})"}) {
+    folder.write("unfinished/run.json", text);
+    CHECK_THROWS_AS(RunFolder::resume(folder / ""), InputError);
+  }
+  for (const ListedClip& clip :
+       {ListedClip{"/a\xFF.bvh"}, ListedClip{"/a.bvh", "\xFF"}, ListedClip{"/a.bvh", "", "\xFF"}})
+    CHECK_THROWS_AS(RunFolder::begin(folder / "other", odd_config(), {clip}, false), InputError);
+  CHECK(!fs::exists(folder / "other"));
+}
