@@ -20,6 +20,7 @@
 #include "mcdbn/formats/joint_map.hpp"
 #include "mcdbn/formats/motion_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/formats/uncertainty_csv.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "sample_path.hpp"
 #include "sampling_options.hpp"
@@ -30,8 +31,11 @@ namespace {
 
 constexpr const char *kToPose = "pose", *kToTrack = "track", *kModel = "model";
 
+/// So many tell a deviation to a tenth of itself.
+constexpr std::size_t kUncertaintyDraws = 50;
+
 struct RegenerateOptions {
-  std::filesystem::path model, input, output, skeleton, joint_map, write_camera;
+  std::filesystem::path model, input, output, skeleton, joint_map, write_camera, uncertainty;
   TrackReadOptions track;
   SeenByOptions seen_by;
   SamplingOptions sampling;
@@ -46,6 +50,7 @@ void check_direction(const RegenerateOptions& options) {
                                    std::pair{!options.joint_map.empty(), "--joint-map"},
                                    std::pair{options.method != kModel, "--method"},
                                    std::pair{!options.write_camera.empty(), "--write-camera"},
+                                   std::pair{!options.uncertainty.empty(), "--uncertainty"},
                                    std::pair{!options.fit.empty(), "--fit"},
                                    std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
                                    std::pair{view.roll_deg.has_value(), "--camera-roll"},
@@ -55,6 +60,15 @@ void check_direction(const RegenerateOptions& options) {
           "{} is for --to pose: a regenerated track has no skeleton and is not fitted, and its "
           "camera is the model's or a file's",
           flag));
+}
+
+/// What the fit does not tell. @throws ConfigError
+void check_uncertainty(const RegenerateOptions& options) {
+  if (options.uncertainty.empty()) return;
+  if (!track_fit(options.fit))
+    throw ConfigError("--uncertainty is the fit's: leave out --fit none");
+  if (options.sampling.samples.value_or(1) > 1)
+    throw ConfigError("--uncertainty is that of a single answer: leave out --samples");
 }
 
 void report(const std::filesystem::path& path, int frames, double fps) {
@@ -117,7 +131,8 @@ std::filesystem::path person_path(const std::filesystem::path& output, std::size
                                            output.extension().string()));
 }
 
-ClipPlacement placement_of(const RegenerateOptions& options, const std::optional<Camera>& camera) {
+ClipPlacement placement_of(const RegenerateOptions& options, const std::optional<Camera>& camera,
+                           std::uint64_t seed) {
   ClipPlacement placement;
   placement.camera = camera;
   placement.view = options.seen_by.view;
@@ -127,6 +142,7 @@ ClipPlacement placement_of(const RegenerateOptions& options, const std::optional
     placement.skeleton_channels = std::move(clip.channels);
   }
   placement.fit = track_fit(options.fit);
+  if (!options.uncertainty.empty()) placement.uncertainty_draws = {kUncertaintyDraws, seed};
   if (!options.joint_map.empty()) placement.joint_map = read_joint_map(options.joint_map);
   return placement;
 }
@@ -134,7 +150,7 @@ ClipPlacement placement_of(const RegenerateOptions& options, const std::optional
 void regenerate_poses(const Model& model, const RegenerateOptions& options,
                       const std::optional<Camera>& camera,
                       const RegenerationOptions& regeneration) {
-  const ClipPlacement placement = placement_of(options, camera);
+  const ClipPlacement placement = placement_of(options, camera, regeneration.seed);
   TrackReadOptions reading = options.track;
   if (camera && !reading.image_size) reading.image_size = {camera->width_px, camera->height_px};
   const std::vector<Track2d> people = read_tracks_with_notices(options.input, reading).people;
@@ -155,6 +171,9 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
       write_bvh(path, motions[i]);
       report(path, motions[i].frames(), motions[i].fps());
     }
+    if (!options.uncertainty.empty())
+      write_uncertainty_csv(person_path(options.uncertainty, person, people.size()),
+                            motions.front(), findings.uncertainty);
   }
 }
 
@@ -172,6 +191,7 @@ void regenerate_tracks(const Model& model, const RegenerateOptions& options,
 
 void run_regenerate(const CommandContext& context, const RegenerateOptions& options) {
   check_direction(options);
+  check_uncertainty(options);
   Device device = Device::open({context.platform, context.device});
   const Model model = load_model(device, model_or_default(options.model));
   const std::optional<Camera> camera = options.seen_by.camera();
@@ -229,6 +249,12 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
                   "--write-camera", options->write_camera,
                   "Also write the camera that sees the motion as the track shows it, given or "
                   "assumed, as OpenCV YAML: for render --over"),
+              context)
+      ->type_name("FILE");
+  mark_output(command->add_option(
+                  "--uncertainty", options->uncertainty,
+                  "Also write how sure the motion is, as CSV: each joint's standard deviation in "
+                  "each frame, along the world's axes, in the BVH file's unit"),
               context)
       ->type_name("FILE");
   add_track_options(*command, options->track);

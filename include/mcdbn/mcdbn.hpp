@@ -41,6 +41,7 @@
 #include "mcdbn/formats/motion_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
 #include "mcdbn/formats/track_file.hpp"
+#include "mcdbn/formats/uncertainty_csv.hpp"
 #include "mcdbn/learning/epoch_report.hpp"
 #include "mcdbn/learning/fine_tuning.hpp"
 #include "mcdbn/learning/greedy_schedule.hpp"

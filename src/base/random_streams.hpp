@@ -32,7 +32,8 @@ inline constexpr std::uint16_t kDetector = 207;  ///< of each column of its trac
 inline constexpr std::uint16_t kDetectorSwaps = 208;
 inline constexpr std::uint16_t kRandomCamera = 209;
 inline constexpr std::uint16_t kOtherBody = 213;
-inline constexpr std::uint16_t kNewPoses = 214;  ///< of augmented views
+inline constexpr std::uint16_t kNewPoses = 214;        ///< of augmented views
+inline constexpr std::uint16_t kPosteriorDraws = 215;  ///< of the fit
 // Of a single machine (machines/sampling.hpp, energy.hpp, partition.hpp).
 inline constexpr std::uint16_t kChains = 210;
 inline constexpr std::uint16_t kFlippedUnits = 211;

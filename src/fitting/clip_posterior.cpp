@@ -4,43 +4,21 @@
 #include <future>
 #include <utility>
 
+#include "fitting/clip_windows.hpp"
 #include "fitting/window_problem.hpp"
 
 namespace mcdbn {
 namespace {
 
-/// Memory and time of a window's equations grow with its frames, so that those of a clip do.
-constexpr Eigen::Index kWindowFrames = 300;
-/// On either side, over several times what an error lasts: further away nothing is heard.
-constexpr Eigen::Index kOverlapFrames = 30;
-
-struct Window {
-  Eigen::Index first, frames;
-};
-
-/// Every frame is in one window at least; neighbours share 2·kOverlapFrames.
-std::vector<Window> windows_of(Eigen::Index frames) {
-  if (frames <= kWindowFrames + 2 * kOverlapFrames) return {{0, frames}};
-  std::vector<Window> windows;
-  for (Eigen::Index own = 0; own < frames; own += kWindowFrames) {
-    const Eigen::Index first = std::max<Eigen::Index>(0, own - kOverlapFrames);
-    const Eigen::Index last = std::min(frames, own + kWindowFrames + kOverlapFrames);
-    windows.push_back({first, last - first});
-  }
-  return windows;
-}
-
 /// Puts a window's solution beside what stands, which fades out over the frames that both have.
 /// @param known frames that stand already
 void join(PosteriorPoint& whole, Eigen::Index known, const PosteriorPoint& part,
-          Eigen::Index first) {
-  const Eigen::Index shared = known - first;
-  for (Eigen::Index t = 0; t < part.turns.rows(); ++t) {
-    const double share =
-        t < shared ? static_cast<double>(t + 1) / static_cast<double>(shared + 1) : 1.0;
+          const ClipWindow& window) {
+  for (Eigen::Index t = 0; t < window.frames; ++t) {
+    const double share = share_of_window(window, known, t);
     for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
-      (whole.*rows).row(first + t) =
-          (1 - share) * (whole.*rows).row(first + t) + share * (part.*rows).row(t);
+      (whole.*rows).row(window.first + t) =
+          (1 - share) * (whole.*rows).row(window.first + t) + share * (part.*rows).row(t);
   }
 }
 
@@ -56,8 +34,8 @@ PosteriorPoint PosteriorPoint::zero(const PosteriorClip& clip) {
 
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
                            const TrackFitSettings& settings, PosteriorPoint from) {
-  const std::vector<Window> windows = windows_of(clip.frames());
-  const auto solved = [&](const Window& window, bool lengths_too) {
+  const std::vector<ClipWindow> windows = windows_of(clip.frames());
+  const auto solved = [&](const ClipWindow& window, bool lengths_too) {
     WindowProblem problem(clip, noise, settings, from, window.first, window.frames);
     problem.solve(lengths_too);
     return problem.solution();
@@ -70,11 +48,11 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
     std::future<PosteriorPoint> second;
     if (i + 1 < windows.size())
       second = std::async(std::launch::async, solved, windows[i + 1], false);
-    join(whole, std::max(known, windows[i].first), solved(windows[i], false), windows[i].first);
-    known = windows[i].first + windows[i].frames;
+    join(whole, std::max(known, windows[i].first), solved(windows[i], false), windows[i]);
+    known = windows[i].end();
     if (!second.valid()) continue;
-    join(whole, known, second.get(), windows[i + 1].first);
-    known = windows[i + 1].first + windows[i + 1].frames;
+    join(whole, known, second.get(), windows[i + 1]);
+    known = windows[i + 1].end();
   }
   return whole;
 }

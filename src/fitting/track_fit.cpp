@@ -7,6 +7,7 @@
 
 #include "camera/track_rays.hpp"
 #include "fitting/clip_evidence.hpp"
+#include "fitting/posterior_draws.hpp"
 #include "fitting/prior_deviations.hpp"
 #include "fitting/root_trajectory.hpp"
 #include "fitting/seen_noise.hpp"
@@ -19,6 +20,14 @@ namespace {
 
 /// What is wrong with the root's velocity where the prior says no deviation and no fit follows.
 constexpr double kVelocityError_m_s2 = 1.0;
+
+/// What the posterior's width is told by: `doubt` and a detector's error that passes make the
+/// likeliest motion better, and would make it surer than it is. Chosen as `spread`.
+TrackFitSettings settings_of_draws(TrackFitSettings settings) {
+  settings.doubt = 1;
+  settings.noise_lasts_s = 10;
+  return settings;
+}
 
 /// The joints that the model looks at: others, such as a node that stays on the floor, may move in
 /// the file unlike anything that a camera sees.
@@ -70,22 +79,37 @@ class ClipFit {
   /// @param own_skeleton else its proportions are unknown
   void meet_track(const PosePrior& prior, double track_noise_px, bool own_skeleton,
                   const TrackFitSettings& settings) {
-    ClipEvidence evidence(modalities_.pose_features, motion(), travelled(), track_, camera_);
-    PosteriorClip& clip = evidence.clip;
+    mean_ = features_;
+    evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, camera_);
+    PosteriorClip& clip = evidence_->clip;
     clip.turn_deviation_rad = turn_deviations_rad(prior, modalities_, settings);
     clip.root_m_s2 = root_acceleration_deviation_m_s2(prior, modalities_, settings);
     clip.body_unknown = !own_skeleton;
-    SeenNoise noise(track_noise_px, camera_, evidence.usual_depth_m(), own_skeleton, settings);
-    const MatrixD mean = features_;
-    PosteriorPoint point = PosteriorPoint::zero(clip);
+    SeenNoise noise(track_noise_px, camera_, evidence_->usual_depth_m(), own_skeleton, settings);
+    point_ = PosteriorPoint::zero(clip);
     for (std::size_t solution = 0; solution < settings.solutions; ++solution) {
-      evidence.find_planted(motion());
-      point = most_likely(clip, noise.rays(), settings, std::move(point));
-      features_ = evidence.turned(mean, point);
-      root_ = evidence.root(point);
-      if (!own_skeleton) skeleton_ = evidence.body(point);
-      if (!noise.learn(evidence.usual_residual(point))) break;
+      evidence_->find_planted(motion());
+      rays_ = noise.rays();
+      point_ = most_likely(clip, rays_, settings, std::move(point_));
+      take(point_);
+      if (!noise.learn(evidence_->usual_residual(point_))) break;
     }
+  }
+
+  /// After meet_track. The clip stays as it is.
+  std::vector<Motion> drawn(const PosePrior& prior, TrackFitSettings settings,
+                            const PosteriorDraws& draws) {
+    settings = settings_of_draws(settings);
+    const PosteriorPoint likeliest = point_;
+    evidence_->clip.turn_deviation_rad = turn_deviations_rad(prior, modalities_, settings);
+    std::vector<Motion> motions;
+    for (const PosteriorPoint& point :
+         posterior_draws(evidence_->clip, rays_, settings, likeliest, draws.count, draws.seed)) {
+      take(point);
+      motions.push_back(motion());
+    }
+    take(likeliest);
+    return motions;
   }
 
   Motion motion() const { return decoded(root_); }
@@ -104,12 +128,20 @@ class ClipFit {
                           modalities_.pose_features.root_features(features_).col(0).mean();
     const Eigen::RowVector3d shift(-root_(0, 0), wanted - root_.col(1).mean(), -root_(0, 2));
     root_.rowwise() += shift;
+    shift_ += shift;
     camera_.translation -= camera_.camera_from_world * shift.transpose();
   }
 
   const Camera& camera() const { return camera_; }
 
  private:
+  /// Pose, root and, if it is unknown, body are what the point makes of the prior's mean.
+  void take(const PosteriorPoint& point) {
+    features_ = evidence_->turned(mean_, point);
+    root_ = evidence_->root(point).rowwise() + shift_;
+    if (evidence_->clip.body_unknown) skeleton_ = evidence_->body(point);
+  }
+
   /// [frames x 3] world axes, file units
   MatrixD travelled() const {
     MatrixD way = MatrixD::Zero(velocity_.rows(), 3);
@@ -142,13 +174,20 @@ class ClipFit {
   MatrixD features_;  ///< not standardized, along the camera's own axes
   MatrixD velocity_;  ///< of the root, world axes, file units per second
   double velocity_error_m_s2_;
-  MatrixD root_;  ///< its path where the camera sees it, [frames x 3]
+  MatrixD root_;                       ///< its path where the camera sees it, [frames x 3]
+  Eigen::RowVector3d shift_{0, 0, 0};  ///< that put it at the origin
+  // Of meet_track:
+  MatrixD mean_;  ///< the features that it began with
+  std::optional<ClipEvidence> evidence_;
+  RayNoise rays_;
+  PosteriorPoint point_;
 };
 
 }  // namespace
 
 FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, const Track2d& track,
-                        const KnownOfClip& known, const std::optional<TrackFitSettings>& settings) {
+                        const KnownOfClip& known, const std::optional<TrackFitSettings>& settings,
+                        const PosteriorDraws& draws) {
   check(prior, features, track);
   if (settings) check_settings(*settings);
   ClipFit clip(prior, features, track, known);
@@ -159,6 +198,7 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
   FittedClip result;
   result.shown = clip.shown(track);
   if (!known.camera) clip.put_at_origin();
+  if (settings && draws.count > 0) result.draws = clip.drawn(prior, *settings, draws);
   result.motion = clip.motion();
   result.camera = clip.camera();
   return result;

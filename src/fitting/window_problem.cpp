@@ -1,5 +1,6 @@
 #include "fitting/window_problem.hpp"
 
+#include <ceres/crs_matrix.h>
 #include <ceres/loss_function.h>
 #include <ceres/solver.h>
 
@@ -39,7 +40,7 @@ void append(std::vector<double*>& to, const std::vector<double*>& more) {
 
 WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
                              const TrackFitSettings& settings, const PosteriorPoint& from,
-                             Eigen::Index first, Eigen::Index frames)
+                             Eigen::Index first, Eigen::Index frames, Unknowns unknowns)
     : clip_(clip),
       settings_(settings),
       noise_(noise),
@@ -47,12 +48,15 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
       turns_(static_cast<int>(clip.parents.size())),
       x_{from.turns.middleRows(first, frames), from.shift.middleRows(first, frames),
          from.log_lengths} {
-  find_used();
+  if (unknowns == Unknowns::all)
+    used_.assign(clip_.parents.size(), true);
+  else
+    find_used();
   add_rays();
   add_turns();
   add_root();
   add_feet();
-  if (clip_.body_unknown) add_lengths();
+  if (clip_.body_unknown) add_lengths(unknowns);
 }
 
 void WindowProblem::solve(bool lengths_too) {
@@ -70,6 +74,38 @@ void WindowProblem::solve(bool lengths_too) {
   const OneThreadSolver one_thread;
   ceres::Solve(options, &problem_, &summary);
   turn_unused();
+}
+
+Eigen::SparseMatrix<double> WindowProblem::derivatives() {
+  ceres::Problem::EvaluateOptions options;
+  std::vector<Eigen::Index> columns;  // by column of Ceres', ours
+  Eigen::Index column = 0;
+  const auto take = [&](double* block, Eigen::Index size) {
+    if (problem_.HasParameterBlock(block)) {
+      options.parameter_blocks.push_back(block);
+      for (Eigen::Index i = 0; i < size; ++i) columns.push_back(column + i);
+    }
+    column += size;
+  };
+  for (Eigen::Index t = 0; t < x_.turns.rows(); ++t) {
+    for (int turn = 0; turn < turns_; ++turn) take(turn_at(t, turn), 3);
+    take(shift_at(t), 3);
+  }
+  for (double& length : x_.log_lengths) take(&length, 1);
+  ceres::CRSMatrix found;
+  problem_.Evaluate(options, nullptr, nullptr, nullptr, &found);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(found.values.size());
+  for (int row = 0; row < found.num_rows; ++row)
+    for (int i = found.rows[static_cast<std::size_t>(row)];
+         i < found.rows[static_cast<std::size_t>(row) + 1]; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      entries.emplace_back(row, columns[static_cast<std::size_t>(found.cols[at])],
+                           found.values[at]);
+    }
+  Eigen::SparseMatrix<double> result(found.num_rows, column);
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
 }
 
 const std::vector<SeenJoint>& WindowProblem::seen(Eigen::Index t) const {
@@ -192,9 +228,9 @@ void WindowProblem::add_feet() {
   }
 }
 
-void WindowProblem::add_lengths() {
+void WindowProblem::add_lengths(Unknowns unknowns) {
   for (double& length : x_.log_lengths)
-    if (problem_.HasParameterBlock(&length))
+    if (unknowns == Unknowns::all || problem_.HasParameterBlock(&length))
       problem_.AddResidualBlock(
           new LinearTerm({1}, Eigen::VectorXd::Zero(1), settings_.proportions), nullptr, &length);
 }

@@ -2,6 +2,7 @@
 
 #include <ceres/problem.h>
 
+#include <Eigen/SparseCore>
 #include <vector>
 
 #include "fitting/clip_posterior.hpp"
@@ -9,16 +10,26 @@
 
 namespace mcdbn {
 
+/// What a problem asks for: the orientations and lengths that move a joint which is seen, or also
+/// those of which only the prior tells.
+enum class Unknowns { seen, all };
+
 /// The posterior of some frames of a clip as a problem for Ceres. Unknown are, by frame, a turn of
-/// every orientation that moves a joint which is seen, and a shift of the root; and the lengths.
+/// the orientations and a shift of the root; and the lengths.
 class WindowProblem {
  public:
   /// @param from where to start, of the whole clip
   WindowProblem(const PosteriorClip& clip, const RayNoise& noise, const TrackFitSettings& settings,
-                const PosteriorPoint& from, Eigen::Index first, Eigen::Index frames);
+                const PosteriorPoint& from, Eigen::Index first, Eigen::Index frames,
+                Unknowns unknowns = Unknowns::seen);
 
   /// @param lengths_too else the body stays as it is
   void solve(bool lengths_too);
+
+  /// Derivatives of the residuals, as their losses weigh them, at the point where the problem is.
+  /// @return [residuals x frames·(3·orientations + 3) + lengths]: frame by frame its turns and its
+  ///         shift, then the lengths; 0 in the column of what nothing depends on
+  Eigen::SparseMatrix<double> derivatives();
 
   /// Of these frames. What moves no seen joint turns as its parent makes likely.
   const PosteriorPoint& solution() const { return x_; }
@@ -29,7 +40,7 @@ class WindowProblem {
   void add_turns();
   void add_root();
   void add_feet();
-  void add_lengths();
+  void add_lengths(Unknowns unknowns);
   void turn_unused();
 
   const std::vector<SeenJoint>& seen(Eigen::Index t) const;

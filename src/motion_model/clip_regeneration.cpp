@@ -5,6 +5,7 @@
 #include "camera/track_resample.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
+#include "motion/joint_uncertainty.hpp"
 #include "motion/resample.hpp"
 #include "motion/retarget.hpp"
 #include "motion_model/pose_priors.hpp"
@@ -71,14 +72,26 @@ std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d&
   }
   SeenClip seen = see_clip(modalities, resample_track(sides, modalities.fps), placement, single);
   placement.view = seen.view;
+  const auto as_track = [&](const Motion& motion) {
+    return other.moved(with_frames(resample(motion, track.fps), track.frames()));
+  };
   std::vector<Motion> motions;
   Camera camera;
+  MatrixD uncertainty;
   for (const PosePrior& prior : all(seen.features)) {
-    const FittedClip clip = fit_to_track(prior, modalities, seen.joints, placement, placement.fit);
-    if (motions.empty()) camera = clip.camera;
-    motions.push_back(other.moved(with_frames(resample(clip.motion, track.fps), track.frames())));
+    const bool first = motions.empty();
+    FittedClip clip = fit_to_track(prior, modalities, seen.joints, placement, placement.fit,
+                                   first ? placement.uncertainty_draws : PosteriorDraws{});
+    motions.push_back(as_track(clip.motion));
+    if (!first) continue;
+    camera = clip.camera;
+    if (clip.draws.empty()) continue;
+    for (Motion& draw : clip.draws) draw = as_track(draw);
+    uncertainty = joint_uncertainty(motions.front(), clip.draws);
   }
-  if (findings) *findings = {std::move(seen.filled), std::move(swaps), std::move(camera)};
+  if (findings)
+    *findings = {std::move(seen.filled), std::move(swaps), std::move(camera),
+                 std::move(uncertainty)};
   return motions;
 }
 

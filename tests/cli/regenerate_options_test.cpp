@@ -17,6 +17,7 @@
 #include "mcdbn/formats/joint_map.hpp"
 #include "mcdbn/formats/track_csv.hpp"
 #include "mcdbn/formats/track_file.hpp"
+#include "mcdbn/formats/uncertainty_csv.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "option_table.hpp"
 #include "tiny_pipeline.hpp"
@@ -225,6 +226,35 @@ TEST_CASE("regenerate: every option changes what its help says") {
                     CHECK(back.translation.isApprox(given.translation, 1e-6));
                     CHECK(back.camera_from_world.isApprox(given.camera_from_world, 1e-6));
                   }});
+  rows.push_back(
+      {"--uncertainty", [&] {
+         const fs::path written = folder / "sure.csv";
+         const std::string call =
+             fmt::format("regenerate --model '{}' --input '{}' -o '{}'", one.model.string(),
+                         one.track.string(), output.string());
+         REQUIRE(run_cli(call).exit_code == 0);
+         const std::string likeliest = text();
+         const std::string sure = fmt::format("{} --uncertainty '{}'", call, written.string());
+         REQUIRE(run_cli(sure + " --seed 5").exit_code == 0);
+         CHECK(text() == likeliest);
+         const mcdbn::Model model = load_model(usual_device(), one.model);
+         mcdbn::ClipPlacement placement;
+         placement.uncertainty_draws = {50, 5};
+         mcdbn::RegenerationOptions regeneration;
+         regeneration.sampling = model.network.sampling;
+         mcdbn::TrackFindings findings;
+         const auto motions = regenerate_clip(model, mcdbn::read_track_csv(one.track), placement,
+                                              regeneration, &findings);
+         write_uncertainty_csv(folder / "wanted.csv", motions.at(0), findings.uncertainty);
+         const std::string five = mcdbn::read_text_file(written);
+         CHECK(five == mcdbn::read_text_file(folder / "wanted.csv"));
+         REQUIRE(run_cli(sure + " --seed 6").exit_code == 0);
+         CHECK(mcdbn::read_text_file(written) != five);
+         for (const char* other : {"--fit none", "--samples 2", "--to track"}) {
+           CAPTURE(other);
+           CHECK(run_cli(sure + " " + other).exit_code == 2);
+         }
+       }});
   rows.push_back({"--joint-map", [&] {
                     make_places(folder / "track.csv", folder / "places.csv");
                     Call places = one;

@@ -4,72 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "camera/track_noise.hpp"
-#include "features/clip_modalities.hpp"
-#include "fitting/rotation.hpp"
-#include "fitting/two_second_walk.hpp"
-#include "mcdbn/fitting/track_fit.hpp"
+#include "fitting/walk_scene.hpp"
 #include "motion/foot_joints.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
 
 namespace {
-
-/// Of the turns by which priors are wrong, and how alike they are along a limb.
-constexpr double kWrong_deg = 10, kAlike = 0.5;
-
-/// A walk, its 2D track through a lens with distortion, and a prior that is wrong by turns.
-struct Scene {
-  Motion truth;
-  Modalities modalities;
-  KnownOfClip known;
-  Track2d track;
-  MatrixF mean;
-
-  Motion fit(const Track2d& seen, const TrackFitSettings& settings = {}) const {
-    return fit_to_track(mean, modalities, seen, known, settings).motion;
-  }
-  Motion fit() const { return fit(track); }
-  Motion unfitted() const {
-    return fit_to_track(mean, modalities, track, known, std::nullopt).motion;
-  }
-};
-
-MatrixD disturbed(MatrixD features, const PoseFeatures& pose_features, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0, kWrong_deg * M_PI / 180);
-  const Eigen::Vector3d common(normal(random), normal(random), normal(random));
-  for (std::size_t turn = 0; turn < pose_features.joints().size(); ++turn) {
-    const Eigen::Vector3d own(normal(random), normal(random), normal(random));
-    const Eigen::Matrix3d rotation =
-        rotation_of(std::sqrt(kAlike) * common + std::sqrt(1 - kAlike) * own);
-    for (const int axis : {0, 3})
-      for (Eigen::Index t = 0; t < features.rows(); ++t)
-        features.row(t).segment<3>(static_cast<Eigen::Index>(6 * turn) + axis) *=
-            rotation.transpose();
-  }
-  return features;
-}
-
-/// @param seed 0: the prior is right
-Scene make_scene(unsigned seed = 1, int frames = 60) {
-  Motion truth = test::two_second_walk();
-  truth.channels.conservativeResize(frames, Eigen::NoChange);
-  Camera camera = place_camera(truth, {});
-  camera.distortion = {-0.1, 0.02, 1e-3, -5e-4};
-  Scene scene{truth,
-              modalities_of({test::two_second_walk()}, {}),
-              {camera, truth.skeleton},
-              project_motion(truth, camera),
-              {}};
-  MatrixD features = scene.modalities.pose_values(truth, camera.camera_from_world);
-  if (seed > 0) features = disturbed(features, scene.modalities.pose_features, seed);
-  scene.mean = scene.modalities.pose_scale.apply(features);
-  return scene;
-}
 
 /// RMS distance of the joints from the truth's, relative to the root, cm.
 double error_cm(const Scene& scene, const Motion& motion) {

@@ -21,14 +21,15 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"caution", [](S& s) { return at(s.caution); }, "2"},
       {"proportions", [](S& s) { return at(s.proportions); }, "0.1"},
       {"footing", [](S& s) { return at(s.footing_m_s); }, "0.5"},
-      {"solutions", [](S& s) { return at(s.solutions); }, "5"}};
+      {"solutions", [](S& s) { return at(s.solutions); }, "5"},
+      {"spread", [](S& s) { return at(s.spread); }, "1.3"}};
   check_table(table);
   CHECK(member_count<S>() == table.size());
 }
 
 TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves something") {
   for (const char* name :
-       {"turn", "lasting", "root", "detector", "caution", "proportions", "footing"})
+       {"turn", "lasting", "root", "detector", "caution", "proportions", "footing", "spread"})
     for (const double value : {0.0, -1.0, kNan})
       check_refused<TrackFitSettings>(name, value, "above 0");
   check_refused<TrackFitSettings>("likeness", 1, "at least 0 and below 1");

@@ -16,6 +16,9 @@ struct TrackFindings {
   TrackFeatures::FillCount filled;
   std::vector<SideSwap> swaps;  ///< that were put right
   Camera camera;  ///< that sees the first motion as the track shows it, in its file units
+  /// How sure the first motion is (joint_uncertainty) [frames x 3·joints], at the track's rate and
+  /// in its file units, if `uncertainty_draws` were asked for.
+  MatrixD uncertainty;
 };
 
 /// 3D motion from a 2D track, `samples` times. The track is brought to the model's rate and the

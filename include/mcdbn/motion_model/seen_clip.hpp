@@ -19,6 +19,8 @@ struct ClipPlacement : KnownOfClip {
   /// Channels of a clip of that skeleton, if there is one: they tell how its joints are turned
   /// where its rest pose is nobody's (HumanoidRig).
   MatrixD skeleton_channels = {};
+  /// Motions that are drawn to tell how sure the fit is; none: it is not asked.
+  PosteriorDraws uncertainty_draws = {};
 };
 
 /// What a method answers to a track's standardized features [frames x dimension]: what is likely of

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace mcdbn {
+
+/// Consecutive frames of a clip that are solved together.
+struct ClipWindow {
+  Eigen::Index first = 0, frames = 0;
+
+  Eigen::Index end() const { return first + frames; }
+};
+
+/// Memory and time of a window's equations grow with its frames, so that those of a clip do.
+inline constexpr Eigen::Index kWindowFrames = 300;
+/// On either side, over several times what an error lasts: further away nothing is heard.
+inline constexpr Eigen::Index kOverlapFrames = 30;
+
+/// Every frame is in one window at least; neighbours share 2·kOverlapFrames.
+std::vector<ClipWindow> windows_of(Eigen::Index frames);
+
+/// How much of a window counts in its frame `t`, beside the windows before it: it comes in over the
+/// frames that both have. @param known frames of the clip that stand already
+double share_of_window(const ClipWindow& window, Eigen::Index known, Eigen::Index t);
+
+}  // namespace mcdbn

@@ -1,0 +1,134 @@
+#include "fitting/posterior_draws.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "base/interruption.hpp"
+#include "base/random_streams.hpp"
+#include "fitting/clip_windows.hpp"
+#include "fitting/window_problem.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/base/random.hpp"
+
+namespace mcdbn {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// Deviation of what no residual tells of, so that every unknown has one: radians, metres.
+constexpr double kUntold = 10;
+
+/// The normal distribution of one window: x = L⁻ᵀ z − C λ, where λ are the lengths of the body.
+class WindowPosterior {
+ public:
+  WindowPosterior(const Sparse& derivatives, Eigen::Index lengths) {
+    const Eigen::Index moving = derivatives.cols() - lengths;
+    Sparse untold(derivatives.cols(), derivatives.cols());
+    untold.setIdentity();
+    const Sparse all = Sparse(derivatives.transpose() * derivatives) + untold / (kUntold * kUntold);
+    const Sparse own = all.topLeftCorner(moving, moving);
+    factor_.compute(own);
+    if (factor_.info() != Eigen::Success)
+      throw InputError(
+          "the fit to the track does not tell how sure it is; does the track show a "
+          "person?");
+    if (lengths == 0) return;
+    const Eigen::MatrixXd with_lengths = Sparse(all.topRightCorner(moving, lengths));
+    of_lengths_ = factor_.solve(with_lengths);
+    const Eigen::MatrixXd information =
+        Eigen::MatrixXd(Sparse(all.bottomRightCorner(lengths, lengths))) -
+        with_lengths.transpose() * of_lengths_;
+    lengths_.compute(information);
+  }
+
+  /// @param normal [lengths], standard  @return the lengths' differences from the likeliest
+  Eigen::VectorXd draw_lengths(const Eigen::VectorXd& normal) const {
+    return normal.size() == 0 ? normal : lengths_.matrixU().solve(normal);
+  }
+
+  /// @param normal [frames·(3·orientations + 3)], standard
+  Eigen::VectorXd draw(const Eigen::VectorXd& normal, const Eigen::VectorXd& lengths) const {
+    Eigen::VectorXd drawn = factor_.permutationPinv() * factor_.matrixU().solve(normal);
+    if (lengths.size() > 0) drawn -= of_lengths_ * lengths;
+    return drawn;
+  }
+
+ private:
+  Eigen::SimplicialLLT<Sparse> factor_;
+  Eigen::MatrixXd of_lengths_;
+  Eigen::LLT<Eigen::MatrixXd> lengths_;
+};
+
+/// Standard normal numbers of one draw. @param row of the key: which window, or the body's
+Eigen::VectorXd normals(std::uint64_t seed, std::size_t draw, std::uint32_t row,
+                        Eigen::Index count) {
+  const RandomKey key{seed, static_cast<std::uint32_t>(draw), random_streams::kPosteriorDraws, 0};
+  return Eigen::VectorXd::NullaryExpr(count, [&](Eigen::Index i) {
+    return random_normal(key, row, static_cast<std::uint32_t>(i));
+  });
+}
+
+/// Adds a window's draw to the point. Where windows overlap both count by the root of their share,
+/// so that a sum of two independent draws deviates as much as each.
+void add(PosteriorPoint& point, const ClipWindow& window, Eigen::Index known,
+         const PosteriorPoint& likeliest, const Eigen::VectorXd& drawn) {
+  const Eigen::Index turns = point.turns.cols(), of_frame = turns + 3;
+  for (Eigen::Index t = 0; t < window.frames; ++t) {
+    const double share = share_of_window(window, known, t);
+    const auto mix = [&](auto stands, auto centre, const auto& difference) {
+      stands = centre + std::sqrt(1 - share) * (stands - centre) + std::sqrt(share) * difference;
+    };
+    const Eigen::Index frame = window.first + t;
+    mix(point.turns.row(frame), likeliest.turns.row(frame),
+        drawn.segment(t * of_frame, turns).transpose());
+    mix(point.shift.row(frame), likeliest.shift.row(frame),
+        drawn.segment<3>(t * of_frame + turns).transpose());
+  }
+}
+
+}  // namespace
+
+std::vector<PosteriorPoint> posterior_draws(const PosteriorClip& clip, const RayNoise& noise,
+                                            const TrackFitSettings& settings,
+                                            const PosteriorPoint& likeliest, std::size_t count,
+                                            std::uint64_t seed) {
+  constexpr std::uint32_t kBody = 0;  // windows follow
+  std::vector<PosteriorPoint> draws(count, likeliest);
+  const std::vector<ClipWindow> windows = windows_of(clip.frames());
+  const Eigen::Index lengths = clip.body_unknown ? likeliest.log_lengths.size() : 0;
+  const auto posterior_of = [&](const ClipWindow& window) {
+    check_interruption();
+    WindowProblem problem(clip, noise, settings, likeliest, window.first, window.frames,
+                          Unknowns::all);
+    const Sparse derivatives = problem.derivatives();
+    return WindowPosterior(derivatives,
+                           derivatives.cols() - window.frames * (likeliest.turns.cols() + 3));
+  };
+  // The body is told by the middle window, as in most_likely.
+  std::vector<Eigen::VectorXd> bodies(count, Eigen::VectorXd::Zero(likeliest.log_lengths.size()));
+  if (lengths > 0) {
+    const WindowPosterior middle = posterior_of(windows[windows.size() / 2]);
+    for (std::size_t i = 0; i < count; ++i) {
+      bodies[i] = settings.spread * middle.draw_lengths(normals(seed, i, kBody, lengths));
+      draws[i].log_lengths += bodies[i];
+    }
+  }
+  Eigen::Index known = 0;
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    const WindowPosterior window = posterior_of(windows[w]);
+    const Eigen::Index moving = windows[w].frames * (likeliest.turns.cols() + 3);
+    for (std::size_t i = 0; i < count; ++i) {
+      check_interruption();
+      const auto row = static_cast<std::uint32_t>(w + 1);
+      // `bodies` are wider already.
+      const Eigen::VectorXd normal = settings.spread * normals(seed, i, row, moving);
+      add(draws[i], windows[w], known, likeliest, window.draw(normal, bodies[i]));
+    }
+    known = windows[w].end();
+  }
+  return draws;
+}
+
+}  // namespace mcdbn

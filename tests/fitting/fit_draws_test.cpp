@@ -1,0 +1,120 @@
+// Motions that fit_to_track draws about the likeliest, and what tells their width.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "fitting/walk_scene.hpp"
+#include "motion/joint_uncertainty.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+constexpr PosteriorDraws kDraws{.count = 20, .seed = 4};
+
+/// What the scene's prior says of itself: the same deviation of every feature, in radians.
+PosePrior prior_of(const Scene& scene, double deviation_rad) {
+  const Eigen::VectorXd& scale = scene.modalities.pose_scale.deviation();
+  const auto& kept = scene.modalities.pose_scale.kept_columns();
+  MatrixF deviation(scene.mean.rows(), scene.mean.cols());
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    deviation.col(static_cast<Eigen::Index>(k))
+        .setConstant(static_cast<float>(deviation_rad / scale[kept[k]]));
+  return {scene.mean, deviation};
+}
+
+FittedClip drawn(const Scene& scene, const PosePrior& prior, const TrackFitSettings& settings = {},
+                 const PosteriorDraws& draws = kDraws) {
+  return fit_to_track(prior, scene.modalities, scene.track, scene.known, settings, draws);
+}
+
+/// RMS over frames and axes, file units.
+double width_of(const Scene& scene, const FittedClip& clip, const char* joint) {
+  const MatrixD widths = joint_uncertainty(clip.motion, clip.draws);
+  const MatrixD own = widths.middleCols(3 * scene.truth.skeleton.find(joint), 3);
+  return std::sqrt(own.squaredNorm() / static_cast<double>(own.size()));
+}
+
+}  // namespace
+
+TEST_CASE("fit draws: as many as are asked for, and the likeliest stays what it is") {
+  const Scene scene = make_scene(1, 30);
+  const FittedClip plain =
+      fit_to_track(scene.mean, scene.modalities, scene.track, scene.known, TrackFitSettings{});
+  CHECK(plain.draws.empty());
+  const FittedClip clip = drawn(scene, scene.mean);
+  CHECK(clip.motion.channels == plain.motion.channels);
+  CHECK(clip.shown.x_px == plain.shown.x_px);
+  REQUIRE(clip.draws.size() == 20);
+  CHECK(clip.draws[0].channels == drawn(scene, scene.mean).draws[0].channels);
+  CHECK(clip.draws[0].channels != clip.draws[1].channels);
+  CHECK(clip.draws[0].channels != drawn(scene, scene.mean, {}, {1, 5}).draws[0].channels);
+  CHECK(fit_to_track(scene.mean, scene.modalities, scene.track, scene.known, std::nullopt, kDraws)
+            .draws.empty());
+}
+
+TEST_CASE("fit draws: they spread as the settings say, and less where the track shows") {
+  const Scene scene = make_scene(0, 30);
+  const FittedClip narrow = drawn(scene, scene.mean);
+  TrackFitSettings settings;
+  settings.spread = 2.6;
+  // Turns are rotations, so that twice the turn is not quite twice the distance.
+  CHECK(width_of(scene, drawn(scene, scene.mean, settings), "LeftHand") ==
+        doctest::Approx(2 * width_of(scene, narrow, "LeftHand")).epsilon(0.05));
+  Scene hidden = scene;
+  hidden.track.confidence.col(hidden.track.find("LeftHand")).setZero();
+  CHECK(width_of(hidden, drawn(hidden, hidden.mean), "LeftHand") >
+        2 * width_of(scene, narrow, "LeftHand"));
+}
+
+TEST_CASE("fit draws: the prior's deviation counts as it is told, whatever the likeliest doubts") {
+  Scene scene = make_scene(0, 30);
+  for (const char* joint : {"LeftForeArm", "LeftHand"})
+    scene.track.confidence.col(scene.track.find(joint)).setZero();
+  const double once = width_of(scene, drawn(scene, prior_of(scene, 0.2)), "LeftHand");
+  const double twice = width_of(scene, drawn(scene, prior_of(scene, 0.4)), "LeftHand");
+  CHECK(twice > 1.7 * once);
+}
+
+TEST_CASE("fit draws: a detector's error lasts throughout, whatever the likeliest takes it for") {
+  const Scene scene = make_scene(0, 30);
+  TrackFitSettings settings;
+  settings.solutions = 1;
+  settings.noise_lasts_s = 0;
+  const double brief = width_of(scene, drawn(scene, scene.mean, settings), "LeftHand");
+  settings.noise_lasts_s = 3;
+  CHECK(width_of(scene, drawn(scene, scene.mean, settings), "LeftHand") ==
+        doctest::Approx(brief).epsilon(0.02));
+}
+
+TEST_CASE("fit draws: an unknown body has one length of each bone a draw, and its own in each") {
+  Scene scene = make_scene(0, 20);
+  scene.known.skeleton.reset();
+  const FittedClip clip = drawn(scene, scene.mean);
+  const int knee = scene.truth.skeleton.find("LeftLeg"),
+            other = scene.truth.skeleton.find("RightLeg");
+  const auto length = [](const Motion& motion, int joint) {
+    return motion.skeleton.joints[static_cast<std::size_t>(joint)].offset.norm();
+  };
+  CHECK(length(clip.draws[0], knee) != length(clip.motion, knee));
+  CHECK(length(clip.draws[0], knee) != length(clip.draws[1], knee));
+  CHECK(length(clip.draws[0], knee) == doctest::Approx(length(clip.draws[0], other)));
+  for (const Motion& draw : clip.draws)
+    for (int joint = 1; joint < draw.skeleton.joint_count(); ++joint)
+      CHECK(length(draw, joint) <= 2 * length(clip.motion, joint));  // five deviations
+}
+
+TEST_CASE("fit draws: without a camera they lie about the motion at the origin") {
+  Scene scene = make_scene(0, 20);
+  scene.known.camera.reset();
+  const FittedClip clip = drawn(scene, scene.mean);
+  MatrixD mean = MatrixD::Zero(20, 3);
+  for (const Motion& draw : clip.draws)
+    mean += joint_positions(draw).leftCols<3>() / static_cast<double>(clip.draws.size());
+  const MatrixD widths = joint_uncertainty(clip.motion, clip.draws).leftCols<3>();
+  const MatrixD off = mean - joint_positions(clip.motion).leftCols<3>();
+  // The mean of 20 draws, in each of 60 numbers that hang together.
+  CHECK((off.array() / widths.array()).abs().maxCoeff() < 1);
+}
