@@ -262,7 +262,7 @@ struct LearningSettings {
   /// The nearest to it that trains: rates and first weights that do not diverge, all else the same.
   static LearningSettings paper_stable();
   /// For free-running generation: the greedy stages with one layer a CDBN, by CD-1 with noise on
-  /// the histories (docs/generation.md).
+  /// the histories, falling rates and all people alike (docs/generation.md).
   static LearningSettings generation();
   /// @throws ConfigError naming the setting that is out of range
   void validate() const { check_settings(*this); }
