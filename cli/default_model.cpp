@@ -18,7 +18,7 @@ std::filesystem::path model_or_default(const std::filesystem::path& said) {
   if (!said.empty()) return said;
   std::error_code unknown;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  const auto model =
+  auto model =
       program.parent_path().parent_path() / "share" / "mcdbn-cl" / "default_model.safetensors";
   if (unknown || !std::filesystem::exists(model))
     throw ConfigError(

@@ -125,7 +125,7 @@ ColumnScale prepare(std::vector<MatrixF>& data, const MatrixInput& input, Visibl
                     bool standardize) {
   for (std::size_t i = 0; i < data.size(); ++i) check_values(data[i], kind, input.files[i]);
   if (!standardize || kind == VisibleKind::binary) return {};
-  const ColumnScale scale = ColumnScale::of(data);
+  ColumnScale scale = ColumnScale::of(data);
   for (MatrixF& values : data) values = scale.apply(values);
   return scale;
 }
@@ -171,6 +171,7 @@ void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
   }
   fit_and_save(context, options, [&](Device& device, const EpochObserver& observer) {
     std::vector<Sequences> data;
+    data.reserve(inputs.size());
     for (const ModalityData& input : inputs)
       data.push_back(Sequences::from_host(device, input.data));
     spdlog::info("{} modalities, {} rows on {}", data.size(), data.front().values.rows(),

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <ranges>
 #include <system_error>
 #include <utility>
 
@@ -111,8 +112,8 @@ OutputBatch::~OutputBatch() {
   std::error_code ignored;
   for (const Waiting& waiting : waiting_) fs::remove_all(waiting.temporary, ignored);
   // Those with something in them stay.
-  for (auto folder = made_folders_.rbegin(); folder != made_folders_.rend(); ++folder)
-    fs::remove(*folder, ignored);
+  for (const fs::path& folder : std::ranges::reverse_view(made_folders_))
+    fs::remove(folder, ignored);
 }
 
 void OutputBatch::put_in_place() {

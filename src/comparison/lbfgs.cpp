@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <ranges>
 
 #include "base/interruption.hpp"
 
@@ -22,9 +23,9 @@ VectorXd downhill(const std::deque<Step>& steps, const VectorXd& gradient) {
   VectorXd direction = -gradient;
   if (steps.empty()) return direction / std::max(1.0, gradient.norm());
   std::vector<double> shares;  // of the last step first
-  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
-    shares.push_back(step->x.dot(direction) / step->curvature);
-    direction -= shares.back() * step->gradient;
+  for (const Step& step : std::ranges::reverse_view(steps)) {
+    shares.push_back(step.x.dot(direction) / step.curvature);
+    direction -= shares.back() * step.gradient;
   }
   direction *= steps.back().curvature / steps.back().gradient.squaredNorm();
   auto share = shares.rbegin();

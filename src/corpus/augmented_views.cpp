@@ -57,7 +57,7 @@ TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Mod
                          pool ? &*pool : nullptr);
       // Limbs out of sight: as Mcdbn::fills_gaps says, and nothing is learnt from them.
       const MatrixF track = modalities.encode_track(view.track, view.camera);
-      views.tracks_seen.push_back((!track.array().isNaN()).cast<float>().matrix());
+      views.tracks_seen.emplace_back((!track.array().isNaN()).cast<float>().matrix());
       views.tracks.push_back(at_mean_where_unknown(track));
       views.poses.push_back(modalities.encode_pose(view.motion, view.camera.camera_from_world));
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "mcdbn/base/errors.hpp"
 
@@ -23,8 +24,8 @@ void add_numbers(const toml::node& node, const std::string& where, std::vector<d
 /// One section, whose errors name it and the key's line.
 class Section {
  public:
-  Section(const CameraSource& source, const TomlSection& section)
-      : source_(source), section_(section) {}
+  Section(const CameraSource& source, TomlSection section)
+      : source_(source), section_(std::move(section)) {}
 
   bool has(const std::string& key) const { return section_.table->contains(key); }
 

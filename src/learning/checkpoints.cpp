@@ -23,8 +23,9 @@ constexpr const char *kLast = "checkpoint.safetensors",
 constexpr char kBetween = '/';
 
 void put(Safetensors& file, const std::string& stage, const TrainingState::Content& content) {
+  const std::string prefix = stage + kBetween;
   for (const auto& [name, tensor] : content.matrices)
-    file.tensors[stage + kBetween + name] = tensor;
+    file.tensors[std::string(prefix).append(name)] = tensor;
 }
 
 TrainingState::Content get(const Safetensors& file, const std::string& stage, json numbers) {

@@ -28,6 +28,7 @@ Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind,
                const EpochObserver& observer) {
   if (layers.empty()) throw ShapeError("a stack without layers");
   std::vector<CrbmShape> shapes;
+  shapes.reserve(layers.size());
   for (const LayerSize& layer : layers)
     shapes.push_back({shapes.empty() ? data.values.columns() : shapes.back().hidden, layer.hidden,
                       layer.order, shapes.empty() ? kind : VisibleKind::binary});

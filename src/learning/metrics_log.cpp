@@ -22,8 +22,7 @@ void append(nlohmann::ordered_json& line, const LayerHealth& health) {
 
 }  // namespace
 
-MetricsLog::MetricsLog(const std::filesystem::path& path, std::uint64_t kept)
-    : path_(path), written_(0) {
+MetricsLog::MetricsLog(const std::filesystem::path& path, std::uint64_t kept) : path_(path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error) written_ = std::min<std::uint64_t>(kept, size);

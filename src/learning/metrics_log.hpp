@@ -26,7 +26,7 @@ class MetricsLog {
   bool write_waiting();
 
   std::filesystem::path path_;
-  std::uint64_t written_;
+  std::uint64_t written_ = 0;
   std::string waiting_;  ///< lines
 };
 

@@ -53,6 +53,7 @@ void put(Safetensors& file, const std::string& prefix, const Parameters& paramet
 Parameters get(Device& device, const TensorFile& file, const std::string& prefix,
                const std::vector<ParameterShape>& shapes) {
   std::vector<MatrixF> values;
+  values.reserve(shapes.size());
   for (const ParameterShape& shape : shapes)
     values.push_back(get_matrix(file, prefix + shape.name, shape.rows, shape.columns));
   Parameters parameters(device, shapes);
@@ -68,8 +69,8 @@ std::string layer_prefix(const std::string& prefix, std::size_t layer) {
 
 MatrixF get_matrix(const TensorFile& file, const std::string& name, std::size_t rows,
                    std::size_t columns) {
-  const MatrixF values = file.content.get(name, file.path, static_cast<Eigen::Index>(rows),
-                                          static_cast<Eigen::Index>(columns));
+  MatrixF values = file.content.get(name, file.path, static_cast<Eigen::Index>(rows),
+                                    static_cast<Eigen::Index>(columns));
   // Finite weights of any size would answer with numbers that are not.
   constexpr float kLargestWeight = 1e6F;
   if (!(values.array().abs() <= kLargestWeight).all())

@@ -212,7 +212,7 @@ Decoded decoded(const Mcdbn& network, const std::vector<std::vector<MatrixF>>& p
   Decoded result{frames_of(network, present, wanted, options.run_in), {}, {}, {}};
   const Frames& frames = result.frames;
   std::vector<std::optional<Sequences>> present_codes(present.size());
-  const std::vector<MatrixF>* shown = nullptr;
+  const std::vector<MatrixF>* shown = &present.front();
   for (std::size_t m = 0; m < present.size(); ++m) {
     if (present[m].empty()) continue;
     present_codes[m] = code_of(network, m, present[m], frames);

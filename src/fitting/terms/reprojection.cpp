@@ -4,9 +4,9 @@
 
 namespace mcdbn {
 
-Reprojection::Reprojection(JointPlace place, double nearest_m, const Eigen::Vector2d& ray,
+Reprojection::Reprojection(JointPlace place, double nearest_m, Eigen::Vector2d ray,
                            double deviation)
-    : place_(std::move(place)), nearest_m_(nearest_m), ray_(ray), deviation_(deviation) {
+    : place_(std::move(place)), nearest_m_(nearest_m), ray_(std::move(ray)), deviation_(deviation) {
   set_num_residuals(2);
   *mutable_parameter_block_sizes() = place_.block_sizes();
 }

@@ -12,7 +12,7 @@ namespace mcdbn {
 class Reprojection : public ceres::CostFunction {
  public:
   /// @param ray x/z and y/z, lens taken out  @param deviation of each of both, in the same unit
-  Reprojection(JointPlace place, double nearest_m, const Eigen::Vector2d& ray, double deviation);
+  Reprojection(JointPlace place, double nearest_m, Eigen::Vector2d ray, double deviation);
   bool Evaluate(double const* const* unknowns, double* residuals,
                 double** jacobians) const override;
 
