@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <ranges>
 #include <system_error>
 #include <utility>
 
@@ -112,8 +111,8 @@ OutputBatch::~OutputBatch() {
   std::error_code ignored;
   for (const Waiting& waiting : waiting_) fs::remove_all(waiting.temporary, ignored);
   // Those with something in them stay.
-  for (const fs::path& folder : std::ranges::reverse_view(made_folders_))
-    fs::remove(folder, ignored);
+  std::for_each(made_folders_.rbegin(), made_folders_.rend(),
+                [&](const fs::path& folder) { fs::remove(folder, ignored); });
 }
 
 void OutputBatch::put_in_place() {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <ranges>
 
 #include "base/interruption.hpp"
 
@@ -23,10 +22,10 @@ VectorXd downhill(const std::deque<Step>& steps, const VectorXd& gradient) {
   VectorXd direction = -gradient;
   if (steps.empty()) return direction / std::max(1.0, gradient.norm());
   std::vector<double> shares;  // of the last step first
-  for (const Step& step : std::ranges::reverse_view(steps)) {
+  std::for_each(steps.rbegin(), steps.rend(), [&](const Step& step) {
     shares.push_back(step.x.dot(direction) / step.curvature);
     direction -= shares.back() * step.gradient;
-  }
+  });
   direction *= steps.back().curvature / steps.back().gradient.squaredNorm();
   auto share = shares.rbegin();
   for (const Step& step : steps)
