@@ -36,6 +36,7 @@ struct EvaluateOptions {
   TestRunOptions run;
   SamplingOptions sampling;
   std::optional<double> azimuth_deg, elevation_deg;
+  std::size_t uncertainty_draws = kUncertaintyDraws;
 };
 
 /// What the protocol leaves open is filled in; what was said stays.
@@ -112,6 +113,7 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
     if (options.elevation_deg) run.camera.elevation_deg = *options.elevation_deg;
     run.regeneration = options.sampling.regeneration(
         model.network, context.seed, options.protocol == "paper" ? kPaperSamples : 1);
+    if (run.fit) run.uncertainty_draws = {options.uncertainty_draws, context.seed};
     report.temperature = run.regeneration.temperature;
     add_training_views(model, run);
     run.progress = show(0.0, kTestShare);
@@ -175,6 +177,12 @@ void add_test_options(CLI::App& command, EvaluateOptions& options) {
 void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
   add_sampling_options(command, options.sampling, "Regenerations of each clip (default: 1)");
   add_fit_option(command, options.fit, "default: track, none in the paper's protocol; all methods");
+  command
+      .add_option("--uncertainty-draws", options.uncertainty_draws,
+                  "Motions drawn of each clip's posterior, to tell how sure the model's single "
+                  "answer is and in how many cases rightly; 0: it is not asked. Of the fit only")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
   add_view_flags(command, options.azimuth_deg, options.elevation_deg);
 }
 

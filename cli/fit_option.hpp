@@ -8,6 +8,9 @@
 
 namespace mcdbn::cli {
 
+/// Motions drawn to tell how sure an answer is: so many tell a deviation to a tenth of itself.
+inline constexpr std::size_t kUncertaintyDraws = 50;
+
 inline constexpr const char *kFitTrack = "track", *kFitNone = "none";
 
 /// --fit track|none. @param note in the help, behind what it means

@@ -31,9 +31,6 @@ namespace {
 
 constexpr const char *kToPose = "pose", *kToTrack = "track", *kModel = "model";
 
-/// So many tell a deviation to a tenth of itself.
-constexpr std::size_t kUncertaintyDraws = 50;
-
 struct RegenerateOptions {
   std::filesystem::path model, input, output, skeleton, joint_map, write_camera, uncertainty;
   TrackReadOptions track;

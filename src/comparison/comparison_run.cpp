@@ -11,10 +11,12 @@
 #include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/side_swaps.hpp"
+#include "mcdbn/evaluation/interval_share.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/body_size.hpp"
 #include "motion/foot_joints.hpp"
+#include "motion/joint_uncertainty.hpp"
 #include "motion/turned_motion.hpp"
 #include "motion_model/pose_priors.hpp"
 
@@ -43,16 +45,22 @@ std::vector<std::string> judged_joints(const Skeleton& skeleton, int root) {
   return names;
 }
 
+/// Of some joints. @param all [frames x 3·joints] of the skeleton  @return [frames x 3·joints]
+MatrixD of_joints(const MatrixD& all, const Skeleton& skeleton,
+                  const std::vector<std::string>& joints) {
+  MatrixD some(all.rows(), 3 * std::ssize(joints));
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    some.middleCols(3 * static_cast<Eigen::Index>(i), 3) =
+        all.middleCols(3 * skeleton.find(joints[i]), 3);
+  return some;
+}
+
 /// Relative to the first joint, in mm. An answer may stand on another body, on which other joints
 /// stand where their parents do: the truth's are judged.
 /// @return [frames x 3·joints]
 MatrixD judged_positions(const Motion& motion, const std::vector<std::string>& joints) {
-  const MatrixD all = root_relative_positions_mm(motion, motion.skeleton.find(joints.front()));
-  MatrixD positions(all.rows(), 3 * std::ssize(joints));
-  for (std::size_t i = 0; i < joints.size(); ++i)
-    positions.middleCols(3 * static_cast<Eigen::Index>(i), 3) =
-        all.middleCols(3 * motion.skeleton.find(joints[i]), 3);
-  return positions;
+  return of_joints(root_relative_positions_mm(motion, motion.skeleton.find(joints.front())),
+                   motion.skeleton, joints);
 }
 
 /// @param positions [frames x 3·joints]  @return the same along other axes
@@ -111,20 +119,42 @@ SeenClip seen_by(const Model& model, const TestRunOptions& options, const Encode
   return see_clip(model.modalities, truth.track, placement_of(truth, options), answer);
 }
 
+/// @param draws of which `deviation_mm` is told
 Regeneration answer(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
-                    const SeenClip& seen, const PosePrior& prior) {
+                    const SeenClip& seen, const PosePrior& prior,
+                    const PosteriorDraws& draws = {}) {
   ClipPlacement placement = placement_of(truth, options);
   placement.view = seen.view;
-  Regeneration result;
-  result.motion = fit_to_track(prior, model.modalities, seen.joints, placement, options.fit).motion;
+  FittedClip fitted =
+      fit_to_track(prior, model.modalities, seen.joints, placement, options.fit, draws);
   // Who does not know the camera answers in another's axes: what it saw is the same.
-  if (!placement.camera)
-    result.motion =
-        turned_motion(std::move(result.motion),
+  const auto in_truths_axes = [&](Motion& motion) {
+    if (placement.camera) return;
+    motion =
+        turned_motion(std::move(motion),
                       truth.camera.camera_from_world.transpose() *
                           placement.camera_of(truth.track, model.modalities).camera_from_world);
-  result.score = score_clip(truth, result.motion, model.modalities.root_name());
+  };
+  in_truths_axes(fitted.motion);
+  for (Motion& draw : fitted.draws) in_truths_axes(draw);
+  Regeneration result;
+  result.motion = std::move(fitted.motion);
+  const std::string& root = model.modalities.root_name();
+  result.score = score_clip(truth, result.motion, root);
+  if (!fitted.draws.empty()) {
+    const Skeleton& skeleton = result.motion.skeleton;
+    result.deviation_mm = 1000 / file_units_per_metre(skeleton) *
+                          joint_uncertainty(result.motion, fitted.draws, skeleton.find(root));
+    result.score.within_90 = share_within_90(truth, result, root);
+  }
   return result;
+}
+
+/// Of the single answer.
+PosteriorDraws draws_of_clip(const TestRunOptions& options, std::size_t clip) {
+  PosteriorDraws draws = options.uncertainty_draws;
+  draws.seed += clip;
+  return draws;
 }
 
 /// Clips go to the device some at a time, so that memory does not grow with the test.
@@ -147,17 +177,22 @@ void regenerate_clips(const Model& model, const TestRunOptions& options, const P
     RegenerationOptions regeneration = options.regeneration;
     regeneration.seed += first;  // other random numbers for other clips
     const auto poses = pose_priors(model.network, tracks, regeneration);
+    const bool drawn = regeneration.temperature > 0;
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      ClipResult& result = results[first + i / samples];
-      result.samples.push_back(answer(model, options, result.truth, result.seen, poses[i]));
+      const std::size_t clip = first + i / samples;
+      const bool single = !drawn && i % samples == 0;
+      results[clip].samples.push_back(
+          answer(model, options, results[clip].truth, results[clip].seen, poses[i],
+                 single ? draws_of_clip(options, clip) : PosteriorDraws{}));
     }
-    if (regeneration.temperature <= 0) continue;
+    if (!drawn) continue;
     regeneration.temperature = 0;
     regeneration.samples = 1;
     const auto single = pose_priors(model.network, tracks, regeneration);
     for (std::size_t i = 0; i < single.size(); ++i) {
       ClipResult& result = results[first + i];
-      result.others[kMeanField] = answer(model, options, result.truth, result.seen, single[i]);
+      result.others[kMeanField] = answer(model, options, result.truth, result.seen, single[i],
+                                         draws_of_clip(options, first + i));
     }
   }
 }
@@ -203,6 +238,17 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
 }
 
 }  // namespace
+
+double share_within_90(const EncodedClip& truth, const Regeneration& answer,
+                       const std::string& root_name) {
+  const Skeleton& skeleton = answer.motion.skeleton;
+  const std::vector<std::string> judged =
+      judged_joints(truth.motion.skeleton, truth.motion.skeleton.find(root_name));
+  const auto joints = 3 * (std::ssize(judged) - 1);  // the root is where it is, on both sides
+  return share_within_90(judged_positions(truth.motion, judged).rightCols(joints),
+                         judged_positions(answer.motion, judged).rightCols(joints),
+                         of_joints(answer.deviation_mm, skeleton, judged).rightCols(joints));
+}
 
 ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                      const std::string& root_name) {

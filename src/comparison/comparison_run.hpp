@@ -33,7 +33,9 @@ struct TestRunOptions {
   std::vector<MatrixF> view_tracks, view_poses;
   std::optional<TrackFitSettings> fit =
       TrackFitSettings{};  ///< of every method's answer; unset: none
-  TrackDamage damage;      ///< done to the test clips' tracks before anyone sees them
+  /// Drawn of each clip, by seeds of its own, to tell how sure the model's single answer is.
+  PosteriorDraws uncertainty_draws = {};
+  TrackDamage damage;  ///< done to the test clips' tracks before anyone sees them
   /// What a detector would see of the test clips in place of exact projections through `camera`.
   /// Nobody is told the body then, nor, unless `camera_known`, the camera.
   std::optional<DetectorViews> detector;
@@ -50,6 +52,9 @@ struct TestRunOptions {
 struct Regeneration {
   Motion motion;
   ClipScore score;
+  /// Of the motion's joints along the world's axes, from the root (joint_uncertainty), in mm on a
+  /// 1.7 m body [frames x 3·joints]; 0 x 0 where nothing was drawn.
+  MatrixD deviation_mm = {};
 };
 
 struct ClipResult {
@@ -70,6 +75,11 @@ std::vector<ClipResult> run_test(const Model& model,
 
 ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                      const std::string& root_name);
+
+/// Of an answer with deviations, whoever said them: the share of 90 % intervals of its judged
+/// joints that hold the truth (ClipScore::within_90).
+double share_within_90(const EncodedClip& truth, const Regeneration& answer,
+                       const std::string& root_name);
 
 /// How clips are put under actions: `by_folder` by the name of the folder that they lie in; else
 /// all under "all clips".

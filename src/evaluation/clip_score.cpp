@@ -41,6 +41,7 @@ ClipScore mean_score(const std::vector<ClipScore>& scores) {
   result.foot_slide.truth_mm_s = mean([](const S& s) { return s.foot_slide.truth_mm_s; });
   result.foot_slide.regenerated_mm_s =
       mean([](const S& s) { return s.foot_slide.regenerated_mm_s; });
+  result.within_90 = mean([](const S& s) { return s.within_90; });
   for (const S& score : scores) result.foot_slide.planted += score.foot_slide.planted;
   return result;
 }
@@ -67,6 +68,7 @@ const std::vector<ScoreFigure>& score_figures() {
        [](const S& s) { return s.foot_slide.regenerated_mm_s; }, true},
       {"bone_length_spread_mm", "Bone-length spread (mm)",
        [](const S& s) { return s.bone_length_spread_mm; }, true},
+      {"within_90", "Truths within 90 % intervals", [](const S& s) { return s.within_90; }, false},
   };
   return figures;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "evaluation/foot_slide.hpp"
@@ -17,6 +18,9 @@ struct ClipScore {
   double root_mm = 0;  ///< mean distance of the regenerated root from the true one, in the world
   FootSlide foot_slide;
   double bone_length_spread_mm = 0;
+  /// Share of 90 % intervals that hold the truth (share_within_90), each joint but the root along
+  /// each axis of the world, from the root; NaN where nobody said how sure the answer is.
+  double within_90 = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Mean over clips (and samples) of each figure; a figure that is NaN somewhere (the foot slide of
@@ -28,7 +32,7 @@ struct ScoreFigure {
   const char* name;   ///< with its unit: mpjpe_mm
   const char* title;  ///< as people read it: MPJPE (mm)
   double (*of)(const ClipScore&);
-  bool smaller_is_better;
+  bool smaller_is_better;  ///< of `within_90`, best at 0.9, neither is
 };
 
 /// Every figure of a score, in the order of reports.

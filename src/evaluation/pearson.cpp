@@ -10,7 +10,7 @@
 namespace mcdbn {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoCorrelation = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRounding = 1e-9;
 
 template <typename Derived>
@@ -43,8 +43,9 @@ double pearson(const Eigen::Ref<const Eigen::VectorXd>& x,
                const Eigen::Ref<const Eigen::VectorXd>& y) {
   if (x.size() != y.size() || x.size() == 0)
     throw ShapeError(fmt::format("cannot correlate {} with {} values", x.size(), y.size()));
-  if (!std::isfinite(x.sum()) || !std::isfinite(y.sum())) return kNaN;
-  if (!changes(x, x.cwiseAbs().maxCoeff()) || !changes(y, y.cwiseAbs().maxCoeff())) return kNaN;
+  if (!std::isfinite(x.sum()) || !std::isfinite(y.sum())) return kNoCorrelation;
+  if (!changes(x, x.cwiseAbs().maxCoeff()) || !changes(y, y.cwiseAbs().maxCoeff()))
+    return kNoCorrelation;
   return correlation(x, y);
 }
 
@@ -55,7 +56,7 @@ double pearson_flat(const MatrixD& truth, const MatrixD& regenerated) {
 
 double pearson_per_channel(const MatrixD& truth, const MatrixD& regenerated) {
   check_same_shape(truth, regenerated);
-  if (!truth.allFinite() || !regenerated.allFinite()) return kNaN;
+  if (!truth.allFinite() || !regenerated.allFinite()) return kNoCorrelation;
   const double truth_magnitude = truth.cwiseAbs().maxCoeff();
   const double regenerated_magnitude = regenerated.cwiseAbs().maxCoeff();
   double sum = 0;
@@ -66,7 +67,7 @@ double pearson_per_channel(const MatrixD& truth, const MatrixD& regenerated) {
     if (changes(regenerated.col(column), regenerated_magnitude))
       sum += correlation(truth.col(column), regenerated.col(column));
   }
-  return counted ? sum / counted : kNaN;
+  return counted ? sum / counted : kNoCorrelation;
 }
 
 }  // namespace mcdbn

@@ -142,6 +142,20 @@ void add_foot_slide(std::vector<Verdict>& list, const ClipScore& answer) {
                               slide.regenerated_mm_s, slide.truth_mm_s, ratio)});
 }
 
+/// Asked of an answer that says how sure it is: between these.
+constexpr double kFewestWithin90 = 0.85, kMostWithin90 = 0.95;
+
+void add_sureness(std::vector<Verdict>& list, const ClipScore& answer) {
+  if (!std::isfinite(answer.within_90)) return;
+  const bool right = answer.within_90 >= kFewestWithin90 && answer.within_90 <= kMostWithin90;
+  list.push_back({right ? Kind::good : Kind::bad,
+                  fmt::format("Of 90 % intervals of the joints' places, {:.1f} % hold the truth{}.",
+                              100 * answer.within_90,
+                              right                                ? ""
+                              : answer.within_90 < kFewestWithin90 ? ": they are too narrow"
+                                                                   : ": they are too wide")});
+}
+
 void add_training_warning(std::vector<Verdict>& list, const EvaluationReport& report) {
   int trained = 0;
   for (const ReportClip& clip : report.clips) trained += clip.trained_on;
@@ -212,6 +226,7 @@ std::vector<Verdict> verdicts(const EvaluationReport& report) {
   if (report.actions.size() > 1)
     for (const ActionReport& action : report.actions) add_action_losses(list, action);
   add_foot_slide(list, answer);
+  add_sureness(list, answer);
   for (const ActionReport& action : report.actions) {
     add_samples(list, action);
     add_likeness(list, action);

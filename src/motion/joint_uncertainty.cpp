@@ -7,22 +7,22 @@
 namespace mcdbn {
 namespace {
 
-/// @return [frames x 3·joints], all but joint 0 from joint 0
-MatrixD about_root(const Motion& motion) {
+/// @return [frames x 3·joints], all but the root from the root
+MatrixD about_root(const Motion& motion, int root) {
   MatrixD positions = joint_positions(motion);
-  const MatrixD root = positions.leftCols<3>();
-  for (Eigen::Index column = 3; column < positions.cols(); column += 3)
-    positions.middleCols<3>(column) -= root;
+  const MatrixD path = positions.middleCols<3>(3 * root);
+  for (Eigen::Index column = 0; column < positions.cols(); column += 3)
+    if (column != 3 * root) positions.middleCols<3>(column) -= path;
   return positions;
 }
 
 }  // namespace
 
-MatrixD joint_uncertainty(const Motion& likeliest, const std::vector<Motion>& draws) {
-  const MatrixD centre = about_root(likeliest);
+MatrixD joint_uncertainty(const Motion& likeliest, const std::vector<Motion>& draws, int root) {
+  const MatrixD centre = about_root(likeliest, root);
   MatrixD squares = MatrixD::Zero(centre.rows(), centre.cols());
   for (const Motion& draw : draws) {
-    const MatrixD drawn = about_root(draw);
+    const MatrixD drawn = about_root(draw, root);
     if (drawn.rows() != centre.rows() || drawn.cols() != centre.cols())
       throw ShapeError(
           fmt::format("joint_uncertainty: a draw of {} frames and {} joints, expected "

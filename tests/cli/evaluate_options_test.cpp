@@ -33,6 +33,7 @@ struct Call {
   mcdbn::DetectorCameras cameras = {};
   mcdbn::OtherBody people = {};
   bool camera_known = true;
+  std::size_t uncertainty_draws = 0;  // the program's own, 50, takes its time
 };
 
 /// Views of the training clips, for the MLP among the baselines to learn from.
@@ -53,6 +54,7 @@ json by_library(const Call& call, const std::optional<Views>& views = {}) {
   options.regeneration.seed = call.seed;
   options.regeneration.sampling = call.sampling.value_or(model.network.sampling);
   if (!call.fit) options.fit.reset();
+  options.uncertainty_draws = {call.uncertainty_draws, call.seed};
   options.damage = call.damage;
   options.camera_known = call.camera_known;
   for (const mcdbn::Detector& detector : mcdbn::detectors())
@@ -99,8 +101,9 @@ json without_baselines(json summary) {
 json by_program(const Call& call, const std::string& options) {
   std::string clips;
   for (const fs::path& clip : call.test) clips += fmt::format(" '{}'", clip.string());
-  const CliResult result = run_cli(fmt::format("evaluate --model '{}' --json --quiet --test {} {}",
-                                               call.model.string(), clips, options));
+  const CliResult result = run_cli(
+      fmt::format("evaluate --model '{}' --json --quiet --uncertainty-draws {} --test {} {}",
+                  call.model.string(), call.uncertainty_draws, clips, options));
   CAPTURE(result.standard_error);
   REQUIRE(result.exit_code == 0);
   CHECK(result.standard_error.empty());
@@ -259,6 +262,20 @@ TEST_CASE("evaluate: every option changes what its help says") {
          CHECK(summary.at("baselines").size() == 5);
          CHECK(refused("--include-training --baselines ridge", 2));
        }},
+      {"--uncertainty-draws",
+       [&] {
+         Call fitted;
+         fitted.model = all.model;
+         fitted.test = {pipeline.motion() / "walk_s02_01.bvh"};
+         fitted.seed = 3;
+         fitted.uncertainty_draws = 5;
+         const json by_five = without_baselines(by_program(fitted, "--baselines none --seed 3"));
+         CHECK(by_five == without_baselines(by_library(fitted)));
+         CHECK(by_five.at("model").at("within_90").is_number());
+         fitted.uncertainty_draws = 0;
+         CHECK(by_program(fitted, "--baselines none").at("model").at("within_90").is_null());
+         CHECK(refused("--include-training --uncertainty-draws -1", 2));
+       }},
       {"--protocol", [&] { CHECK(refused("--protocol other", 2)); }},
       {"--platform", [&] { CHECK(refused("--platform no-such-name", 4)); }},
       {"--device", [&] { CHECK(refused("--device no-such-name", 4)); }},
@@ -279,7 +296,11 @@ TEST_CASE("evaluate: what holds where an option is not said, and the text for pe
   REQUIRE(text.exit_code == 0);
   CHECK(text.standard_error.find("%  reading clips") != std::string::npos);
   CHECK(text.standard_output.starts_with("1 clips, 36 frames\n"));
+  call.uncertainty_draws = 50;
   const json wanted = by_library(call, views_of_training(call.model));
+  CHECK(text.standard_output.find(fmt::format(
+            " Of 90 % intervals of the joints' places, {:.1f} % hold the truth",
+            100 * wanted.at("model").at("within_90").get<double>())) != std::string::npos);
   const json& track = wanted.at("track_from_pose");
   const std::string line = fmt::format(
       "\n2D from 3D: joints {:.1f} px off, relative to the root (the mean track {:.1f} px)\n",

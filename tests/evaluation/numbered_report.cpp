@@ -24,7 +24,8 @@ const std::map<std::string, Line>& lines() {
                                                   {"rmse_mm", {26, 1.3}},
                                                   {"foot_slide_mm_s", {17, 4}},
                                                   {"foot_slide_of_truth_mm_s", {13, 0.5}},
-                                                  {"bone_length_spread_mm", {0.5, 0.1}}};
+                                                  {"bone_length_spread_mm", {0.5, 0.1}},
+                                                  {"within_90", {0.8, 0.0017}}};
   return all;
 }
 
@@ -77,6 +78,7 @@ ClipScore numbered_score(double number) {
   score.root_mm = at("root_mm");
   score.foot_slide = {at("foot_slide_of_truth_mm_s"), at("foot_slide_mm_s"), 4};
   score.bone_length_spread_mm = at("bone_length_spread_mm");
+  score.within_90 = at("within_90");
   return score;
 }
 

@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "numbered_report.hpp"
 
 namespace mcdbn {
@@ -114,6 +116,25 @@ TEST_CASE("verdicts: planted feet, samples and how alike clips are") {
   CHECK(alike(0.85, 0.41).kind == Kind::note);
   CHECK(alike(0.85, 0.41).text.find("less alike than") != std::string::npos);
   CHECK(alike(0.904, 0.1).text.find("about as alike as") != std::string::npos);
+}
+
+TEST_CASE("verdicts: how many 90 % intervals hold the truth") {
+  EvaluationReport report = duel({20, 0.9}, {25, 0.8}, "ridge_window");
+  const auto with = [&](double share) {
+    for (ReportClip& clip : report.clips) clip.samples[0].score.within_90 = share;
+    return report;
+  };
+  CHECK(says(with(0.851), Kind::good,
+             "Of 90 % intervals of the joints' places, 85.1 % hold the truth."));
+  CHECK(says(with(0.949), Kind::good,
+             "Of 90 % intervals of the joints' places, 94.9 % hold the truth."));
+  CHECK(
+      says(with(0.849), Kind::bad,
+           "Of 90 % intervals of the joints' places, 84.9 % hold the truth: they are too narrow."));
+  CHECK(says(with(0.951), Kind::bad,
+             "Of 90 % intervals of the joints' places, 95.1 % hold the truth: they are too wide."));
+  for (const Verdict& verdict : verdicts(with(NAN)))
+    CHECK(verdict.text.find("intervals") == std::string::npos);
 }
 
 TEST_CASE("verdicts: where a baseline is nearer on an action of several") {

@@ -45,6 +45,14 @@ TEST_CASE("joint uncertainty: the root's in the world, the others' from the root
   CHECK(found.col(5).isZero());
 }
 
+TEST_CASE("joint uncertainty: from another joint than the first") {
+  const MatrixD found = joint_uncertainty(bone(2, 5, 90), {bone(2, 8, 90), bone(4, 5, 90)}, 1);
+  // The hand where it is, at first 2 right of the root; the root from the hand.
+  CHECK(found(0, 3) == doctest::Approx(std::sqrt((9 + 4) / 2.0)));
+  CHECK(found(0, 0) == doctest::Approx(std::sqrt(4 / 2.0)));
+  CHECK(found(1, 1) == doctest::Approx(std::sqrt(4 / 2.0)));
+}
+
 TEST_CASE("joint uncertainty: without draws nothing, and draws of the clip's shape") {
   CHECK(joint_uncertainty(bone(2, 5, 90), {}).isZero());
   Motion shorter = bone(2, 5, 90);

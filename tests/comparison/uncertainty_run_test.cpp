@@ -1,0 +1,159 @@
+// How sure a test run's answers are, and how many of their intervals hold the truth.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "comparison/clip_files.hpp"
+#include "comparison/comparison_run.hpp"
+#include "device/every_device.hpp"
+#include "motion/body_size.hpp"
+#include "motion/joint_uncertainty.hpp"
+#include "motion/turned_motion.hpp"
+#include "motion_model/pose_priors.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+constexpr double kFps = 30;
+
+Motion clip_of(int frames, double pace) {
+  Motion motion = swinging(small_body(), frames, kFps * pace);
+  motion.frame_time_s = 1.0 / kFps;
+  return motion;
+}
+
+struct Scene : ClipFiles {
+  Scene()
+      : ClipFiles({{"08_01.bvh", clip_of(14, 1.0)}},
+                  {{"09_01.bvh", clip_of(12, 0.8)}, {"10_01.bvh", clip_of(17, 1.1)}},
+                  {35, 12, std::nullopt, 45, 1920, 1080}) {}
+
+  TestRunOptions options() const {
+    TestRunOptions options;
+    options.camera = model_view;
+    options.baselines.clear();
+    options.uncertainty_draws = {6, 40};
+    return options;
+  }
+};
+
+/// The fit once more, with that seed.
+FittedClip fit_of(const Model& model, const ClipResult& result, const TestRunOptions& options,
+                  std::uint64_t seed) {
+  KnownOfClip known;
+  known.skeleton = result.truth.motion.skeleton;
+  known.view = result.seen.view;
+  if (options.camera_known) {
+    known.camera = result.truth.camera;
+    known.camera->unit_m = 1.0 / file_units_per_metre(result.truth.motion.skeleton);
+  }
+  return fit_to_track(pose_prior(model.network, result.seen.features), model.modalities,
+                      result.seen.joints, known, options.fit, {6, seed});
+}
+
+/// Joint by joint, frame by frame, axis by axis.
+double share_by_hand(const ClipResult& result, const Regeneration& answer) {
+  const Skeleton& skeleton = answer.motion.skeleton;
+  const MatrixD truth = joint_positions(result.truth.motion),
+                other = joint_positions(answer.motion);
+  const double mm = 1000 / file_units_per_metre(skeleton);
+  int held = 0, all = 0;
+  for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
+    const Joint& judged = skeleton.joints[static_cast<std::size_t>(joint)];
+    // A joint that stands where its parent does is not judged.
+    if (judged.name == "Hips" || judged.offset.norm() == 0) continue;
+    for (Eigen::Index t = 0; t < truth.rows(); ++t)
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto from_hips = [&](const MatrixD& places) {
+          return mm * (places(t, 3 * joint + axis) - places(t, 3 * skeleton.find("Hips") + axis));
+        };
+        const double off = std::abs(from_hips(truth) - from_hips(other));
+        held += off <= 1.6448536 * answer.deviation_mm(t, 3 * joint + axis) ? 1 : 0;
+        ++all;
+      }
+  }
+  return static_cast<double>(held) / all;
+}
+
+double largest(const MatrixD& difference) {
+  return difference.cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+TEST_CASE("a test run draws of each clip by its own seed, and counts the intervals that hold") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const Model model = scene.model(device);
+    const TestRunOptions options = scene.options();
+    const auto results = run_test(model, scene.tests, options);
+    REQUIRE(results.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CAPTURE(i);
+      const Regeneration& answer = results[i].samples.at(0);
+      const Skeleton& skeleton = answer.motion.skeleton;
+      const FittedClip want = fit_of(model, results[i], options, 40 + i);
+      const MatrixD deviation_mm =
+          1000 / file_units_per_metre(skeleton) *
+          joint_uncertainty(want.motion, want.draws, skeleton.find("Hips"));
+      REQUIRE(answer.deviation_mm.rows() == answer.motion.frames());
+      CHECK(largest(answer.deviation_mm - deviation_mm) < 1e-9 * largest(deviation_mm));
+      CHECK(answer.score.within_90 == doctest::Approx(share_by_hand(results[i], answer)));
+      CHECK(answer.score.within_90 > 0);
+      CHECK(answer.score.within_90 < 1);
+    }
+  });
+}
+
+TEST_CASE("a test run draws of the single answer alone, and of none without a fit or draws") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const Model model = scene.model(device);
+    TestRunOptions options = scene.options();
+    options.baselines = {"mean_pose"};
+    options.regeneration.samples = 2;
+    options.regeneration.temperature = 0.5;
+    const auto drawn = run_test(model, scene.tests, options);
+    for (const Regeneration& sample : drawn[1].samples) {
+      CHECK(std::isnan(sample.score.within_90));
+      CHECK(sample.deviation_mm.size() == 0);
+    }
+    CHECK(std::isnan(drawn[1].others.at("mean_pose").score.within_90));
+    const MatrixD deviation_mm = drawn[1].others.at(kMeanField).deviation_mm;
+    CHECK(std::isfinite(drawn[1].others.at(kMeanField).score.within_90));
+    options.regeneration = {};
+    const auto alone = run_test(model, scene.tests, options);
+    CHECK(alone[1].samples.at(0).deviation_mm == deviation_mm);  // whatever else is drawn
+
+    options.fit.reset();
+    CHECK(std::isnan(run_test(model, scene.tests, options)[0].samples.at(0).score.within_90));
+    options = scene.options();
+    options.uncertainty_draws = {};
+    CHECK(std::isnan(run_test(model, scene.tests, options)[0].samples.at(0).score.within_90));
+  });
+}
+
+TEST_CASE("a test run whose camera nobody knows turns what it draws as it turns its answer") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const Model model = scene.model(device);
+    TestRunOptions options = scene.options();
+    options.camera.azimuth_deg = 120;
+    options.camera_known = false;
+    const ClipResult result = run_test(model, scene.tests, options)[0];
+    const Regeneration& answer = result.samples.at(0);
+    FittedClip want = fit_of(model, result, options, 40);
+    const Eigen::Matrix3d turn =
+        result.truth.camera.camera_from_world.transpose() * want.camera.camera_from_world;
+    for (Motion& draw : want.draws) draw = turned_motion(std::move(draw), turn);
+    const Motion turned = turned_motion(want.motion, turn);
+    const MatrixD deviation_mm =
+        1000 / file_units_per_metre(turned.skeleton) *
+        joint_uncertainty(turned, want.draws, turned.skeleton.find("Hips"));
+    CHECK(largest(answer.deviation_mm - deviation_mm) < 1e-9 * largest(deviation_mm));
+  });
+}
