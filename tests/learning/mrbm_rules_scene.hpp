@@ -6,9 +6,12 @@
 
 #include "learning/learning_rule.hpp"
 #include "learning/within_bounds.hpp"
+#include "reference/loss_error_bound.hpp"
 #include "reference/units_reference.hpp"
+#include "reference/update_error_bound.hpp"
 
-// Small MRBMs with data, and the chains of their rules in double precision with their own draws.
+// Small MRBMs with data, and the chains of their rules in double precision with their own draws
+// and bounds on what single precision makes of them.
 namespace mcdbn::test {
 
 constexpr VisibleKind kBinary = VisibleKind::binary, kGaussian = VisibleKind::gaussian;
@@ -40,56 +43,73 @@ struct Scene {
   reference::Mrbm model;
 };
 
-/// Chains in double precision. The smallest distance of a probability from its uniform number says
-/// whether rounding could decide a draw.
-struct ReferenceChain {
-  const Scene& scene;
-  const MrbmSettings& settings;
-  double closest = 1.0;
-  MatrixD hidden_data, hidden, sample;
-  std::vector<MatrixD> data, end;
+/// Sums of a gradient's terms over chains, of which the mean is taken.
+struct GradientSums {
+  std::vector<reference::Sum> W, a;
+  reference::Sum b;
 
-  ReferenceChain(const Scene& of, const MrbmSettings& with) : scene(of), settings(with) {
-    for (const MatrixF& code : of.codes) data.push_back(code.cast<double>());
-  }
-
-  MatrixD drawn(const MatrixD& p, RandomKey key) {
-    MatrixD result(p.rows(), p.cols());
-    for (Eigen::Index r = 0; r < p.rows(); ++r)
-      for (Eigen::Index c = 0; c < p.cols(); ++c) {
-        const double u =
-            random_uniform(key, static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c));
-        closest = std::min(closest, std::abs(u - p(r, c)));
-        result(r, c) = u < p(r, c) ? 1.0 : 0.0;
-      }
+  explicit GradientSums(std::size_t modalities) : W(modalities), a(modalities) {}
+  reference::BoundedMrbm mean(std::size_t rows) {
+    const auto count = static_cast<double>(rows);
+    reference::BoundedMrbm result;
+    for (std::size_t m = 0; m < W.size(); ++m) {
+      result.weights.push_back(W[m].divide(count).result());
+      result.visible_bias.push_back(a[m].divide(count).result());
+    }
+    result.hidden_bias = b.divide(count).result();
     return result;
   }
-  MatrixD hidden_of(const std::vector<MatrixD>& units) const {
-    MatrixD input = scene.model.hidden_bias.replicate(units[0].rows(), 1);
-    for (std::size_t m = 0; m < units.size(); ++m) input += units[m] * scene.model.weights[m];
-    return reference::sigmoid(input);
+};
+
+/// Chains in double precision beside bounds on the device's error. Rounding must decide no draw:
+/// its chain would be left without a useful bound.
+struct ReferenceChain {
+  using Bounded = reference::Bounded;
+  using Sum = reference::Sum;
+
+  MrbmSettings settings;
+  reference::BoundedMrbm model;
+  Bounded hidden_data, hidden, sample;
+  std::vector<Bounded> data, end;
+
+  ReferenceChain(const Scene& of, const MrbmSettings& with)
+      : ReferenceChain(of, with, reference::BoundedMrbm::exact(of.model)) {}
+  /// @param start what a training has made of the scene's model
+  ReferenceChain(const Scene& of, const MrbmSettings& with, reference::BoundedMrbm start)
+      : settings(with), model(std::move(start)) {
+    for (const MatrixF& code : of.codes) data.push_back(Bounded::exact(code.cast<double>()));
   }
-  MatrixD visible_of(std::size_t m, RandomKey key) {
-    const MatrixD input = reference::plus_row(sample * scene.model.weights[m].transpose(),
-                                              scene.model.visible_bias[m]);
-    const MatrixD mean = scene.model.is_gaussian(m) ? input : reference::sigmoid(input);
+
+  static Bounded drawn(const Bounded& p, const RandomKey& key) {
+    const Bounded draws = reference::bernoulli(p, numbers(p.value, key, random_uniform));
+    REQUIRE(draws.bound.maxCoeff() == 0.0);
+    return draws;
+  }
+  Bounded hidden_input(const std::vector<Bounded>& units) const {
+    Sum input;
+    for (std::size_t m = 0; m < units.size(); ++m) input.add_product(units[m], model.weights[m]);
+    return input.add_row(model.hidden_bias).result();
+  }
+  Bounded visible_of(std::size_t m, const RandomKey& key) const {
+    const Bounded input = Sum()
+                              .add_product(sample, model.weights[m].transposed())
+                              .add_row(model.visible_bias[m])
+                              .result();
+    const Bounded mean = model.gaussian[m] ? input : reference::sigmoid(input);
     if (!settings.sample_visible) return mean;
-    if (!scene.model.is_gaussian(m)) return drawn(mean, key);
-    return mean + MatrixD::NullaryExpr(mean.rows(), mean.cols(), [&](auto r, auto c) {
-             return random_normal(key, static_cast<std::uint32_t>(r),
-                                  static_cast<std::uint32_t>(c));
-           });
+    if (!model.gaussian[m]) return drawn(mean, key);
+    return reference::gaussian(mean, numbers(mean.value, key, random_normal));
   }
 
   /// The codes, 0 or 1 as their probabilities have it.
   void draw_data(RandomKey key) {
     for (std::size_t m = 0; m < data.size(); ++m) {
       key.phase = static_cast<std::uint16_t>(0x1000 + m);
-      if (!scene.model.is_gaussian(m)) data[m] = drawn(data[m], key);
+      if (!model.gaussian[m]) data[m] = drawn(data[m], key);
     }
   }
   void start(const RandomKey& key) {
-    hidden_data = hidden_of(data);
+    hidden_data = reference::sigmoid(hidden_input(data));
     sample = drawn(hidden_data, key);
   }
   void run(const std::vector<std::size_t>& free, const RandomKey& key, bool draw_last = false) {
@@ -100,37 +120,61 @@ struct ReferenceChain {
         own.phase = static_cast<std::uint16_t>(0x1000 + k * data.size() + m);
         end[m] = visible_of(m, own);
       }
-      hidden = hidden_of(end);
+      hidden = reference::sigmoid(hidden_input(end));
       RandomKey own = key;
       own.phase = static_cast<std::uint16_t>(k);
       if (k < settings.gibbs_steps || draw_last) sample = drawn(hidden, own);
     }
   }
-  /// Adds what rows of these weights give.
-  void add(const Eigen::VectorXd& weights, reference::Mrbm& gradient) const {
-    const MatrixD h_end = weights.asDiagonal() * hidden,
-                  h_data = weights.asDiagonal() * hidden_data;
+  /// Every modality is free.
+  void run_all(const RandomKey& key, bool draw_last = false) {
+    std::vector<std::size_t> all(data.size());
+    std::iota(all.begin(), all.end(), 0);
+    run(all, key, draw_last);
+  }
+  /// Adds what these rows give. @param rows 1 for each that counts, else 0; none: all
+  void add_to(GradientSums& sums, const Eigen::VectorXd& rows = {}) const {
+    const auto of_rows = [&](const Bounded& x) {
+      if (rows.size() == 0) return x;
+      return Bounded{rows.asDiagonal() * x.value, rows.asDiagonal() * x.bound};
+    };
+    const Bounded h_end = of_rows(hidden), h_data = of_rows(hidden_data);
     for (std::size_t m = 0; m < data.size(); ++m) {
-      gradient.weights[m] += end[m].transpose() * h_end - data[m].transpose() * h_data;
-      gradient.visible_bias[m] += weights.transpose() * (end[m] - data[m]);
+      sums.W[m].add_product(end[m].transposed(), h_end);
+      sums.W[m].add_product(-data[m].transposed(), h_data);
+      sums.a[m].add_column_sum(of_rows(end[m])).add_column_sum(-of_rows(data[m]));
     }
-    gradient.hidden_bias += (h_end - h_data).colwise().sum();
+    sums.b.add_column_sum(h_end).add_column_sum(-h_data);
+  }
+  /// The gradient of all rows of this chain alone.
+  reference::BoundedMrbm gradient() const {
+    GradientSums sums(data.size());
+    add_to(sums);
+    return sums.mean(static_cast<std::size_t>(hidden.value.rows()));
+  }
+  /// Mean squared error of modality m's reconstruction. [1 x 1]
+  Bounded loss(std::size_t m) const {
+    return divided(reference::squared_error(end[m], data[m]),
+                   static_cast<double>(data[m].value.size()));
   }
   /// What of the free energy changes with modality m.
-  Eigen::VectorXd energy(std::size_t m, const std::vector<MatrixD>& units) const {
-    MatrixD input = scene.model.hidden_bias.replicate(units[0].rows(), 1);
-    for (std::size_t i = 0; i < units.size(); ++i) input += units[i] * scene.model.weights[i];
-    const Eigen::VectorXd hidden_part = -(1.0 + input.array().exp()).log().matrix().rowwise().sum();
-    if (!scene.model.is_gaussian(m))
-      return hidden_part - units[m] * scene.model.visible_bias[m].transpose();
-    return hidden_part +
-           0.5 * (units[m].rowwise() - scene.model.visible_bias[m]).rowwise().squaredNorm();
+  Eigen::VectorXd energy(std::size_t m, const std::vector<Bounded>& units) const {
+    const Eigen::VectorXd hidden_part =
+        -reference::softplus(hidden_input(units).value).rowwise().sum();
+    const RowVectorD bias = model.visible_bias[m].value;
+    if (!model.gaussian[m]) return hidden_part - units[m].value * bias.transpose();
+    return hidden_part + 0.5 * (units[m].value.rowwise() - bias).rowwise().squaredNorm();
+  }
+
+ private:
+  /// Random numbers in the shape of `like`.
+  template <typename Draw>
+  static MatrixD numbers(const MatrixD& like, const RandomKey& key, const Draw& draw) {
+    return MatrixD::NullaryExpr(like.rows(), like.cols(), [&](auto r, auto c) -> double {
+      return draw(key, static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c));
+    });
   }
 };
-
-inline reference::Mrbm zeros_like(const reference::Mrbm& model) {
-  return model.with_parameters(Eigen::VectorXd::Zero(model.flattened().size()));
-}
 
 /// Runs `rule` on all rows, `steps` times, each with the next key. @return its last losses
 inline std::vector<float> run(Device& device, const Scene& scene, LearningRule& rule,
@@ -149,15 +193,6 @@ inline std::vector<float> run(Device& device, const Scene& scene, LearningRule& 
     rule.learn(rows, step, losses);
   }
   return losses.read_and_reset();
-}
-
-inline void check_close(const MrbmParameters& got, const reference::Mrbm& want) {
-  for (std::size_t m = 0; m < got.W.size(); ++m) {
-    CAPTURE(m);
-    CHECK((got.W[m].cast<double>() - want.weights[m]).cwiseAbs().maxCoeff() < 2e-6);
-    CHECK((got.a[m].cast<double>() - want.visible_bias[m]).cwiseAbs().maxCoeff() < 2e-6);
-  }
-  CHECK((got.b.cast<double>() - want.hidden_bias).cwiseAbs().maxCoeff() < 2e-6);
 }
 
 inline const Scene& two() {

@@ -119,6 +119,17 @@ BoundedMultiPrediction bounded_multi_prediction(const BoundedMrbm& model,
   return result;
 }
 
+void bounded_momentum_update(BoundedMrbm& model, BoundedMrbm& velocity, const BoundedMrbm& gradient,
+                             const UpdateRule& rule) {
+  for (std::size_t m = 0; m < model.weights.size(); ++m) {
+    bounded_momentum_update(model.weights[m], velocity.weights[m], -gradient.weights[m], rule);
+    bounded_momentum_update(model.visible_bias[m], velocity.visible_bias[m],
+                            -gradient.visible_bias[m], rule.without_decay());
+  }
+  bounded_momentum_update(model.hidden_bias, velocity.hidden_bias, -gradient.hidden_bias,
+                          rule.without_decay());
+}
+
 void bounded_adam_update(BoundedMrbm& model, BoundedMrbm& mean, BoundedMrbm& square,
                          const BoundedMrbm& gradient, const UpdateRule& rule, int step) {
   UpdateRule biases = rule;

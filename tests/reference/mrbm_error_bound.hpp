@@ -27,7 +27,9 @@ struct BoundedMultiPrediction {
 BoundedMultiPrediction bounded_multi_prediction(const BoundedMrbm& model,
                                                 const std::vector<MatrixD>& batch, int steps);
 
-/// Adam's update of every parameter, biases without decay.
+/// One step of every parameter down its gradient, biases without decay.
+void bounded_momentum_update(BoundedMrbm& model, BoundedMrbm& velocity, const BoundedMrbm& gradient,
+                             const UpdateRule& rule);
 void bounded_adam_update(BoundedMrbm& model, BoundedMrbm& mean, BoundedMrbm& square,
                          const BoundedMrbm& gradient, const UpdateRule& rule, int step);
 
