@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "corpus/corpus_survey.hpp"
+#include "mcdbn/formats/joint_map.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 
 struct CorpusOptions {
   std::vector<fs::path> data;
-  fs::path list;
+  fs::path list, joint_map;
 };
 
 /// Clips that something is the same of.
@@ -102,7 +103,9 @@ void print_table(const std::vector<SurveyedClip>& clips, const Amount& usable) {
 }
 
 void run_corpus(const CommandContext& context, const CorpusOptions& options) {
-  const std::vector<SurveyedClip> clips = survey(find_listed_clips(options.data));
+  const JointMap joint_map =
+      options.joint_map.empty() ? JointMap() : read_joint_map(options.joint_map);
+  const std::vector<SurveyedClip> clips = survey(find_listed_clips(options.data), {}, joint_map);
   Amount usable;
   std::vector<ListedClip> listed;
   for (const SurveyedClip& clip : clips)
@@ -136,6 +139,11 @@ void add_corpus_command(CLI::App& app, CommandContext& context) {
                   "Also write a list that `train` takes, TOML: the clips that can be brought onto "
                   "the canonical humanoid, with person and action, which may be changed there"),
               context)
+      ->type_name("FILE");
+  command
+      ->add_option("--joint-map", options->joint_map,
+                   "TOML file of role = \"joint name\", for skeletons whose names tell too little; "
+                   "`train` takes it too (docs/joints.md)")
       ->type_name("FILE");
   add_json_option(*command, context);
   add_quiet_option(*command, context);

@@ -9,12 +9,15 @@
 
 #include "commands.hpp"
 #include "comparison/sweep.hpp"
+#include "default_model.hpp"
 #include "epoch_progress.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
+#include "mcdbn/motion/humanoid.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "mcdbn/motion_model/training_run.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
+#include "mcdbn/motion_model/training_start.hpp"
 #include "setting_flags.hpp"
 #include "training_options.hpp"
 
@@ -24,16 +27,15 @@ namespace {
 struct TrainOptions {
   std::vector<std::filesystem::path> data;
   std::filesystem::path run, resume;
-  std::filesystem::path sweep;
+  std::filesystem::path sweep, from;
   bool force = false, print_settings = false;
   TrainingOptions settings;
   CheckpointSettings checkpoints;
 };
 
-std::vector<LoadedClip> read_clips(const std::vector<ListedClip>& files,
-                                   const TrainingConfig& config) {
+ClipStore read_clips(const RunFolder& run) {
   std::vector<std::string> notices;
-  std::vector<LoadedClip> clips = load_training_clips(files, config, &notices);
+  ClipStore clips = cached_training_clips(run.clips(), run.config(), run.clip_cache(), &notices);
   for (const std::string& notice : notices) spdlog::warn("{}", with_flags(notice));
   return clips;
 }
@@ -61,16 +63,20 @@ void resumable(RunFolder& run, const Train& train) {
 void train_run(const CommandContext& context, Device& device, const TrainOptions& options,
                RunFolder& run) {
   const TrainingConfig& config = run.config();
-  std::vector<LoadedClip> clips = read_clips(run.clips(), config);
-  const TrainingSet data = make_training_set(clips, config);
-  spdlog::info("{} clips, {} frames at {:g} fps on {}; 3D {} values a frame, 2D {}",
-               data.clips.size(), data.frames(), config.fps, device.info().name,
+  std::optional<Model> start;
+  if (run.started_from()) start = load_model(device, run.start_model());
+  const ClipStore clips = read_clips(run);
+  const TrainingSet data = start ? make_training_set(clips, start->modalities, config)
+                                 : make_training_set(clips, config);
+  spdlog::info("{} clips, {:.0f} frames at {:g} fps on {}; 3D {} values a frame, 2D {}",
+               clips.count(), clips.frames_at(config.fps), config.fps, device.info().name,
                data.modalities.pose_scale.output_dimension(),
                data.modalities.track_scale.output_dimension());
   ProgressLine progress(context.quiet);
   const TrainedRun trained = train_to_folder(
-      device, data, std::move(clips), run, options.checkpoints,
-      {shown_on(progress), [](const std::string& text) { spdlog::warn("{}", with_flags(text)); }});
+      device, data, clips, run, options.checkpoints,
+      {shown_on(progress), [](const std::string& text) { spdlog::warn("{}", with_flags(text)); }},
+      start ? &*start : nullptr);
   if (const auto& stopped = trained.model.early_stopping)
     spdlog::info("{} kept out to stop early: stopped after {} of {} mini-batches",
                  fmt::join(stopped->held_out, ", "), stopped->steps, config.fine_tuning.steps);
@@ -139,6 +145,21 @@ void train_sweep(const CommandContext& context, Device& device, const TrainOptio
   for (const nlohmann::ordered_json& record : records) print_record(record);
 }
 
+/// The model file that --from means; empty where nobody said one.
+std::filesystem::path start_of(const TrainOptions& options) {
+  return options.from == "default" ? model_or_default({}) : options.from;
+}
+
+/// The settings of a training that starts from that model.
+TrainingConfig config_from(const Model& start, const TrainingOptions& settings) {
+  TrainingConfig config = settings.resolve({}, settings_of_start(start));
+  if (config.skeleton == SkeletonUse::shared)
+    config.skeleton = is_humanoid(start.modalities.pose_features.skeleton()) ? SkeletonUse::humanoid
+                                                                             : SkeletonUse::own;
+  check_start(start, config);
+  return config;
+}
+
 void run_train(const CommandContext& context, const TrainOptions& options,
                const CLI::App& command) {
   if (!options.resume.empty()) {
@@ -151,16 +172,18 @@ void run_train(const CommandContext& context, const TrainOptions& options,
   }
   if (options.data.empty() || options.run.empty())
     throw ConfigError("clips to train on and --output RUN are wanted, or --resume RUN");
-  const TrainingConfig config = options.settings.resolve();
+  if (!options.from.empty() && !options.sweep.empty())
+    throw ConfigError("--sweep compares trainings from nothing; leave --from out");
+  TrainingConfig config = options.settings.resolve();
   const auto clips = find_listed_clips(options.data);
   std::optional<SweepFile> sweep;
   if (!options.sweep.empty()) sweep = read_sweep_file(options.sweep);
   Device device = Device::open({context.platform, context.device});
-  if (sweep)
-    train_sweep(context, device, options, clips, *sweep);
-  else
-    train_once(context, device, options,
-               RunFolder::begin(options.run, config, clips, options.force));
+  if (sweep) return train_sweep(context, device, options, clips, *sweep);
+  const std::filesystem::path from = start_of(options);
+  if (!from.empty()) config = config_from(load_model(device, from), options.settings);
+  train_once(context, device, options,
+             RunFolder::begin(options.run, config, clips, options.force, from));
 }
 
 }  // namespace
@@ -184,6 +207,12 @@ void add_train_command(CLI::App& app, CommandContext& context) {
           "TOML file of configurations to train and compare; RUN holds one folder for each, "
           "and sweep.jsonl. Run again, it goes on where it stopped")
       ->type_name("FILE");
+  command
+      ->add_option("--from", options->from,
+                   "Model to start from, in place of random weights: with its sizes, joints, "
+                   "features and scaling, by fine-tuning alone; `default`: the general one that "
+                   "comes with the program")
+      ->type_name("FILE|default");
   options->settings.add_to(*command);
   command->add_flag("--print-settings", options->print_settings,
                     "Print every setting as it would be, in a file for --config, and do no more");
@@ -200,6 +229,7 @@ void add_train_command(CLI::App& app, CommandContext& context) {
       "Example:\n  mcdbn-cl train walks/ -o run\n"
       "  mcdbn-cl train walks/ -o run --hidden 200 --gaussian-epochs 50 --platform Portable\n"
       "  mcdbn-cl train --resume run\n"
+      "  mcdbn-cl train waves/ -o run --from default --tracks detector --fine-tuning-steps 500\n"
       "  mcdbn-cl train walks/ -o sweep --sweep sweep.toml\n"
       "A sweep file: test = ['held_out/'] and [grid] with order = [3, 5], hidden = [100, 300] …, "
       "all\n"

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "mcdbn/formats/joint_map.hpp"
 #include "setting_flags.hpp"
 
 namespace mcdbn::cli {
@@ -50,6 +51,14 @@ void TrainingOptions::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"own", "canonical"}));
   command
       .add_option_function<std::filesystem::path>(
+          "--joint-map",
+          [this](const std::filesystem::path& file) { joint_map_ = read_joint_map(file); },
+          "TOML file of role = \"joint name\", for skeletons whose names tell too little; the "
+          "clips "
+          "are brought onto the canonical humanoid then (docs/joints.md)")
+      ->type_name("FILE");
+  command
+      .add_option_function<std::filesystem::path>(
           "--config",
           [this](const std::filesystem::path& file) { file_ = read_settings_file(file); },
           "TOML file of settings; flags override it")
@@ -78,8 +87,12 @@ void TrainingOptions::add_setting(CLI::App& command, const Setting& setting,
     add(flag_of(former), kHidden);
 }
 
-TrainingConfig TrainingOptions::resolve(const std::vector<SaidSetting>& last) const {
+TrainingConfig TrainingOptions::resolve(const std::vector<SaidSetting>& last,
+                                        const std::vector<SaidSetting>& start) const {
   const auto applied_to = [&](TrainingConfig config) {
+    if (!start.empty()) config.fine_tuning.from_greedy = false;
+    config.joint_map = joint_map_;
+    assign_settings(config, start);
     assign_settings(config, file_);
     assign_settings(config, flags_);
     apply_stages(config);

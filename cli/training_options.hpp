@@ -15,8 +15,11 @@ class TrainingOptions {
   /// --preset, --stages, --tracks, --config and a flag for every setting of TrainingConfig.
   void add_to(CLI::App& command);
   /// @param last the last word
+  /// @param start what a model to start from says, before files and flags; the greedy stages are
+  ///        left out then, unless --stages names them
   /// @throws ConfigError
-  TrainingConfig resolve(const std::vector<SaidSetting>& last = {}) const;
+  TrainingConfig resolve(const std::vector<SaidSetting>& last = {},
+                         const std::vector<SaidSetting>& start = {}) const;
 
  private:
   void add_setting(CLI::App& command, const Setting& setting, const nlohmann::json& usual);
@@ -26,6 +29,7 @@ class TrainingOptions {
 
   std::string preset_ = "default", stages_, tracks_ = "exact", skeleton_;
   std::vector<SaidSetting> file_, flags_;
+  JointMap joint_map_;
 };
 
 }  // namespace mcdbn::cli

@@ -19,6 +19,7 @@
 #include "mcdbn/corpus/augmentation.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/corpus/clip_list.hpp"
+#include "mcdbn/corpus/clip_store.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/corpus/training_set.hpp"
 #include "mcdbn/device/device.hpp"
@@ -81,4 +82,5 @@
 #include "mcdbn/motion_model/training_run.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
+#include "mcdbn/motion_model/training_start.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"

@@ -34,6 +34,7 @@ inline constexpr std::uint16_t kRandomCamera = 209;
 inline constexpr std::uint16_t kOtherBody = 213;
 inline constexpr std::uint16_t kNewPoses = 214;        ///< of augmented views
 inline constexpr std::uint16_t kPosteriorDraws = 215;  ///< of the fit
+inline constexpr std::uint16_t kFreshViews = 216;
 // Of a single machine (machines/sampling.hpp, energy.hpp, partition.hpp).
 inline constexpr std::uint16_t kChains = 210;
 inline constexpr std::uint16_t kFlippedUnits = 211;

@@ -23,18 +23,18 @@ using nlohmann::ordered_json;
 /// No configuration is charged for compiling.
 void build_kernels(Device& device, const std::vector<ListedClip>& files,
                    const TrainingConfig& config, const Sweep::Watch& watch) {
-  std::vector<LoadedClip> clips = load_training_clips(files, config);
+  const ClipStore clips = load_training_clips(files, config);
   const TrainingSet data = make_training_set(clips, config);
-  train_model(device, data, std::move(clips), config, watch ? watch(false) : EpochObserver());
+  train_model(device, data, clips, config, watch ? watch(false) : EpochObserver());
 }
 
 TrainedRun trained_run(Device& device, const std::vector<ListedClip>& files,
                        const TrainingConfig& config, const fs::path& folder,
                        const Sweep::Watch& watch) {
   RunFolder run = RunFolder::begin(folder, config, files, true);
-  std::vector<LoadedClip> clips = load_training_clips(files, config);
+  const ClipStore clips = load_training_clips(files, config);
   const TrainingSet data = make_training_set(clips, config);
-  return train_to_folder(device, data, std::move(clips), run, {},
+  return train_to_folder(device, data, clips, run, {},
                          {.epoch = watch ? watch(true) : EpochObserver()});
 }
 

@@ -1,5 +1,6 @@
 #include "comparison/training_views.hpp"
 
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
@@ -15,9 +16,16 @@ void add_training_views(const Model& model, TestRunOptions& run) {
     if (files.empty() || files.back() != clip.path) files.emplace_back(clip.path);
   }
   std::vector<LoadedClip> clips = load_clips(files, config.keep_first_frame);
-  for (LoadedClip& clip : clips)
-    clip.motion = for_skeleton(std::move(clip.motion), model.modalities.pose_features.skeleton());
-  TrainingSet views = make_augmented_views(clips, model.modalities, config);
+  try {
+    for (LoadedClip& clip : clips)
+      clip.motion = for_skeleton(std::move(clip.motion), model.modalities.pose_features.skeleton());
+  } catch (const InputError&) {  // a joint map told its roles
+    return;
+  }
+  const ClipStore store(std::move(clips));
+  TrainingSet views = learns_from_fresh_views(store, config)
+                          ? some_fresh_views(store, model.modalities, config)
+                          : make_augmented_views(store, model.modalities, config);
   run.view_tracks = std::move(views.tracks);
   run.view_poses = std::move(views.poses);
 }

@@ -9,6 +9,7 @@
 #include "base/interruption.hpp"
 #include "base/text_file.hpp"
 #include "base/user_cache.hpp"
+#include "corpus/clip_notices.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/motion_file.hpp"
 #include "mcdbn/motion/frame_rate.hpp"
@@ -37,20 +38,16 @@ std::vector<fs::path> clips_below(const fs::path& folder) {
 
 /// What ClipOptions say is done to a clip that was read.
 Motion prepared(Motion motion, const fs::path& path, const ClipOptions& options,
-                std::vector<std::string>* notices) {
+                ClipNotices& notices) {
   if (!options.keep_first_frame && has_leading_calibration_pose(motion)) {
     motion = without_first_frame(motion);
-    if (notices) {
-      notices->push_back(fmt::format(
-          "{}: dropped the calibration pose of the first frame (`keep-first-frame` keeps it)",
-          path.string()));
-    }
+    notices.add_calibration_pose(path);
   }
   if (motion.frames() == 0) {
     throw InputError(fmt::format("{}: has no frame; use a file with motion", path.string()));
   }
-  if (notices && !kUsualFrameRate_hz.contains(motion.fps()))
-    notices->push_back(
+  if (!kUsualFrameRate_hz.contains(motion.fps()))
+    notices.lines.push_back(
         fmt::format("{}: it has {:.4g} frames a second; correct it if that is not so",
                     path.string(), motion.fps()));
   const bool resampling = options.fps > 0 && std::abs(options.fps - motion.fps()) > kSameRate_hz;
@@ -63,24 +60,49 @@ TrainingClip identified(const fs::path& path, const std::string& text) {
 
 }  // namespace
 
+void ClipNotices::add_calibration_pose(const fs::path& file) {
+  if (posed_++ == 0) first_posed_ = file;
+}
+
+void ClipNotices::add(const ClipNotices& others) {
+  lines.insert(lines.end(), others.lines.begin(), others.lines.end());
+  if (posed_ == 0) first_posed_ = others.first_posed_;
+  posed_ += others.posed_;
+}
+
+void ClipNotices::tell(std::vector<std::string>& notices) const {
+  notices.insert(notices.end(), lines.begin(), lines.end());
+  if (posed_ == 0) return;
+  const std::string whose = posed_ == 1 ? first_posed_.string() : fmt::format("{} clips", posed_);
+  notices.push_back(fmt::format(
+      "{}: dropped the calibration pose of the first frame (`keep-first-frame` keeps it)", whose));
+}
+
 Motion load_clip(const fs::path& path, const ClipOptions& options,
                  std::vector<std::string>* notices) {
   if (options.fps != 0) check_range("`fps`, if not 0,", kFrameRate_hz, options.fps);
-  return prepared(read_motion(path, notices), path, options, notices);
+  ClipNotices found;
+  Motion motion = prepared(read_motion(path, &found.lines), path, options, found);
+  if (notices) found.tell(*notices);
+  return motion;
+}
+
+LoadedClip load_clip_as_is(const fs::path& file, bool keep_first_frame, ClipNotices& notices) {
+  const std::string text = read_text_file(file);
+  return {identified(file, text),
+          prepared(parse_motion(text, file, &notices.lines), file,
+                   {.fps = 0, .keep_first_frame = keep_first_frame}, notices)};
 }
 
 std::vector<LoadedClip> load_clips(const std::vector<fs::path>& files, bool keep_first_frame,
                                    std::vector<std::string>* notices) {
   std::vector<LoadedClip> clips;
+  ClipNotices found;
   for (const fs::path& file : files) {
     check_interruption();
-    const std::string text = read_text_file(file);
-    clips.push_back({identified(file, text),
-                     prepared(parse_motion(text, file, notices), file,
-                              {.fps = 0, .keep_first_frame = keep_first_frame}, notices),
-                     {},
-                     {}});
+    clips.push_back(load_clip_as_is(file, keep_first_frame, found));
   }
+  if (notices) found.tell(*notices);
   return clips;
 }
 

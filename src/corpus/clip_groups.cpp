@@ -1,19 +1,29 @@
 #include "corpus/clip_groups.hpp"
 
 #include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "corpus/people.hpp"
 
 namespace mcdbn {
 
-ClipGroups::ClipGroups(const std::vector<LoadedClip>& clips)
+ClipGroups::ClipGroups(const ClipStore& clips)
     : actions_said_(std::ranges::any_of(
-          clips, [](const LoadedClip& loaded) { return !loaded.action.empty(); })) {}
+          clips.records(), [](const ClipRecord& record) { return !record.action.empty(); })) {
+  PeopleCount count;
+  std::map<std::pair<std::size_t, std::string>, std::size_t> numbers;
+  for (const ClipRecord& record : clips.records()) {
+    people_.push_back(count.number_of(record.skeleton, record.person));
+    groups_.push_back(
+        numbers.try_emplace({people_.back(), record.action}, numbers.size()).first->second);
+  }
+}
 
-void ClipGroups::add(const LoadedClip& clip, std::size_t sequences, TrainingSet& set) {
-  const std::size_t person = people_.number_of(clip.motion.skeleton, clip.person);
-  set.people.insert(set.people.end(), sequences, person);
-  if (!actions_said_) return;
-  const auto group = groups_.try_emplace({person, clip.action}, groups_.size()).first;
-  set.groups.insert(set.groups.end(), sequences, group->second);
+void ClipGroups::add(std::size_t clip, std::size_t sequences, TrainingSet& set) const {
+  set.people.insert(set.people.end(), sequences, people_[clip]);
+  if (actions_said_) set.groups.insert(set.groups.end(), sequences, groups_[clip]);
 }
 
 }  // namespace mcdbn

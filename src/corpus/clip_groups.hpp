@@ -1,12 +1,8 @@
 #pragma once
 
-#include <map>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "corpus/people.hpp"
-#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/corpus/clip_store.hpp"
 #include "mcdbn/corpus/training_set.hpp"
 
 namespace mcdbn {
@@ -14,13 +10,17 @@ namespace mcdbn {
 /// Numbers who is seen in clips, and who does what where somebody said actions.
 class ClipGroups {
  public:
-  explicit ClipGroups(const std::vector<LoadedClip>& clips);
+  explicit ClipGroups(const ClipStore& clips);
+
+  /// Of each clip, counted from 0.
+  const std::vector<std::size_t>& people() const { return people_; }
+  /// A number for each person and action, or people() where nobody said actions.
+  const std::vector<std::size_t>& groups() const { return actions_said_ ? groups_ : people_; }
   /// TrainingSet::people and ::groups of a clip's sequences.
-  void add(const LoadedClip& clip, std::size_t sequences, TrainingSet& set);
+  void add(std::size_t clip, std::size_t sequences, TrainingSet& set) const;
 
  private:
-  PeopleCount people_;
-  std::map<std::pair<std::size_t, std::string>, std::size_t> groups_;
+  std::vector<std::size_t> people_, groups_;
   bool actions_said_;
 };
 

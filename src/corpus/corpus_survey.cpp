@@ -131,7 +131,8 @@ struct Seen {
   PeopleCount people;
 };
 
-void describe(Motion motion, const SurveyLimits& limits, Seen& seen, SurveyedClip& result) {
+void describe(Motion motion, const SurveyLimits& limits, const JointMap& joint_map, Seen& seen,
+              SurveyedClip& result) {
   result.frames = motion.frames();
   result.fps = motion.fps();
   result.skeleton = seen.skeletons.number_of(motion.skeleton);
@@ -149,7 +150,7 @@ void describe(Motion motion, const SurveyLimits& limits, Seen& seen, SurveyedCli
     motion = without_first_frame(motion);
   }
   try {
-    const HumanoidRig rig = rig_of_person(motion);
+    const HumanoidRig rig = rig_of_person(motion, joint_map);
     result.error = retarget_error(rig, motion);
     for (ClipProblem& problem : motion_problems(motion, rig.roles(), limits))
       result.problems.push_back(std::move(problem));
@@ -193,7 +194,8 @@ std::vector<ClipProblem> motion_problems(const Motion& motion, const SkeletonRol
   return problems;
 }
 
-std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips, const SurveyLimits& limits) {
+std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips, const SurveyLimits& limits,
+                                 const JointMap& joint_map) {
   std::vector<SurveyedClip> surveyed;
   Seen seen;
   for (const ListedClip& clip : clips) {
@@ -204,7 +206,7 @@ std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips, const Sur
     try {
       Motion motion = read_motion(clip.file);
       if (motion.frames() == 0) throw InputError("has no frame");
-      describe(std::move(motion), limits, seen, result);
+      describe(std::move(motion), limits, joint_map, seen, result);
     } catch (const InputError& error) {
       result.problems.push_back({Kind::unreadable, error.what()});
     }

@@ -42,8 +42,9 @@ struct SurveyLimits {
 };
 
 /// Reads every clip; what cannot be read is a problem of that clip.
+/// @param joint_map roles of clips' joints, said by hand
 std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips,
-                                 const SurveyLimits& limits = {});
+                                 const SurveyLimits& limits = {}, const JointMap& joint_map = {});
 
 /// The problems of a motion that is read, of a person whose joints have roles.
 std::vector<ClipProblem> motion_problems(const Motion& motion, const SkeletonRoles& roles,

@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 
+#include "corpus/clip_groups.hpp"
+
 namespace mcdbn {
 namespace {
 
@@ -21,25 +23,44 @@ TrainingSet selected(const TrainingSet& views, std::size_t person, bool that_per
   return result;
 }
 
-}  // namespace
+/// What there is of a person.
+struct Amount {
+  std::set<std::string> clips;
+  double duration = 0;
+};
 
-std::optional<std::size_t> person_to_hold_out(const TrainingSet& views, std::size_t fewest_people) {
-  struct Amount {
-    std::set<std::string> clips;
-    Eigen::Index frames = 0;
-  };
-  std::map<std::size_t, Amount> people;
-  for (std::size_t i = 0; i < views.people.size(); ++i) {
-    people[views.people[i]].clips.insert(views.clips[i].path);
-    people[views.people[i]].frames += views.poses[i].rows();
-  }
+std::optional<std::size_t> missed_least(const std::map<std::size_t, Amount>& people,
+                                        std::size_t fewest_people) {
   if (fewest_people == 0 || people.size() < std::max<std::size_t>(fewest_people, 2)) return {};
   // Fewest frames first; one with a single clip only where nobody has more.
   const auto missed_less = [](const auto& x, const auto& y) {
     const bool x_single = x.second.clips.size() < 2, y_single = y.second.clips.size() < 2;
-    return x_single != y_single ? y_single : x.second.frames < y.second.frames;
+    return x_single != y_single ? y_single : x.second.duration < y.second.duration;
   };
   return std::min_element(people.begin(), people.end(), missed_less)->first;
+}
+
+}  // namespace
+
+std::optional<std::size_t> person_to_hold_out(const TrainingSet& views, std::size_t fewest_people) {
+  std::map<std::size_t, Amount> people;
+  for (std::size_t i = 0; i < views.people.size(); ++i) {
+    Amount& amount = people[views.people[i]];
+    amount.clips.insert(views.clips[i].path);
+    amount.duration += static_cast<double>(views.poses[i].rows());
+  }
+  return missed_least(people, fewest_people);
+}
+
+std::optional<std::size_t> person_to_hold_out(const ClipStore& clips, std::size_t fewest_people) {
+  const ClipGroups groups(clips);
+  std::map<std::size_t, Amount> people;
+  for (std::size_t i = 0; i < clips.count(); ++i) {
+    Amount& amount = people[groups.people()[i]];
+    amount.clips.insert(clips.record(i).clip.path);
+    amount.duration += clips.record(i).seconds();
+  }
+  return missed_least(people, fewest_people);
 }
 
 TrainingSet views_of(const TrainingSet& views, std::size_t person) {

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "mcdbn/corpus/clip_store.hpp"
 #include "mcdbn/corpus/training_set.hpp"
 
 namespace mcdbn {
@@ -11,6 +12,9 @@ namespace mcdbn {
 /// the fewest frames. Nobody of fewer than `fewest_people`, or if that is 0.
 /// @param views with `people` and `clips` for each of `poses`
 std::optional<std::size_t> person_to_hold_out(const TrainingSet& views, std::size_t fewest_people);
+
+/// The same of clips.
+std::optional<std::size_t> person_to_hold_out(const ClipStore& clips, std::size_t fewest_people);
 
 /// The views of that person alone, or of everybody else.
 TrainingSet views_of(const TrainingSet& views, std::size_t person);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "base/interruption.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/resample.hpp"
 #include "motion/rig_axes.hpp"
@@ -26,22 +28,24 @@ int there_and_back(int t, int frames) {
 
 }  // namespace
 
-PosePool::PosePool(const std::vector<LoadedClip>& clips, double fps) : clips_(clips), fps_(fps) {
-  for (const LoadedClip& clip : clips)
-    if (!is_humanoid(clip.motion.skeleton))
+PosePool::PosePool(ClipStore clips, double fps) : clips_(std::move(clips)), fps_(fps) {
+  for (const ClipRecord& record : clips_.records())
+    if (!is_humanoid(record.skeleton))
       throw ConfigError(
           "limbs that are exchanged or turned are the canonical humanoid's; train on that");
   constexpr double kMostFrames = 20'000;
   double frames = 0;
-  for (const LoadedClip& clip : clips) frames += clip.motion.frames();
+  for (const ClipRecord& record : clips_.records()) frames += record.frames;
   std::array<std::vector<Eigen::Matrix3d>, std::tuple_size_v<decltype(limits_)>> seen;
-  for (const LoadedClip& clip : clips) {
+  for (std::size_t i = 0; i < clips_.count(); ++i) {
+    check_interruption();
     const double share = std::min(1.0, kMostFrames / frames);
-    Motion some{clip.motion.skeleton, clip.motion.frame_time_s, {}};
-    some.channels = clip.motion.channels(
-        spread_frames(clip.motion, std::max(1, static_cast<int>(share * clip.motion.frames()))),
-        Eigen::all);
-    const HumanoidPoses poses(some);
+    Motion clip = clips_.motion(i);
+    clip.channels =
+        clip.channels(spread_frames(clip, std::max(1, static_cast<int>(share * clip.frames()))),
+                      Eigen::all)
+            .eval();
+    const HumanoidPoses poses(clip);
     for (const JointRole role : joint_roles())
       for (int t = 0; t < poses.frames(); ++t) {
         const Eigen::Matrix3d& local = poses.local(t, role);
@@ -54,21 +58,27 @@ PosePool::PosePool(const std::vector<LoadedClip>& clips, double fps) : clips_(cl
 }
 
 HumanoidPoses PosePool::piece(std::size_t clip, double from, int frames) const {
-  const Motion& whole = clips_[clip].motion;
+  const ClipRecord& whole = clips_.record(clip);
+  const double fps = 1 / whole.frame_time_s;
   // Only what is needed is resampled; its low-pass looks at what is around.
   constexpr double kAround_s = 0.5;
-  const double step = whole.fps() / fps_, around = kAround_s * whole.fps();
-  const double first = from * std::max(0.0, whole.frames() - 1 - frames * step);
+  const double step = fps / fps_, around = kAround_s * fps;
+  const double first = from * std::max(0.0, whole.frames - 1 - frames * step);
   const int begin = std::max(0, static_cast<int>(first - around));
-  const int end = std::min(whole.frames(), static_cast<int>(first + frames * step + around) + 2);
-  Motion part{whole.skeleton, whole.frame_time_s, whole.channels.middleRows(begin, end - begin)};
-  part = resample(part, fps_);
+  const int end = std::min(whole.frames, static_cast<int>(first + frames * step + around) + 2);
+  Motion part = resample(clips_.piece(clip, begin, end - begin), fps_);
   const int skipped = static_cast<int>((first - begin) / step);
   const int left = part.frames() - skipped;
   std::vector<int> rows;
   for (int t = 0; t < frames; ++t) rows.push_back(skipped + there_and_back(t, left));
   part.channels = part.channels(rows, Eigen::all).eval();
   return HumanoidPoses(part);
+}
+
+std::shared_ptr<const PosePool> pose_pool_for(const ClipStore& clips,
+                                              const CorpusSettings& settings) {
+  if (!settings.augment.new_poses()) return {};
+  return std::make_shared<PosePool>(clips, settings.fps);
 }
 
 }  // namespace mcdbn

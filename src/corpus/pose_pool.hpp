@@ -1,9 +1,10 @@
 #pragma once
 
 #include <array>
-#include <vector>
+#include <memory>
 
-#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/corpus/clip_store.hpp"
+#include "mcdbn/corpus/training_set.hpp"
 #include "motion/humanoid_poses.hpp"
 #include "motion/joint_limits.hpp"
 
@@ -13,11 +14,10 @@ namespace mcdbn {
 /// them. Left and right are taken together.
 class PosePool {
  public:
-  /// @param clips on the humanoid (load_training_clips); they must live on
-  /// @throws ConfigError if they are not
-  PosePool(const std::vector<LoadedClip>& clips, double fps);
+  /// @param clips on the humanoid (load_training_clips)  @throws ConfigError if they are not
+  PosePool(ClipStore clips, double fps);
 
-  std::size_t clips() const { return clips_.size(); }
+  std::size_t clips() const { return clips_.count(); }
   /// A piece of a clip at the pool's rate: from some share of it on, and back again where it ends.
   /// @param from 0 to 1
   HumanoidPoses piece(std::size_t clip, double from, int frames) const;
@@ -26,9 +26,13 @@ class PosePool {
   }
 
  private:
-  const std::vector<LoadedClip>& clips_;
+  ClipStore clips_;
   double fps_;
   std::array<JointLimits, static_cast<std::size_t>(JointRole::right_toe) + 1> limits_;
 };
+
+/// What views of those clips need for new poses; null where the settings ask for none.
+std::shared_ptr<const PosePool> pose_pool_for(const ClipStore& clips,
+                                              const CorpusSettings& settings);
 
 }  // namespace mcdbn

@@ -3,10 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
-#include "base/interruption.hpp"
+#include "base/made_ahead.hpp"
 #include "base/utf8.hpp"
+#include "corpus/clip_cache.hpp"
+#include "corpus/clip_notices.hpp"
 #include "corpus/people.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
@@ -15,15 +20,24 @@ namespace mcdbn {
 namespace {
 
 /// In words, the first clip whose skeleton lacks a joint of the first one's.
-std::optional<std::string> odd_one(const std::vector<LoadedClip>& clips) {
-  const Skeleton& first = clips.front().motion.skeleton;
-  for (const LoadedClip& clip : clips)
-    for (const Joint& joint : first.joints)
-      if (clip.motion.skeleton.find(joint.name) < 0)
-        return fmt::format("{} lacks the joint {} of {}", clip.clip.path, joint.name,
-                           clips.front().clip.path);
-  return {};
-}
+class OddOne {
+ public:
+  void add(const std::string& path, const Skeleton& skeleton) {
+    if (!first_) {
+      first_ = skeleton;
+      first_path_ = path;
+    }
+    for (const Joint& joint : first_->joints)
+      if (!text_ && skeleton.find(joint.name) < 0)
+        text_ = fmt::format("{} lacks the joint {} of {}", path, joint.name, first_path_);
+  }
+  const std::optional<std::string>& text() const { return text_; }
+
+ private:
+  std::optional<Skeleton> first_;
+  std::string first_path_;
+  std::optional<std::string> text_;
+};
 
 /// What of a corpus is lost on the humanoid, in words.
 class Losses {
@@ -52,34 +66,165 @@ class Losses {
   std::string worst_;
 };
 
-void bring_onto_humanoid(std::vector<LoadedClip>& clips, std::vector<std::string>* notices) {
-  PeopleCount people;
-  Losses losses;
-  for (LoadedClip& clip : clips) {
-    check_interruption();
-    // By the skeleton's own bones; on the humanoid those of one person may differ by a hair.
-    if (clip.person.empty())
-      clip.person = fmt::format("person {}", people.number_of(clip.motion.skeleton));
-    if (is_humanoid(clip.motion.skeleton)) continue;
-    try {
-      const HumanoidRig rig = rig_of_person(clip.motion);
-      if (notices) losses.add(clip.clip.path, retarget_error(rig, clip.motion));
-      clip.motion = rig.to_humanoid(clip.motion);
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", clip.clip.path, error.what()));
-    }
-  }
-  if (notices) notices->push_back(losses.text());
-}
-
-}  // namespace
-
-namespace {
-
 /// What a model records is text, and known to be before anything is trained.
 void check_names(const LoadedClip& clip) {
   for (const Joint& joint : clip.motion.skeleton.joints)
     require_utf8(joint.name, fmt::format("{}: the joint name {}", clip.clip.path, joint.name));
+}
+
+/// A clip on its way, and what there is to say of it.
+struct Brought {
+  LoadedClip clip;
+  ClipNotices notices;
+  Skeleton was = {};  ///< before it was brought onto the humanoid
+  std::optional<RetargetError> error = {};
+};
+
+Brought read_clip(const ListedClip& listed, const CorpusSettings& settings) {
+  Brought read;
+  read.clip = load_clip_as_is(listed.file, settings.keep_first_frame, read.notices);
+  read.clip.person = listed.person;
+  read.clip.action = listed.action;
+  check_names(read.clip);
+  return read;
+}
+
+Brought onto_humanoid(Brought brought, const CorpusSettings& settings) {
+  brought.was = brought.clip.motion.skeleton;
+  if (is_humanoid(brought.was)) return brought;
+  try {
+    const HumanoidRig rig = rig_of_person(brought.clip.motion, settings.joint_map);
+    brought.error = retarget_error(rig, brought.clip.motion);
+    brought.clip.motion = rig.to_humanoid(brought.clip.motion);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", brought.clip.clip.path, error.what()));
+  }
+  return brought;
+}
+
+/// Clips that are made by several threads, each by itself, and taken in order.
+template <typename Make, typename Take>
+void for_each_clip(std::size_t count, const Make& make, const Take& take) {
+  MadeAhead<Brought> made(make, 0, count, usual_threads(), 2 * usual_threads());
+  for (std::size_t i = 0; i < count; ++i) take(made.next());
+}
+
+/// Who is who by the skeletons' own bones: on the humanoid those of one person may differ by a
+/// hair.
+class HumanoidClips {
+ public:
+  LoadedClip taken(Brought brought) {
+    if (brought.clip.person.empty())
+      brought.clip.person = fmt::format("person {}", people_.number_of(brought.was));
+    if (brought.error) losses_.add(brought.clip.clip.path, *brought.error);
+    return std::move(brought.clip);
+  }
+  std::string text() const { return losses_.text(); }
+
+ private:
+  PeopleCount people_;
+  Losses losses_;
+};
+
+/// Where clips go one after another, in order.
+struct ClipSink {
+  std::function<void(LoadedClip)> add;
+  std::function<ClipStore()> finish;
+};
+using MakeSink = std::function<ClipSink()>;
+
+ClipSink into_memory() {
+  const auto clips = std::make_shared<std::vector<LoadedClip>>();
+  return {[clips](LoadedClip clip) { clips->push_back(std::move(clip)); },
+          [clips] { return ClipStore(std::move(*clips)); }};
+}
+
+ClipSink into_file(const std::filesystem::path& path, const std::string& key) {
+  const auto writer = std::make_shared<ClipCacheWriter>(path, key);
+  return {[writer](const LoadedClip& clip) { writer->add(clip); },
+          [writer] { return writer->finish(); }};
+}
+
+LoadedClip clip_of(const ClipStore& clips, std::size_t i) {
+  const ClipRecord& record = clips.record(i);
+  return {record.clip, clips.motion(i), record.person, record.action};
+}
+
+/// Reads clips and brings them where they are to be, onto the humanoid too if they are to be there.
+ClipStore read_clips(const std::vector<ListedClip>& files, const CorpusSettings& settings,
+                     std::vector<std::string>* notices, const MakeSink& make_sink) {
+  const bool any_humanoid = settings.augment.new_poses() || !settings.joint_map.empty();
+  if (settings.skeleton == SkeletonUse::own && any_humanoid)
+    throw ConfigError(
+        "`augment.limbs-exchanged`, `augment.limbs-turned`, `augment.arms-anywhere`, "
+        "`augment.leaning`, `augment.turning-round` and joint maps are of the canonical humanoid; "
+        "leave the skeletons' own out");
+  const bool humanoid = settings.skeleton == SkeletonUse::humanoid || any_humanoid;
+  const auto tell = [&](const std::string& text) {
+    if (notices) notices->push_back(text);
+  };
+  HumanoidClips on_humanoid;
+  OddOne odd;
+  ClipNotices of_files;
+  const auto into = [&](ClipSink& sink, Brought brought, bool brings) {
+    sink.add(brings ? on_humanoid.taken(std::move(brought)) : std::move(brought.clip));
+  };
+  ClipSink sink = make_sink();
+  for_each_clip(
+      files.size(),
+      [&](std::size_t i) {
+        Brought read = read_clip(files[i], settings);
+        return humanoid ? onto_humanoid(std::move(read), settings) : read;
+      },
+      [&](Brought brought) {
+        of_files.add(brought.notices);
+        odd.add(brought.clip.clip.path, humanoid ? brought.was : brought.clip.motion.skeleton);
+        into(sink, std::move(brought), humanoid);
+      });
+  if (notices) of_files.tell(*notices);
+  if (settings.skeleton == SkeletonUse::own && odd.text())
+    throw InputError(*odd.text() + "; or train on the canonical humanoid");
+  if (odd.text())
+    tell(fmt::format("skeletons differ, so the humanoid's is learnt: {}", *odd.text()));
+  ClipStore clips = sink.finish();
+  if (!humanoid && odd.text()) {
+    ClipSink second = make_sink();
+    for_each_clip(
+        clips.count(),
+        [&](std::size_t i) {
+          return onto_humanoid({clip_of(clips, i), {}}, settings);
+        },
+        [&](Brought brought) { into(second, std::move(brought), true); });
+    clips = second.finish();
+  }
+  if (humanoid || odd.text()) tell(on_humanoid.text());
+  return clips;
+}
+
+/// What a cache hangs on beside what is in the files.
+std::string cache_key(const std::vector<ListedClip>& files, const CorpusSettings& settings) {
+  nlohmann::json key = {{"version", 1},
+                        {"keep_first_frame", settings.keep_first_frame},
+                        {"skeleton", static_cast<int>(settings.skeleton)},
+                        {"new_poses", settings.augment.new_poses()},
+                        {"joint_map", nlohmann::json::object()},
+                        {"clips", nlohmann::json::array()}};
+  for (const auto& [role, joint] : settings.joint_map)
+    key["joint_map"][std::string(name_of(role))] = joint;
+  for (const ListedClip& listed : files)
+    key["clips"].push_back({std::filesystem::absolute(listed.file).lexically_normal().string(),
+                            listed.person, listed.action});
+  return key.dump();
+}
+
+/// @throws InputError if a file is another than when the clips were read, or is gone
+void check_files(const ClipStore& clips, const std::filesystem::path& cache) {
+  MadeAhead<TrainingClip> now(
+      [&](std::size_t i) { return identify_clip(clips.record(i).clip.path); }, 0, clips.count(),
+      usual_threads(), 2 * usual_threads());
+  for (const ClipRecord& record : clips.records())
+    if (now.next().fingerprint != record.clip.fingerprint)
+      throw InputError(fmt::format("{}: {} has changed since", cache.string(), record.clip.path));
 }
 
 }  // namespace
@@ -87,33 +232,31 @@ void check_names(const LoadedClip& clip) {
 std::vector<LoadedClip> load_training_clips(const std::vector<ListedClip>& files,
                                             const CorpusSettings& settings,
                                             std::vector<std::string>* notices) {
-  if (settings.skeleton == SkeletonUse::own && settings.augment.new_poses())
-    throw ConfigError(
-        "`augment.limbs-exchanged`, `augment.limbs-turned`, `augment.arms-anywhere`, "
-        "`augment.leaning` and `augment.turning-round` are of the canonical humanoid; leave the "
-        "skeletons' own out");
-  std::vector<std::filesystem::path> paths;
-  paths.reserve(files.size());
-  for (const ListedClip& listed : files) paths.push_back(listed.file);
-  std::vector<LoadedClip> clips = load_clips(paths, settings.keep_first_frame, notices);
-  for (std::size_t i = 0; i < clips.size(); ++i) {
-    clips[i].person = files[i].person;
-    clips[i].action = files[i].action;
-    check_names(clips[i]);
-  }
-  const auto odd = odd_one(clips);
-  if (settings.skeleton == SkeletonUse::own && odd)
-    throw InputError(*odd + "; or train on the canonical humanoid");
-  if (odd && notices)
-    notices->push_back(fmt::format("skeletons differ, so the humanoid's is learnt: {}", *odd));
-  if (odd || settings.skeleton == SkeletonUse::humanoid || settings.augment.new_poses())
-    bring_onto_humanoid(clips, notices);
-  return clips;
+  const ClipStore clips = read_clips(files, settings, notices, into_memory);
+  std::vector<LoadedClip> loaded;
+  for (std::size_t i = 0; i < clips.count(); ++i) loaded.push_back(clip_of(clips, i));
+  return loaded;
 }
 
-Motion for_skeleton(Motion clip, const Skeleton& model) {
+ClipStore cached_training_clips(const std::vector<ListedClip>& files,
+                                const CorpusSettings& settings, const std::filesystem::path& cache,
+                                std::vector<std::string>* notices) {
+  const std::string key = cache_key(files, settings);
+  if (std::filesystem::exists(cache)) {
+    try {
+      ClipStore clips = open_clip_cache(cache, key);
+      check_files(clips, cache);
+      return clips;
+    } catch (const InputError& error) {
+      if (notices) notices->push_back(fmt::format("{}; the clips are read again", error.what()));
+    }
+  }
+  return read_clips(files, settings, notices, [&] { return into_file(cache, key); });
+}
+
+Motion for_skeleton(Motion clip, const Skeleton& model, const JointMap& joint_map) {
   if (!is_humanoid(model) || is_humanoid(clip.skeleton)) return clip;
-  return rig_of_person(clip).to_humanoid(clip);
+  return rig_of_person(clip, joint_map).to_humanoid(clip);
 }
 
 }  // namespace mcdbn

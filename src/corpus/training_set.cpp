@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "base/interruption.hpp"
 #include "base/random_streams.hpp"
 #include "corpus/clip_groups.hpp"
+#include "corpus/clip_pieces.hpp"
 #include "corpus/pose_pool.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/motion/humanoid.hpp"
 #include "motion/resample.hpp"
 
@@ -44,13 +43,69 @@ std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair
 /// in their views (the left arm of somebody who waves with the right one, seen in a mirror), and
 /// what counts for fifty deviations there hides everything else. So do a detector's errors in what
 /// never moves: a spine that the skeleton puts on the pelvis.
-void add_views(const Motion& raw, const CorpusSettings& settings, RandomKey& key,
-               const PosePool* pool, std::vector<AugmentedView>& views) {
+template <typename Use>
+void for_each_view(const Motion& raw, const CorpusSettings& settings, RandomKey& key,
+                   const PosePool* pool, const Use& use) {
   constexpr std::size_t kViews = 4;  // with and without mirror
   for (std::size_t i = 0; i < std::min(kViews, settings.augment.views); ++i, ++key.step)
-    views.push_back(
-        augmented_view(raw, settings.fps, settings.camera, settings.augment, key, true, pool));
+    use(augmented_view(raw, settings.fps, settings.camera, settings.augment, key, true, pool));
 }
+
+Pair pair_of(const Motion& motion, const Track2d& track, const Camera& camera,
+             const Modalities& modalities) {
+  return {modalities.track_values(track, camera),
+          modalities.pose_values(motion, camera.camera_from_world)};
+}
+
+/// As the usual camera sees the motion.
+Pair seen_pair(const Motion& motion, const Modalities& modalities) {
+  const Camera camera = place_camera(motion, modalities.camera);
+  return pair_of(motion, project_motion(motion, camera), camera, modalities);
+}
+
+void add_pairs(const std::vector<Pair>& pairs, TrainingSet& set) {
+  for (const Pair& pair : pairs) {
+    set.tracks.push_back(set.modalities.track_scale.apply(pair.track));
+    set.poses.push_back(set.modalities.pose_scale.apply(pair.pose));
+  }
+}
+
+std::vector<const Motion*> pointers(const std::vector<Motion>& motions) {
+  std::vector<const Motion*> all;
+  for (const Motion& motion : motions) all.push_back(&motion);
+  return all;
+}
+
+/// What of the clips is looked at, at the model's rate.
+struct SampledClips {
+  const ClipStore& clips;
+  std::vector<ClipPiece> pieces;
+  std::vector<Motion> motions;
+  std::vector<std::size_t> phases;  ///< motions of each piece
+
+  SampledClips(const ClipStore& from, const CorpusSettings& settings) : clips(from) {
+    if (clips.count() == 0)
+      throw InputError("no training clips; name BVH files or folders that hold some");
+    pieces = pieces_in_memory(clips, settings.fps);
+    for (const ClipPiece& piece : pieces) {
+      check_interruption();
+      const std::size_t before = motions.size();
+      for (Motion& motion :
+           resampled_phases(clips.piece(piece.clip, piece.first, piece.frames), settings))
+        motions.push_back(std::move(motion));
+      phases.push_back(motions.size() - before);
+    }
+  }
+
+  /// Without tracks and poses.
+  TrainingSet set(Modalities modalities) const {
+    TrainingSet set{std::move(modalities), {}, {}, {}, {}, {}};
+    for (const ClipRecord& record : clips.records()) set.clips.push_back(record.clip);
+    const ClipGroups groups(clips);
+    for (std::size_t i = 0; i < pieces.size(); ++i) groups.add(pieces[i].clip, phases[i], set);
+    return set;
+  }
+};
 
 /// Of a humanoid the model's skeleton is nobody's in particular.
 PoseFeatures fitted_features(const std::vector<const Motion*>& clips) {
@@ -68,64 +123,47 @@ std::size_t TrainingSet::frames() const {
   return sum;
 }
 
-TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const CorpusSettings& settings,
+TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& settings,
                               std::uint64_t seed, bool with_views) {
-  if (clips.empty())
-    throw InputError("no training clips; name BVH files or folders that hold some");
-  std::vector<TrainingClip> recorded;
-  std::vector<Motion> motions;
-  std::vector<AugmentedView> views;
-  std::optional<PosePool> pool;
-  if (with_views && settings.augment.new_poses()) pool.emplace(clips, settings.fps);
-  RandomKey key{seed, 0, random_streams::kScalingViews, 0};
-  std::vector<std::size_t> phases;
-  for (const LoadedClip& loaded : clips) {
-    check_interruption();
-    const std::size_t before = motions.size();
-    for (Motion& motion : resampled_phases(loaded.motion, settings))
-      motions.push_back(std::move(motion));
-    phases.push_back(motions.size() - before);
-    if (with_views) add_views(loaded.motion, settings, key, pool ? &*pool : nullptr, views);
-    recorded.push_back(loaded.clip);
-  }
-  std::vector<const Motion*> all;
-  all.reserve(motions.size());
-  for (const Motion& motion : motions) all.push_back(&motion);
-  PoseFeatures pose_features = fitted_features(all);
+  const SampledClips sampled(clips, settings);
+  PoseFeatures pose_features = fitted_features(pointers(sampled.motions));
   TrackFeatures track_features =
       TrackFeatures::for_skeleton(pose_features.skeleton(), pose_features.root());
-  TrainingSet set{{std::move(pose_features),
-                   std::move(track_features),
-                   {},
-                   {},
-                   settings.fps,
-                   settings.camera,
-                   true},
-                  {},
-                  {},
-                  std::move(recorded),
-                  {},
-                  {}};
-  ClipGroups groups(clips);
-  for (std::size_t i = 0; i < clips.size(); ++i) groups.add(clips[i], phases[i], set);
+  TrainingSet set = sampled.set({std::move(pose_features),
+                                 std::move(track_features),
+                                 {},
+                                 {},
+                                 settings.fps,
+                                 settings.camera,
+                                 true});
+  if (with_views) set.new_poses = pose_pool_for(clips, settings);
   Modalities& modalities = set.modalities;
   std::vector<Pair> pairs;
-  const auto add_pair = [&](const Motion& motion, const Track2d& track, const Camera& camera) {
-    pairs.push_back({modalities.track_values(track, camera),
-                     modalities.pose_values(motion, camera.camera_from_world)});
-  };
-  for (const Motion& motion : motions) {
-    const Camera camera = place_camera(motion, settings.camera);
-    add_pair(motion, project_motion(motion, camera), camera);
+  for (const Motion& motion : sampled.motions) pairs.push_back(seen_pair(motion, modalities));
+  RandomKey key{seed, 0, random_streams::kScalingViews, 0};
+  for (const ClipPiece& piece : sampled.pieces) {
+    if (!with_views) break;
+    check_interruption();
+    for_each_view(clips.piece(piece.clip, piece.first, piece.frames), settings, key,
+                  set.new_poses.get(), [&](const AugmentedView& view) {
+                    pairs.push_back(pair_of(view.motion, view.track, view.camera, modalities));
+                  });
   }
-  for (const AugmentedView& view : views) add_pair(view.motion, view.track, view.camera);
   modalities.pose_scale = Standardizer::fit(members(pairs, &Pair::pose));
   modalities.track_scale = Standardizer::fit(members(pairs, &Pair::track));
-  pairs.resize(motions.size());  // without views
-  for (const Pair& pair : pairs) {
-    set.tracks.push_back(modalities.track_scale.apply(pair.track));
-    set.poses.push_back(modalities.pose_scale.apply(pair.pose));
-  }
+  pairs.resize(sampled.motions.size());  // without views
+  add_pairs(pairs, set);
+  return set;
+}
+
+TrainingSet encoded_training_set(const ClipStore& clips, const Modalities& modalities,
+                                 const CorpusSettings& settings, bool with_views) {
+  const SampledClips sampled(clips, settings);
+  TrainingSet set = sampled.set(modalities);
+  if (with_views) set.new_poses = pose_pool_for(clips, settings);
+  std::vector<Pair> pairs;
+  for (const Motion& motion : sampled.motions) pairs.push_back(seen_pair(motion, modalities));
+  add_pairs(pairs, set);
   return set;
 }
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string>
 
 #include "base/random_streams.hpp"
 #include "device/kernel_arguments.hpp"
-#include "device/pointwise.hpp"
 #include "learning/squared_loss.hpp"
 
 namespace mcdbn {
@@ -42,29 +42,57 @@ SequenceWindows sequence_windows(const Mcdbn& network, const FineTuningSettings&
   return windows;
 }
 
-ClipWindows::ClipWindows(Device& device, const SynchronizedClips& clips, std::size_t rows)
-    : rows_(rows) {
-  for (const ModalityClips& modality : clips.modalities)
-    sequences_.push_back(Sequences::from_host(device, modality.clips, modality.seen));
+namespace {
+
+/// The rows of a modality's clips, counted through all of them.
+MatrixF gathered(std::span<const MatrixF> clips, std::span<const std::int32_t> rows) {
+  std::vector<Eigen::Index> ends;
+  for (const MatrixF& clip : clips) ends.push_back((ends.empty() ? 0 : ends.back()) + clip.rows());
+  MatrixF result(static_cast<Eigen::Index>(rows.size()), clips.front().cols());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto clip =
+        static_cast<std::size_t>(std::ranges::upper_bound(ends, rows[i]) - ends.begin());
+    const Eigen::Index first = clip == 0 ? 0 : ends[clip - 1];
+    result.row(static_cast<Eigen::Index>(i)) = clips[clip].row(rows[i] - first);
+  }
+  return result;
 }
 
-std::vector<Rows> ClipWindows::rows(const IndexBuffer& index) const {
+}  // namespace
+
+DeviceWindows::DeviceWindows(Device& device, const SynchronizedClips& clips,
+                             const SequenceWindows& windows) {
+  std::vector<std::int32_t> all(windows.rows());
+  std::iota(all.begin(), all.end(), 0);
+  index_ = IndexBuffer(device, all);
+  for (const ModalityClips& modality : clips.modalities) {
+    values_.emplace_back(device, windows.rows(), modality.dimension());
+    seen_.push_back(modality.seen.empty() ? Matrix() : Matrix::like(values_.back()));
+  }
+}
+
+void DeviceWindows::load(const SynchronizedClips& clips, std::span<const std::int32_t> rows) {
+  const std::size_t count = rows.size() / 2;
+  for (std::size_t m = 0; m < values_.size(); ++m) {
+    const ModalityClips& modality = clips.modalities[m];
+    require(modality.seen.empty() == seen_[m].empty(),
+            "fine-tuning: other clips are not seen as the first were");
+    const std::span<const std::int32_t> own = rows.subspan(m == 0 ? count : 0, count);
+    values_[m].upload(gathered(modality.clips, own));
+    if (!seen_[m].empty()) seen_[m].upload(gathered(modality.seen, own));
+  }
+}
+
+std::vector<Rows> DeviceWindows::rows() const {
   std::vector<Rows> rows;
-  for (const Sequences& sequences : sequences_)
-    rows.push_back(Rows::indexed(sequences.values, index, rows.empty() ? rows_ : 0, rows_));
+  for (const Matrix& values : values_)
+    rows.push_back(Rows::indexed(values, index_, 0, values.rows()));
   return rows;
 }
 
-void FineTuner::Direction::learn(std::span<const Rows> rows, const Matrix& all_seen, float kept,
-                                 const RandomKey& key) {
-  gather(rows[modality], target);
-  if (seen) {
-    Rows those = rows[modality];
-    those.matrix = &all_seen;
-    gather(those, *seen);
-  }
+void FineTuner::Direction::learn(std::span<const Rows> rows, float kept, const RandomKey& key) {
   pass.forward(rows, kept, key);
-  loss->differentiate(pass.prediction(), target, pass.prediction_error());
+  loss->differentiate(pass.prediction(), *rows[modality].matrix, pass.prediction_error());
   pass.backward();
 }
 
@@ -75,39 +103,32 @@ FineTuner::FineTuner(Device& device, const Mcdbn& start, const SynchronizedClips
       settings_(settings.fine_tuning),
       shape_(windows),
       network_(device, start, settings_.mean_field_steps),
-      windows_(device, clips, windows.rows()),
-      sampler_(clips, windows, settings),
-      index_(device, sampler_.rows(0)) {
+      clips_(clips),
+      windows_(device, clips, windows),
+      sampler_(clips, windows, settings) {
   const std::size_t last = start.modality_count() - 1;
-  add_direction(windows, last, make_loss(device, windows));
+  add_direction(last, make_loss(device, windows));
   const double others = settings_.reverse * static_cast<double>(kReverseEvery);
   for (std::size_t m = last; m-- > 0;) {
-    std::unique_ptr<Matrix> seen;
-    if (!windows_.seen(m).empty())
-      seen = std::make_unique<Matrix>(device, windows.rows(), windows_.dimension(m));
-    auto loss = std::make_unique<SquaredLoss>(device, windows, others, seen.get());
-    add_direction(windows, m, std::move(loss), std::move(seen));
+    const Matrix& seen = windows_.seen(m);
+    add_direction(
+        m, std::make_unique<SquaredLoss>(device, windows, others, seen.empty() ? nullptr : &seen));
   }
 }
 
 void FineTuner::see(const SynchronizedClips& clips) {
-  network_.device().finish();
-  windows_ = ClipWindows(network_.device(), clips, shape_.rows());
+  clips_ = clips;
   sampler_ = WindowSampler(clips, shape_, learning_);
-  for (const Direction& direction : directions_)
-    require(windows_.seen(direction.modality).empty() == (direction.seen == nullptr) ||
-                &direction == &directions_.front(),
-            "fine-tuning: other clips are not seen as the first were");
 }
 
 void FineTuner::step(std::size_t step) {
-  index_.upload(network_.device(), sampler_.rows(step));
-  const std::vector<Rows> rows = windows_.rows(index_);
+  windows_.load(clips_, sampler_.rows(step));
+  const std::vector<Rows> rows = windows_.rows();
   const auto kept = static_cast<float>(1.0 - settings_.dropout);
   RandomKey key{learning_.seed, static_cast<std::uint32_t>(step), random_streams::kDropout, 0};
   network_.clear_gradients();
   for (Direction& direction : directions_) {
-    direction.learn(rows, windows_.seen(direction.modality), kept, key);
+    direction.learn(rows, kept, key);
     if (settings_.reverse == 0 || step % kReverseEvery != 0) break;
     key.phase = static_cast<std::uint16_t>(key.phase + 0x100);
   }
@@ -128,11 +149,8 @@ void FineTuner::visit_state(TrainingState& state) {
   }
 }
 
-void FineTuner::add_direction(const SequenceWindows& windows, std::size_t modality,
-                              std::unique_ptr<SequenceLoss> loss, std::unique_ptr<Matrix> seen) {
-  directions_.push_back({modality, UnrolledPass(network_, modality, windows),
-                         Matrix(network_.device(), windows.rows(), windows_.dimension(modality)),
-                         std::move(seen), std::move(loss)});
+void FineTuner::add_direction(std::size_t modality, std::unique_ptr<SequenceLoss> loss) {
+  directions_.push_back({modality, UnrolledPass(network_, modality, shape_), std::move(loss)});
 }
 
 }  // namespace mcdbn

@@ -13,22 +13,23 @@ namespace mcdbn {
 /// frames that settle, then those that are judged.
 SequenceWindows sequence_windows(const Mcdbn& network, const FineTuningSettings& settings);
 
-/// All modalities' clips on the device, and the rows of a mini-batch's windows in them.
-class ClipWindows {
+/// A mini-batch's windows of all modalities on the device, copied there from the clips, which stay
+/// where they are: what the device holds does not grow with them.
+class DeviceWindows {
  public:
-  /// @param rows of a mini-batch, SequenceWindows::rows
-  ClipWindows(Device& device, const SynchronizedClips& clips, std::size_t rows);
-  /// @param index WindowSampler::rows; the first modality's frames are those look_ahead later
-  std::vector<Rows> rows(const IndexBuffer& index) const;
-  std::size_t dimension(std::size_t modality) const {
-    return sequences_[modality].values.columns();
-  }
+  /// @param clips of the modalities to come, as completely seen
+  DeviceWindows(Device& device, const SynchronizedClips& clips, const SequenceWindows& windows);
+  /// @param rows WindowSampler::rows; the first modality's frames are those look_ahead later
+  /// @throws ShapeError if the clips are not seen as the first were
+  void load(const SynchronizedClips& clips, std::span<const std::int32_t> rows);
+  /// Of each modality.
+  std::vector<Rows> rows() const;
   /// What was seen, like the modality's values; empty where everything was.
-  const Matrix& seen(std::size_t modality) const { return sequences_[modality].seen; }
+  const Matrix& seen(std::size_t modality) const { return seen_[modality]; }
 
  private:
-  std::size_t rows_;
-  std::vector<Sequences> sequences_;
+  std::vector<Matrix> values_, seen_;
+  IndexBuffer index_;  ///< every row, for who wants rows named
 };
 
 /// Fine-tuning's mini-batches: all directions, the optimizer, the moving average of the parameters.
@@ -42,7 +43,8 @@ class FineTuner {
             const SequenceWindows& windows, const LearningSettings& settings,
             const SequenceLossMaker& make_loss);
 
-  /// Windows are those of these clips from now on; of the same modalities, as completely seen.
+  /// Windows are those of these clips from now on, which live as long as they are drawn from; of
+  /// the same modalities, as completely seen.
   void see(const SynchronizedClips& clips);
   /// Mini-batch `step` of settings.fine_tuning.steps, counted from 0. Enqueues and returns.
   void step(std::size_t step);
@@ -64,25 +66,20 @@ class FineTuner {
   struct Direction {
     std::size_t modality;
     UnrolledPass pass;
-    Matrix target;
-    std::unique_ptr<Matrix> seen;  ///< like target, if some of it was not and the loss asks
     std::unique_ptr<SequenceLoss> loss;
 
-    /// @param all_seen ClipWindows::seen of the modality
-    void learn(std::span<const Rows> rows, const Matrix& all_seen, float kept,
-               const RandomKey& key);
+    void learn(std::span<const Rows> rows, float kept, const RandomKey& key);
   };
-  void add_direction(const SequenceWindows& windows, std::size_t modality,
-                     std::unique_ptr<SequenceLoss> loss, std::unique_ptr<Matrix> seen = nullptr);
+  void add_direction(std::size_t modality, std::unique_ptr<SequenceLoss> loss);
 
   const LearningSettings& learning_;
   const FineTuningSettings& settings_;
   SequenceWindows shape_;
   UnrolledNetwork network_;
-  ClipWindows windows_;
+  SynchronizedClips clips_;
+  DeviceWindows windows_;
   WindowSampler sampler_;
   std::vector<Direction> directions_;  ///< of the last modality, then of those before it
-  IndexBuffer index_;
 };
 
 }  // namespace mcdbn

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
-#include "device/pointwise.hpp"
 #include "learning/checkpoints.hpp"
 #include "learning/divergence_guard.hpp"
 #include "learning/fine_tuner.hpp"
@@ -24,22 +24,20 @@ class HeldOutWindows {
  public:
   HeldOutWindows(Device& device, const SynchronizedClips& clips, const SequenceWindows& windows,
                  const LearningSettings& settings, const SequenceLossMaker& make_loss)
-      : windows_(device, clips, windows.rows()),
-        loss_(make_loss(device, windows)),
-        target_(device, windows.rows(), windows_.dimension(clips.modalities.size() - 1)) {
+      : loss_(make_loss(device, windows)) {
     const WindowSampler sampler(clips, windows, settings);
-    for (std::size_t i = 0; i < kBatches; ++i) indices_.emplace_back(device, sampler.rows(i));
+    for (std::size_t i = 0; i < kBatches; ++i)
+      batches_.emplace_back(device, clips, windows).load(clips, sampler.rows(i));
   }
 
   /// Of the parameters' moving average.
   double loss(FineTuner& tuner) {
     UnrolledPass& forward = tuner.forward();
     tuner.exchange_averages();
-    for (const IndexBuffer& index : indices_) {
-      const std::vector<Rows> rows = windows_.rows(index);
-      gather(rows.back(), target_);
+    for (const DeviceWindows& batch : batches_) {
+      const std::vector<Rows> rows = batch.rows();
       forward.forward(rows, 1.0F, {});
-      loss_->differentiate(forward.prediction(), target_, forward.prediction_error());
+      loss_->differentiate(forward.prediction(), *rows.back().matrix, forward.prediction_error());
     }
     tuner.exchange_averages();
     return loss_->read_and_reset();
@@ -48,10 +46,8 @@ class HeldOutWindows {
  private:
   static constexpr std::size_t kBatches = 4;
 
-  ClipWindows windows_;
   std::unique_ptr<SequenceLoss> loss_;
-  Matrix target_;
-  std::vector<IndexBuffer> indices_;
+  std::vector<DeviceWindows> batches_;
 };
 
 /// The last parameters that did about as well as any on the clips held out. About, as nobody is
@@ -86,6 +82,34 @@ class HeldOutRecord {
   double best_loss_ = std::numeric_limits<double>::max();
   KeptStep kept_;
   Matrix averages_;  ///< that were kept
+};
+
+/// Time since the last report, and how much of it was waited.
+class ReportClock {
+ public:
+  template <typename Call>
+  auto waiting(const Call& call) {
+    const auto begin = Clock::now();
+    auto result = call();
+    waited_s_ += seconds(begin);
+    return result;
+  }
+  double took_s() const { return seconds(begin_); }
+  /// To a thousandth.
+  double waited_share() const { return std::round(1e3 * waited_s_ / took_s()) / 1e3; }
+  void restart() {
+    begin_ = Clock::now();
+    waited_s_ = 0;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static double seconds(Clock::time_point since) {
+    return std::chrono::duration<double>(Clock::now() - since).count();
+  }
+
+  Clock::time_point begin_ = Clock::now();
+  double waited_s_ = 0;
 };
 
 EpochReport report_of(std::size_t done, const FineTuningSettings& settings, double loss,
@@ -123,14 +147,9 @@ FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& so
     record.visit_state(state, tuner);
   };
   StageRun run(device, checkpoints, kStage, visit, [](TrainingState&) {});
-  auto last = std::chrono::steady_clock::now();
-  const std::size_t lasts = settings.fine_tuning.new_views_every;
-  std::size_t round = 0;
+  ReportClock clock;
   for (std::size_t done = run.done() + 1; done <= steps && !run.is_over(); ++done) {
-    if (const std::size_t due = lasts > 0 ? (done - 1) / lasts : 0; due != round) {
-      round = due;
-      if (source.renew(round)) tuner.see(source.sequences());
-    }
+    if (clock.waiting([&] { return source.renew(done - 1); })) tuner.see(source.sequences());
     tuner.step(done - 1);
     if (done % kReportEvery != 0 && done != steps) {
       run.after_step(done);
@@ -138,11 +157,10 @@ FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& so
     }
     const double loss = tuner.read_loss();
     guard.check(done, loss);
-    const auto now = std::chrono::steady_clock::now();
-    EpochReport report = report_of(done, settings.fine_tuning, loss,
-                                   std::chrono::duration<double>(now - last).count());
+    EpochReport report = report_of(done, settings.fine_tuning, loss, clock.took_s());
+    report.waited = clock.waited_share();
     if (judged) report.held_out_loss = judged->loss(tuner);
-    last = std::chrono::steady_clock::now();
+    clock.restart();
     if (observer) observer(report);
     if (judged && record.add(tuner, done, steps, *report.held_out_loss)) break;
     run.after_step(done);

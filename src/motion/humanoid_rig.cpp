@@ -311,8 +311,10 @@ std::vector<int> HumanoidRig::kept_joints() const {
   return joints;
 }
 
-HumanoidRig rig_of_person(const Motion& motion) {
-  HumanoidRig rig(motion);
+HumanoidRig rig_of_person(const Motion& motion, const JointMap& joint_map) {
+  JointMap own = joint_map;
+  std::erase_if(own, [&](const auto& said) { return motion.skeleton.find(said.second) < 0; });
+  HumanoidRig rig(motion, skeleton_roles(motion.skeleton, own));
   std::vector<std::string_view> lacking;
   for (const JointRole left :
        {left_hip, left_knee, left_ankle, left_shoulder, left_elbow, left_wrist})

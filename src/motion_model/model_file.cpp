@@ -101,6 +101,10 @@ EarlyStopping early_stopping_from(const JsonPlace& stopped) {
           stopped["loss"].number(any_number())};
 }
 
+StartedFrom started_from(const JsonPlace& start) {
+  return {start["model"].text(), start["fingerprint"].text()};
+}
+
 Model model_from(Device& device, const TensorFile& file) {
   const json description = parsed_description(file);
   const JsonPlace about(description, file.path);
@@ -115,6 +119,7 @@ Model model_from(Device& device, const TensorFile& file) {
     model.training_clips.push_back({clip["path"].text(), clip["fingerprint"].text()});
   if (about.has("early_stopping"))
     model.early_stopping = early_stopping_from(about["early_stopping"]);
+  if (about.has("started_from")) model.started_from = started_from(about["started_from"]);
   return model;
 }
 
@@ -147,6 +152,8 @@ void save_model(const std::filesystem::path& path, const Model& model, StoredNum
   if (const auto& stopped = model.early_stopping)
     about["early_stopping"] = {
         {"held_out", stopped->held_out}, {"steps", stopped->steps}, {"loss", stopped->loss}};
+  if (const auto& start = model.started_from)
+    about["started_from"] = {{"model", start->model}, {"fingerprint", start->fingerprint}};
   file.metadata["mcdbn"] = about.dump();
   write_safetensors(path, file);
 }
@@ -179,6 +186,9 @@ nlohmann::json describe_model(const std::filesystem::path& path) {
     early_stopping_from(about["early_stopping"]);
     description["early_stopping"] = about["early_stopping"].value();
   }
+  if (about.has("started_from"))
+    description["started_from"] =
+        std::filesystem::path(started_from(about["started_from"]).model).filename().string();
   if (const auto thanks = file.metadata.find("acknowledgement"); thanks != file.metadata.end())
     description["acknowledgement"] = thanks->second;
   return description;

@@ -48,7 +48,7 @@ bool holds_training(const fs::path& path) {
 }
 
 void write_record(const fs::path& path, const TrainingConfig& config,
-                  const std::vector<ListedClip>& clips) {
+                  const std::vector<ListedClip>& clips, const std::optional<StartedFrom>& start) {
   json record = {{"settings", settings_json(config)},
                  {"skeleton", static_cast<int>(config.skeleton)},
                  {"clips", json::array()}};
@@ -56,6 +56,9 @@ void write_record(const fs::path& path, const TrainingConfig& config,
     record["clips"].push_back({{"file", fs::absolute(clip.file).lexically_normal().string()},
                                {"person", clip.person},
                                {"action", clip.action}});
+  for (const auto& [role, joint] : config.joint_map)
+    record["joint_map"][std::string(name_of(role))] = joint;
+  if (start) record["from"] = {{"model", start->model}, {"fingerprint", start->fingerprint}};
   write_text_file(path, record.dump(1) + '\n');
 }
 
@@ -81,7 +84,8 @@ fs::path RunFolder::model() const {
 }
 
 RunFolder RunFolder::begin(const fs::path& path, const TrainingConfig& config,
-                           const std::vector<ListedClip>& clips, bool replace) {
+                           const std::vector<ListedClip>& clips, bool replace,
+                           const fs::path& start) {
   for (const ListedClip& clip : clips) check_names(clip);
   make_folder(path);  // gone again, if nothing is kept in it, with the command's other outputs
   const OutputsAtOnce at_once;
@@ -98,7 +102,13 @@ RunFolder RunFolder::begin(const fs::path& path, const TrainingConfig& config,
   fs::remove_all(run.unfinished(), error);
   make_folder(run.unfinished());
   write_text_file(run.unfinished() / kResults[0], settings_toml(config));
-  write_record(run.unfinished() / kRunFile, config, clips);
+  if (!start.empty()) {
+    const TrainingClip file = identify_clip(start);
+    require_utf8(file.path, file.path + ": its name");
+    run.started_from_ = {file.path, file.fingerprint};
+    write_text_file(run.start_model(), read_text_file(start));
+  }
+  write_record(run.unfinished() / kRunFile, config, clips, run.started_from_);
   return run;
 }
 
@@ -122,12 +132,19 @@ RunFolder RunFolder::resume(const fs::path& path) {
     const json content = json::parse(read_text_file(record));
     run.config_ = settings_from_json(content.at("settings"));
     run.config_.skeleton = content.at("skeleton").get<SkeletonUse>();
+    if (content.contains("joint_map"))
+      for (const auto& [role, joint] : content["joint_map"].items())
+        run.config_.joint_map[joint_role_of(role).value()] = joint;
+    if (content.contains("from"))
+      run.started_from_ = {content["from"].at("model"), content["from"].at("fingerprint")};
     for (const json& clip : content.at("clips"))
       run.clips_.emplace_back(clip.at("file").get<std::string>(), clip.at("person"),
                               clip.at("action"));
   } catch (const json::exception&) {
     fail_record(record);
   } catch (const std::out_of_range&) {  // names that are none
+    fail_record(record);
+  } catch (const std::bad_optional_access&) {  // nor roles
     fail_record(record);
   }
   return run;

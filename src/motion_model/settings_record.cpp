@@ -7,6 +7,10 @@
 namespace mcdbn {
 namespace {
 
+/// Up to version 0.1 all views were made anew after so many mini-batches, where they now give way
+/// one by one: what a model was trained with then nobody does again.
+constexpr const char* kGone = "fine-tuning.new-views-every";
+
 /// Today's name of a setting that is said by the one that it had before.
 std::string name_today(const std::string& said) {
   std::string name = said;
@@ -40,6 +44,7 @@ TrainingConfig settings_from_json(const nlohmann::json& record) {
   for (const auto& [pointer, value] : flat.items()) {
     std::string name = pointer.substr(1);
     std::replace(name.begin(), name.end(), '/', '.');
+    if (name == kGone) continue;
     assign(config, {name, value, "the model's settings: " + name}, RangeCheck::off);
   }
   return config;

@@ -10,6 +10,7 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
+#include "mcdbn/motion_model/training_start.hpp"
 #include "motion_model/sample_calibration.hpp"
 
 namespace mcdbn {
@@ -41,25 +42,28 @@ struct ClipsDigest {
 
 }  // namespace
 
-TrainedRun train_model(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
+TrainedRun train_model(Device& device, const TrainingSet& data, const ClipStore& clips,
                        const TrainingConfig& config, const EpochObserver& observer,
-                       Checkpoints* checkpoints) {
+                       Checkpoints* checkpoints, const Model* start) {
   using Clock = std::chrono::steady_clock;
   config.validate();
-  const auto start = Clock::now();
-  auto [network, stopped] =
-      train_network(device, data, std::move(clips), config, observer, checkpoints);
+  if (start != nullptr) check_start(*start, config);
+  const auto begin = Clock::now();
+  auto [network, stopped] = train_network(device, data, clips, config, observer, checkpoints,
+                                          start != nullptr ? &start->network : nullptr);
   if (config.fine_tuning.steps > 0)
     network.sampling = calibrated_sampling(network, data.modalities, data.tracks, data.poses);
-  const double training_s = std::chrono::duration<double>(Clock::now() - start).count();
-  return {
-      {std::move(network), data.modalities, data.clips, settings_json(config), std::move(stopped)},
-      training_s};
+  const double training_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  Model model{std::move(network), data.modalities, {}, settings_json(config), std::move(stopped)};
+  // What the model to start from has seen is no test for this one either.
+  if (start != nullptr) model.training_clips = start->training_clips;
+  model.training_clips.insert(model.training_clips.end(), data.clips.begin(), data.clips.end());
+  return {std::move(model), training_s};
 }
 
-TrainedRun train_to_folder(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
+TrainedRun train_to_folder(Device& device, const TrainingSet& data, const ClipStore& clips,
                            RunFolder& run, const CheckpointSettings& settings,
-                           const TrainingWatch& watch) {
+                           const TrainingWatch& watch, const Model* start) {
   ClipsDigest digest(data);
   std::optional<MetricsLog> metrics;
   std::uint64_t metrics_bytes = 0;
@@ -75,12 +79,13 @@ TrainedRun train_to_folder(Device& device, const TrainingSet& data, std::vector<
   Checkpoints checkpoints(options);
   metrics.emplace(run.unfinished() / "metrics.jsonl", metrics_bytes);
   TrainedRun trained = train_model(
-      device, data, std::move(clips), run.config(),
+      device, data, clips, run.config(),
       [&](const EpochReport& report) {
         metrics->add(report);
         if (watch.epoch) watch.epoch(report);
       },
-      &checkpoints);
+      &checkpoints, start);
+  trained.model.started_from = run.started_from();
   run.complete(trained.model);
   return trained;
 }

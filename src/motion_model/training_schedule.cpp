@@ -1,8 +1,10 @@
 #include "mcdbn/motion_model/training_schedule.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "corpus/augmented_views.hpp"
+#include "corpus/clip_pieces.hpp"
 #include "corpus/held_out_person.hpp"
 #include "learning/learnt_deviation.hpp"
 #include "learning/memory_need.hpp"
@@ -33,64 +35,42 @@ SequenceLossMaker pose_loss_maker(const Modalities& modalities, const PoseLossWe
   };
 }
 
-/// Views of everybody but the person held out, if one is; others wherever `more` makes them.
-class Lessons : public SequenceSource {
- public:
-  Lessons(const TrainingSet& views, std::optional<std::size_t> held_out, const ViewSource* more)
-      : held_out_(held_out), more_(more) {
-    take(views);
-  }
-  SynchronizedClips sequences() const override {
-    return ClipSource(others_ ? *others_ : *all_).sequences();
-  }
-  bool renew(std::size_t round) const override {
-    if (more_ == nullptr || !more_->renew(round)) return false;
-    take(more_->views());
-    return true;
-  }
-
- private:
-  void take(const TrainingSet& views) const {
-    all_ = &views;
-    if (held_out_) others_ = views_without(views, *held_out_);
-  }
-
-  std::optional<std::size_t> held_out_;
-  const ViewSource* more_;
-  mutable const TrainingSet* all_ = nullptr;
-  mutable std::optional<TrainingSet> others_;
-};
-
-/// @param more makes other views on the way, or none
-TrainedNetwork fine_tune_on(Device& device, const Mcdbn& start, const TrainingSet& views,
-                            const ViewSource* more, const TrainingConfig& config,
-                            const EpochObserver& observer, Checkpoints* checkpoints) {
-  const SequenceLossMaker make_loss = pose_loss_maker(views.modalities, config.pose_loss);
-  const auto person = person_to_hold_out(views, config.hold_out_among);
-  const Lessons lessons(views, person, more);
-  std::optional<TrainingSet> stranger;
-  if (person) stranger = views_of(views, *person);
+/// Fine-tuning on those lessons.
+/// @param strangers views of the person held out, or none
+/// @param before_deviation that is learnt from the lessons as they are then
+TrainedNetwork fine_tune_on(Device& device, const Mcdbn& start, const SequenceSource& lessons,
+                            const TrainingSet* strangers, const Modalities& modalities,
+                            const TrainingConfig& config, const EpochObserver& observer,
+                            Checkpoints* checkpoints,
+                            const std::function<void()>& before_deviation = {}) {
   std::optional<ClipSource> judges;
-  if (stranger) judges.emplace(*stranger);
+  if (strangers != nullptr) judges.emplace(*strangers);
   FineTuned tuned = fine_tune(device, start, lessons, judges ? &*judges : nullptr, config,
-                              make_loss, observer, checkpoints);
-  // A round of its own: views that nothing was learnt from, the same after a training that was
-  // interrupted.
-  if (const std::size_t lasts = config.fine_tuning.new_views_every; lasts > 0)
-    lessons.renew((config.fine_tuning.steps - 1) / lasts + 1);
+                              pose_loss_maker(modalities, config.pose_loss), observer, checkpoints);
+  if (before_deviation) before_deviation();
   std::optional<SynchronizedClips> unseen;
   if (judges) unseen = judges->sequences();
   tuned.network.deviation =
       learnt_deviation(tuned.network, lessons.sequences(), unseen ? &*unseen : nullptr);
   TrainedNetwork trained{std::move(tuned.network), {}};
-  if (stranger)
+  if (strangers != nullptr)
     trained.early_stopping =
-        EarlyStopping{clip_names(*stranger), tuned.kept->steps, tuned.kept->loss};
+        EarlyStopping{clip_names(*strangers), tuned.kept->steps, tuned.kept->loss};
   return trained;
 }
 
+/// The greedy stages as the beginning of a run, if the settings ask for them.
+Mcdbn greedy_start(Device& device, const SequenceSource& source, Mcdbn start,
+                   const TrainingConfig& config, const EpochObserver& observer,
+                   Checkpoints* checkpoints) {
+  if (!config.fine_tuning.from_greedy) return start;
+  return train_greedy(device, source, config, part_of_run(observer, 0.0, kGreedyShare), &start,
+                      checkpoints);
+}
+
 /// What would only be found out in the middle of the training.
-void check_before(const DeviceInfo& device, const TrainingSet& data, const TrainingConfig& config) {
+void check_before(const DeviceInfo& device, const TrainingSet& data, const ClipStore& clips,
+                  const TrainingConfig& config) {
   const bool tunes = config.fine_tuning.steps > 0;
   if (!tunes || config.fine_tuning.from_greedy) {
     Eigen::Index longest = 0;
@@ -101,17 +81,25 @@ void check_before(const DeviceInfo& device, const TrainingSet& data, const Train
   for (const ModalityClips& modality : ClipSource(data).sequences().modalities)
     dimensions.push_back(modality.dimension());
   const auto frames = static_cast<double>(data.frames());
-  check_memory(memory_need(dimensions, tunes ? frames_of_views(frames, config) : frames, config),
-               device, config);
+  const double kept = !tunes ? frames
+                      : learns_from_fresh_views(clips, config)
+                          ? kPieceFrames * static_cast<double>(fresh_views_at_once(clips, config))
+                          : frames_of_views(frames, config);
+  check_memory(memory_need(dimensions, kept, config), device, config);
 }
 
 }  // namespace
 
-TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const TrainingConfig& config) {
+TrainingSet make_training_set(const ClipStore& clips, const TrainingConfig& config) {
   return make_training_set(clips, config, config.seed, config.fine_tuning.steps > 0);
 }
 
-TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Modalities& modalities,
+TrainingSet make_training_set(const ClipStore& clips, const Modalities& modalities,
+                              const TrainingConfig& config) {
+  return encoded_training_set(clips, modalities, config, config.fine_tuning.steps > 0);
+}
+
+TrainingSet make_augmented_views(const ClipStore& clips, const Modalities& modalities,
                                  const TrainingConfig& config) {
   return make_augmented_views(clips, modalities, config, config.seed);
 }
@@ -119,28 +107,40 @@ TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Mod
 TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& views,
                          const TrainingConfig& config, const EpochObserver& observer,
                          Checkpoints* checkpoints) {
-  return fine_tune_on(device, start, views, nullptr, config, observer, checkpoints);
+  std::optional<TrainingSet> others, stranger;
+  if (const auto person = person_to_hold_out(views, config.hold_out_among)) {
+    others = views_without(views, *person);
+    stranger = views_of(views, *person);
+  }
+  return fine_tune_on(device, start, ClipSource(others ? *others : views),
+                      stranger ? &*stranger : nullptr, views.modalities, config, observer,
+                      checkpoints);
 }
 
-TrainedNetwork train_network(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
+TrainedNetwork train_network(Device& device, const TrainingSet& data, const ClipStore& clips,
                              const TrainingConfig& config, const EpochObserver& observer,
-                             Checkpoints* checkpoints) {
-  check_before(device.info(), data, config);
+                             Checkpoints* checkpoints, const Mcdbn* from) {
+  check_before(device.info(), data, clips, config);
   if (config.fine_tuning.steps == 0)
     return {train_greedy(device, ClipSource(data), config, observer, nullptr, checkpoints), {}};
-  const ViewSource views(std::move(clips), data.modalities, config);
   std::vector<Modality> modalities;
   for (const ModalityClips& modality : ClipSource(data).sequences().modalities)
     modalities.push_back({modality.name, modality.dimension(), modality.kind});
-  Mcdbn start = random_start(device, modalities, config);
-  double done = 0.0;
-  if (config.fine_tuning.from_greedy) {
-    done = kGreedyShare;
-    start =
-        train_greedy(device, views, config, part_of_run(observer, 0.0, done), &start, checkpoints);
+  Mcdbn start = from != nullptr ? *from : random_start(device, modalities, config);
+  const EpochObserver tuning =
+      part_of_run(observer, config.fine_tuning.from_greedy ? kGreedyShare : 0.0, 1.0);
+  if (learns_from_fresh_views(clips, config)) {
+    const FreshViewSource views(clips, data, config);
+    start = greedy_start(device, views, std::move(start), config, observer, checkpoints);
+    const auto& strangers = views.strangers();
+    // Views that nothing was learnt from, the same after a training that was interrupted.
+    return fine_tune_on(device, start, views, strangers ? &*strangers : nullptr, data.modalities,
+                        config, tuning, checkpoints,
+                        [&] { views.renew(config.fine_tuning.steps + views.lifetime()); });
   }
-  return fine_tune_on(device, start, views.views(), &views, config,
-                      part_of_run(observer, done, 1.0), checkpoints);
+  const ViewSource views(clips, data, config);
+  start = greedy_start(device, views, std::move(start), config, observer, checkpoints);
+  return fine_tune(device, start, views.views(), config, tuning, checkpoints);
 }
 
 }  // namespace mcdbn

@@ -1,30 +1,154 @@
 #include "mcdbn/motion_model/training_sources.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/made_ahead.hpp"
 #include "corpus/augmented_views.hpp"
+#include "corpus/fresh_views.hpp"
+#include "corpus/held_out_person.hpp"
+#include "corpus/pose_pool.hpp"
 
 namespace mcdbn {
+namespace {
+
+/// Of a view of a corpus that is too large to be asked.
+constexpr std::size_t kUsesOfMany = 16;
+
+/// Frames of a piece: windows begin and end at more than a few places of it.
+int frames_of_pieces(const TrainingConfig& config) {
+  const std::size_t window = config.layers * config.order + config.fine_tuning.settle_frames +
+                             config.fine_tuning.window_frames + config.look_ahead;
+  return std::max(kPieceFrames, static_cast<int>(3 * window));
+}
+
+PieceChoice pieces_of(const TrainingConfig& config) {
+  return {.frames = frames_of_pieces(config), .groups_power = config.fine_tuning.people_power};
+}
+
+/// Seeds are small numbers: these views are nobody's else.
+std::uint64_t seed_of_strangers(const TrainingConfig& config) {
+  return config.seed + (1ULL << 32U);
+}
+
+}  // namespace
 
 const TrainingSet& ViewSource::views() const {
-  if (!views_) {
-    make_views(0);
-    if (config_.fine_tuning.new_views_every == 0) clips_ = {};
-  }
+  if (!views_)
+    views_ = make_augmented_views(clips_, data_.modalities, config_, config_.seed, data_.new_poses);
   return *views_;
 }
 
-bool ViewSource::renew(std::size_t round) const {
-  if (clips_.empty()) return false;
-  make_views(round);
-  return true;
+bool learns_from_fresh_views(const ClipStore& clips, const TrainingConfig& config) {
+  return config.fine_tuning.steps > 0 &&
+         (config.fine_tuning.view_uses > 0 || clips.frames_at(config.fps) > kMostFramesInMemory);
 }
 
-void ViewSource::make_views(std::size_t round) const {
-  // Seeds are small numbers: no round draws what another run's does.
-  views_ = make_augmented_views(clips_, modalities_, config_, config_.seed + (round << 32U));
-  // Where one round hides nothing another may: all of them say what was seen.
-  if (config_.fine_tuning.new_views_every > 0 && views_->tracks_seen.empty())
-    for (const MatrixF& track : views_->tracks)
-      views_->tracks_seen.emplace_back(MatrixF::Ones(track.rows(), track.cols()));
+std::size_t fresh_views_at_once(const ClipStore& clips, const TrainingConfig& config) {
+  const int frames = frames_of_pieces(config);
+  double pieces = 0;
+  for (const ClipRecord& record : clips.records())
+    pieces += std::max(1.0, record.seconds() * config.fps / frames);
+  return static_cast<std::size_t>(std::clamp(
+      std::ceil(static_cast<double>(config.augment.views) * pieces), 1.0, kSomeFrames / frames));
+}
+
+TrainingSet some_fresh_views(const ClipStore& clips, const Modalities& modalities,
+                             const TrainingConfig& config) {
+  const PieceChoice pieces = pieces_of(config);
+  return FreshViews(clips, modalities, config, pose_pool_for(clips, config), config.seed, pieces)
+      .make_set(0, static_cast<std::size_t>(kMostFramesInMemory / pieces.frames));
+}
+
+/// The views that are there, each in a place of its own that the next but so many takes over.
+class ViewLoader {
+ public:
+  ViewLoader(FreshViews views, std::size_t count, const FineTuningSettings& settings)
+      : views_(std::move(views)),
+        fresh_a_step_(
+            static_cast<double>(settings.windows) /
+            static_cast<double>(settings.view_uses > 0 ? settings.view_uses : kUsesOfMany)),
+        tracks_(count),
+        poses_(count),
+        seen_(count) {
+    fill(0);
+  }
+
+  SynchronizedClips sequences() const {
+    return {{{kModalityNames[kTrack], tracks_, VisibleKind::gaussian, seen_},
+             {kModalityNames[kPose], poses_}},
+            {}};
+  }
+  bool renew(std::size_t step) {
+    const auto first = static_cast<std::size_t>(static_cast<double>(step) * fresh_a_step_);
+    if (first == first_) return false;
+    fill(first);
+    return true;
+  }
+  std::size_t lifetime() const {
+    return static_cast<std::size_t>(static_cast<double>(tracks_.size()) / fresh_a_step_) + 1;
+  }
+
+ private:
+  /// Makes the views that are there `first` and those after it.
+  void fill(std::size_t first) {
+    const std::size_t count = tracks_.size(), end = first_ + count;
+    if (!ahead_ || first < first_ || first >= end) {
+      constexpr std::size_t kMostAhead = 64;
+      // One thread less than the machine has, which drives the device.
+      const std::size_t threads = std::max<std::size_t>(usual_threads(), 2) - 1;
+      ahead_.emplace([this](std::size_t number) { return views_.make(number); }, first,
+                     std::numeric_limits<std::size_t>::max(), threads, kMostAhead);
+      for (std::size_t i = 0; i < count; ++i) take(first + i);
+    } else {
+      for (std::size_t number = end; number < first + count; ++number) take(number);
+    }
+    first_ = first;
+  }
+  void take(std::size_t number) {
+    EncodedView view = ahead_->next();
+    const std::size_t place = number % tracks_.size();
+    tracks_[place] = std::move(view.track);
+    poses_[place] = std::move(view.pose);
+    seen_[place] = std::move(view.track_seen);
+  }
+
+  FreshViews views_;
+  double fresh_a_step_;
+  std::vector<MatrixF> tracks_, poses_, seen_;
+  std::size_t first_ = 0;
+  std::optional<MadeAhead<EncodedView>> ahead_;  // last: its threads use what is above
+};
+
+FreshViewSource::FreshViewSource(const ClipStore& clips, const TrainingSet& data,
+                                 const TrainingConfig& config) {
+  PieceChoice pieces = pieces_of(config);
+  pieces.without = person_to_hold_out(clips, config.hold_out_among);
+  loader_ = std::make_unique<ViewLoader>(
+      FreshViews(clips, data.modalities, config, data.new_poses, config.seed, pieces),
+      fresh_views_at_once(clips, config), config.fine_tuning);
+  if (!pieces.without) return;
+  constexpr std::size_t kViewsOfStranger = 24;
+  pieces.only = std::exchange(pieces.without, {});
+  strangers_ =
+      FreshViews(clips, data.modalities, config, data.new_poses, seed_of_strangers(config), pieces)
+          .make_set(0, kViewsOfStranger);
+}
+
+FreshViewSource::~FreshViewSource() = default;
+
+SynchronizedClips FreshViewSource::sequences() const {
+  return loader_->sequences();
+}
+
+bool FreshViewSource::renew(std::size_t step) const {
+  return loader_->renew(step);
+}
+
+std::size_t FreshViewSource::lifetime() const {
+  return loader_->lifetime();
 }
 
 }  // namespace mcdbn

@@ -95,7 +95,7 @@ const std::vector<SettingRow>& setting_rows() {
       SETTING("regeneration.mrbm-gibbs-steps", 2, regeneration.mrbm_gibbs_steps),
       SWITCH("regeneration.sampled", 1, regeneration.sampled),
       SETTING("fine-tuning.steps", 6, fine_tuning.steps),
-      SETTING("fine-tuning.new-views-every", 2, fine_tuning.new_views_every),
+      SETTING("fine-tuning.view-uses", 2, fine_tuning.view_uses),
       SWITCH("fine-tuning.from-greedy", 0, fine_tuning.from_greedy),
       SETTING("fine-tuning.windows", 5, fine_tuning.windows),
       SETTING("fine-tuning.people-power", 0.3, fine_tuning.people_power),

@@ -122,6 +122,26 @@ MatrixSource small_source() {
   return MatrixSource({{"track", scene.tracks}, {"pose", scene.poses}});
 }
 
+/// Clips that are others after every few mini-batches, whatever was drawn before.
+class ChangingSource : public SequenceSource {
+ public:
+  SynchronizedClips sequences() const override {
+    return {{{"track", tracks_}, {"pose", poses_}}, {}};
+  }
+  bool renew(std::size_t step) const override {
+    constexpr std::size_t kLasts = 7;
+    if (step / kLasts == round_) return false;
+    round_ = step / kLasts;
+    tracks_ = tiny_clips(3, 100 + static_cast<unsigned>(10 * round_));
+    poses_ = tiny_clips(5, 900 + static_cast<unsigned>(10 * round_));
+    return true;
+  }
+
+ private:
+  mutable std::size_t round_ = 0;
+  mutable std::vector<MatrixF> tracks_ = tiny_clips(3, 100), poses_ = tiny_clips(5, 900);
+};
+
 /// Forgets a request however the test ends.
 struct NoRequestLeft {
   ~NoRequestLeft() { clear_interruption(); }
@@ -194,6 +214,18 @@ TEST_CASE("fine-tuning that is killed ends with the same bits, what was kept of 
           },
           10);
     }
+    check_killed(
+        [&](const EpochObserver& observer, Checkpoints* checkpoints) {
+          return fine_tune(device, start, ChangingSource(), &strangers, settings, squares, observer,
+                           checkpoints)
+              .network;
+        },
+        10);
+    const auto learnt = [&](const SequenceSource& from) {
+      return bits_of(fine_tune(device, start, from, nullptr, settings, squares).network);
+    };
+    const MatrixSource first({{"track", tiny_clips(3, 100)}, {"pose", tiny_clips(5, 900)}});
+    CHECK(learnt(ChangingSource()) != learnt(first));
   });
 }
 

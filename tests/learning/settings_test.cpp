@@ -83,7 +83,7 @@ const std::vector<Expected<LearningSettings>>& learning_settings() {
        "0"},
       {"regeneration.sampled", [](C& c) { return at(c.regeneration.sampled); }, "false"},
       {"fine-tuning.steps", [](C& c) { return at(c.fine_tuning.steps); }, "3000"},
-      {"fine-tuning.new-views-every", [](C& c) { return at(c.fine_tuning.new_views_every); }, "0"},
+      {"fine-tuning.view-uses", [](C& c) { return at(c.fine_tuning.view_uses); }, "0"},
       {"fine-tuning.from-greedy", [](C& c) { return at(c.fine_tuning.from_greedy); }, "true"},
       {"fine-tuning.windows", [](C& c) { return at(c.fine_tuning.windows); }, "48"},
       {"fine-tuning.people-power", [](C& c) { return at(c.fine_tuning.people_power); }, "0.5"},

@@ -7,9 +7,12 @@
 
 #include "corpus/augmented_views.hpp"
 #include "corpus/training_files.hpp"
+#include "learning/learnt_deviation.hpp"
 #include "learning/random_start.hpp"
 #include "learning/small_network.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/learning/fine_tuning.hpp"
+#include "motion_model/pose_loss.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -136,19 +139,54 @@ TEST_CASE("fine-tuning goes on from what the greedy stages made of its start and
   });
 }
 
-TEST_CASE("new views on the way are others and the same in every run") {
+TEST_CASE("fresh views on the way are others and the same in every run") {
   SmallTraining small;
   on_every_device([&](Device& device) {
-    const auto trained = [&](std::size_t new_views_every) {
-      small.config.fine_tuning.new_views_every = new_views_every;
+    const auto trained = [&](std::size_t view_uses) {
+      small.config.fine_tuning.view_uses = view_uses;
       return small.train(device, small.config, {}).network;
     };
-    const Mcdbn never = trained(0), often = trained(1);
-    CHECK(same_network(trained(small.config.fine_tuning.steps), never));
+    const Mcdbn never = trained(0), often = trained(2), seldom = trained(1000);
     CHECK_FALSE(same_network(often, never));
-    CHECK(same_network(trained(1), often));
-    REQUIRE(never.deviation);
-    CHECK((never.deviation->of(MatrixF::Zero(1, never.deviation->C.rows())).array() > 0).all());
+    CHECK_FALSE(same_network(often, seldom));
+    CHECK(same_network(trained(2), often));
+    REQUIRE(often.deviation);
+    CHECK((often.deviation->of(MatrixF::Zero(1, often.deviation->C.rows())).array() > 0).all());
+  });
+}
+
+TEST_CASE("what fresh views teach, stage by stage") {
+  SmallTraining small;
+  small.config.fine_tuning.view_uses = 3;
+  small.config.hold_out_among = 2;
+  const ClipStore clips = load_clips(small.walks.files());
+  on_every_device([&](Device& device) {
+    std::vector<EpochReport> reports;
+    const TrainedNetwork trained = small.train(
+        device, small.config, [&](const EpochReport& report) { reports.push_back(report); });
+    const FreshViewSource views(clips, small.data, small.config);
+    const Mcdbn start = small.start(device, small.config);
+    const Mcdbn greedy = train_greedy(device, views, small.config, {}, &start);
+    const ClipSource judges(*views.strangers());
+    const FineTuned tuned = fine_tune(
+        device, greedy, views, &judges, small.config, [&](Device& where, const SequenceWindows& w) {
+          return std::make_unique<PoseLoss>(where, small.data.modalities, w,
+                                            small.config.pose_loss);
+        });
+    CHECK(same_network(trained.network, tuned.network));
+    REQUIRE(trained.early_stopping);
+    CHECK(trained.early_stopping->held_out == std::vector<std::string>{"walk_2_1.bvh"});
+    REQUIRE(reports.back().waited);
+    CHECK(*reports.back().waited >= 0);
+    CHECK(*reports.back().waited <= 1);
+    // How sure it is it learns from views that it did not learn from.
+    REQUIRE(trained.network.deviation);
+    views.renew(small.config.fine_tuning.steps + views.lifetime());
+    const SynchronizedClips unseen = judges.sequences();
+    CHECK(trained.network.deviation->C ==
+          learnt_deviation(tuned.network, views.sequences(), &unseen).C);
+    CHECK(trained.network.deviation->c ==
+          learnt_deviation(tuned.network, views.sequences(), &unseen).c);
   });
 }
 

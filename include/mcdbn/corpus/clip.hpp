@@ -43,7 +43,8 @@ struct LoadedClip {
   std::string person = {}, action = {};  ///< where somebody said who does what
 };
 
-/// @param notices as load_clip collects them  @throws InputError as load_clip does
+/// @param notices as load_clip collects them, but what is the same of several clips once
+/// @throws InputError as load_clip does
 std::vector<LoadedClip> load_clips(const std::vector<std::filesystem::path>& files,
                                    bool keep_first_frame = false,
                                    std::vector<std::string>* notices = nullptr);

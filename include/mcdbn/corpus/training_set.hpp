@@ -5,12 +5,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "mcdbn/corpus/augmentation.hpp"
-#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/corpus/clip_store.hpp"
 #include "mcdbn/features/modalities.hpp"
 #include "mcdbn/motion/frame_rate.hpp"
+#include "mcdbn/motion/skeleton_roles.hpp"
 
 namespace mcdbn {
 
@@ -27,6 +29,7 @@ struct CorpusSettings {
   std::size_t phases = 1;
   bool keep_first_frame = false;
   SkeletonUse skeleton = SkeletonUse::shared;  ///< no number: a choice of load_training_clips
+  JointMap joint_map = {};                     ///< no number: roles of clips' joints, said by hand
   AugmentationSettings augment;
   CameraPlacement camera;
 
@@ -51,9 +54,10 @@ struct CorpusSettings {
 /// Synchronized clips of both modalities, standardized: [frames x dimension] each.
 struct TrainingSet {
   Modalities modalities;
-  std::vector<MatrixF> tracks;      ///< 2D
-  std::vector<MatrixF> poses;       ///< 3D
-  std::vector<TrainingClip> clips;  ///< files as they were read; of augmented views, each view's
+  std::vector<MatrixF> tracks;  ///< 2D
+  std::vector<MatrixF> poses;   ///< 3D
+  std::vector<TrainingClip>
+      clips;  ///< all files as they were read; of augmented views, each view's
   /// Who is seen in each of `poses`, counted from 0.
   std::vector<std::size_t> people;
   /// What was seen of each of `tracks`, 1, and what was not, 0, where the track is at its mean;
@@ -62,15 +66,23 @@ struct TrainingSet {
   /// Who does what in each of `poses`, a number for each person and action; empty where nobody said
   /// actions.
   std::vector<std::size_t> groups = {};
+  /// What views of the clips need for poses that no clip holds, if there are to be such.
+  std::shared_ptr<const PosePool> new_poses = {};
   std::size_t frames() const;
 };
 
 /// Resamples each clip on `phases` shifted grids, projects it through the camera and learns the
-/// features and their scaling.
+/// features and their scaling. Of more than some two hours pieces stand for all (clip_pieces.hpp).
 /// @param clips at their own rate (load_clips)
 /// @param with_views the scaling is learnt from augmented views, too (make_augmented_views)
 /// @throws InputError
-TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const CorpusSettings& settings,
+TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& settings,
                               std::uint64_t seed, bool with_views);
+
+/// The same with the features and the scaling of `modalities`.
+/// @param with_views new poses are made ready, if the settings ask for such
+/// @throws InputError if a clip lacks a joint of theirs
+TrainingSet encoded_training_set(const ClipStore& clips, const Modalities& modalities,
+                                 const CorpusSettings& settings, bool with_views);
 
 }  // namespace mcdbn

@@ -18,7 +18,10 @@ struct EpochReport {
   double stage_progress = 0;            ///< 0 … 1
   double overall_progress = 0;          ///< 0 … 1, by the stages' own cost
   std::optional<double> held_out_loss;  ///< of the clips held out, fine-tuning only
-  std::optional<LayerHealth> health;    ///< at a stage's first and last epoch, and every fifth
+  /// Share of the time since the last report in which training waited for sequences that are made
+  /// on the way, fine-tuning only.
+  std::optional<double> waited;
+  std::optional<LayerHealth> health;  ///< at a stage's first and last epoch, and every fifth
 };
 using EpochObserver = std::function<void(const EpochReport&)>;
 

@@ -47,9 +47,10 @@ class SequenceSource {
   virtual ~SequenceSource() = default;
   /// All of them; they live as long as the source. May take a while the first time.
   virtual SynchronizedClips sequences() const = 0;
-  /// Makes others of the same modalities, if it can: those of before are gone.
-  /// @param round says which; the first sequences are those of round 0  @return whether it did
-  virtual bool renew(std::size_t /*round*/) const { return false; }
+  /// Makes them those that mini-batch `step` of fine-tuning is drawn from, counted from 0, if these
+  /// change on the way: the same of the same step, however it comes there. What sequences() gave is
+  /// gone then. @return whether they changed
+  virtual bool renew(std::size_t /*step*/) const { return false; }
 };
 
 /// Sequences of one modality that the source keeps.

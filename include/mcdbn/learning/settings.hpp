@@ -152,7 +152,7 @@ struct MrbmSettings {
 /// Fine-tuning: MinVI through the whole stack (fine_tuning.hpp).
 struct FineTuningSettings {
   std::size_t steps = 3000;
-  std::size_t new_views_every = 0;
+  std::size_t view_uses = 0;
   bool from_greedy = true;
   std::size_t windows = 48;
   double people_power = 0.5;
@@ -170,9 +170,11 @@ struct FineTuningSettings {
                   "how long the stage lasts; 0 leaves it out"},
           self.steps);
     // 3,000 mini-batches learn six views of 60 CMU clips by heart.
-    visit(Setting{"new-views-every", within(0, 1e9), "mini-batches",
-                  "after which other augmented views are drawn, where the source can; 0: never"},
-          self.new_views_every);
+    visit(Setting{"view-uses", within(0, 1e6), "windows",
+                  "that are learnt from an augmented view, on average, before a fresh one takes "
+                  "its place, made meanwhile; 0: all views are made beforehand, if they are not "
+                  "more than some two hours"},
+          self.view_uses);
     visit(Setting{"from-greedy", on_or_off(), "",
                   "the greedy stages come first, on the same views and from weights of the size "
                   "that fine-tuning wants; else they are left out"},

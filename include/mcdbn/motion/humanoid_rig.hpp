@@ -67,9 +67,12 @@ class HumanoidRig {
 };
 
 /// The rig of a motion that is a person's, whose joints' names tell their roles.
+/// @param joint_map roles said by hand, of one skeleton or of several: those of joints that this
+/// one
+///        has not are left out
 /// @throws InputError as the rig does; or naming the joints of a person that the skeleton has not:
 ///         hips, knees, ankles, shoulders, elbows and wrists of both sides, neck or head
-HumanoidRig rig_of_person(const Motion& motion);
+HumanoidRig rig_of_person(const Motion& motion, const JointMap& joint_map = {});
 
 /// What is lost of a motion that goes to the humanoid and comes back.
 struct RetargetError {

@@ -22,6 +22,12 @@ struct EarlyStopping {
   double loss = 0;                    ///< theirs on the person held out
 };
 
+/// The model that a training started from.
+struct StartedFrom {
+  std::string model;        ///< its file, absolute
+  std::string fingerprint;  ///< of the file's bytes
+};
+
 /// Everything that one model file holds.
 struct Model {
   Mcdbn network;
@@ -29,6 +35,7 @@ struct Model {
   std::vector<TrainingClip> training_clips;
   nlohmann::json config;  ///< the effective settings of the run
   std::optional<EarlyStopping> early_stopping = {};
+  std::optional<StartedFrom> started_from = {};
 };
 
 /// The same file with numbers of 16 bits takes half the room.
@@ -41,7 +48,7 @@ void save_model(const std::filesystem::path& path, const Model& model,
 /// @throws InputError
 Model load_model(Device& device, const std::filesystem::path& path);
 /// The file's own account of itself, for people: sizes, main settings, training clips, early
-/// stopping. Needs no device. @throws InputError
+/// stopping, what it started from. Needs no device. @throws InputError
 nlohmann::json describe_model(const std::filesystem::path& path);
 
 }  // namespace mcdbn

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "mcdbn/corpus/clip_list.hpp"
@@ -20,10 +21,12 @@ class RunFolder {
   /// Makes the folder and notes what is going to be trained.
   /// @param replace where there is a training already, finished or not: its `unfinished` goes now,
   /// its model when the new one is there
+  /// @param start a model file that the training starts from, of which a copy is kept; or none
   /// @throws ConfigError if there is one and it is not to be replaced, Error if another program
   /// trains there, InputError
   static RunFolder begin(const std::filesystem::path& path, const TrainingConfig& config,
-                         const std::vector<ListedClip>& clips, bool replace);
+                         const std::vector<ListedClip>& clips, bool replace,
+                         const std::filesystem::path& start = {});
   /// One that was interrupted.
   /// @throws InputError if there is none, Error if another program trains there
   static RunFolder resume(const std::filesystem::path& path);
@@ -33,10 +36,15 @@ class RunFolder {
 
   const TrainingConfig& config() const { return config_; }
   const std::vector<ListedClip>& clips() const { return clips_; }
+  /// What it starts from, if that is a model; its file is start_model().
+  const std::optional<StartedFrom>& started_from() const { return started_from_; }
+  std::filesystem::path start_model() const { return unfinished() / "start.safetensors"; }
   /// Whether all is done already.
   bool is_complete() const { return complete_; }
   std::filesystem::path unfinished() const;
   std::filesystem::path model() const;  ///< where it will be
+  /// Where its clips are kept as they were read (cached_training_clips); gone with `unfinished`.
+  std::filesystem::path clip_cache() const { return unfinished() / "clips.cache"; }
 
   /// Takes back what begin() made, if nothing was learnt since: a training that was refused before
   /// its first epoch needs no `replace` the next time. @return whether it did
@@ -57,6 +65,7 @@ class RunFolder {
   std::unique_ptr<Lock> lock_;
   TrainingConfig config_;
   std::vector<ListedClip> clips_;
+  std::optional<StartedFrom> started_from_;
   bool begun_here_ = false, complete_ = false;
 };
 

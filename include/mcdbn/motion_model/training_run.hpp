@@ -42,12 +42,14 @@ struct TrainingWatch {
 
 /// Trains on clips and sets how the model draws samples.
 /// @param data of make_training_set(clips, config)
-/// @param clips gone once the views of them are made
 /// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
+/// @param start the model that it starts from (training_start.hpp), whose modalities data has;
+/// none:
+///        random weights
 /// @throws ConfigError, DivergenceError
-TrainedRun train_model(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
+TrainedRun train_model(Device& device, const TrainingSet& data, const ClipStore& clips,
                        const TrainingConfig& config, const EpochObserver& observer = {},
-                       Checkpoints* checkpoints = nullptr);
+                       Checkpoints* checkpoints = nullptr, const Model* start = nullptr);
 
 /// The same into a run folder: metrics.jsonl gets a line for each epoch, checkpoints are written
 /// now and then, and at last the model. A folder with a checkpoint goes on from there, to the same
@@ -55,8 +57,8 @@ TrainedRun train_model(Device& device, const TrainingSet& data, std::vector<Load
 /// @param data, clips of the folder's own settings and clips
 /// @throws InputError if a file cannot be written, or the checkpoint is of other clips; Interrupted
 /// once a checkpoint is written, if that was asked for (base/interruption.hpp)
-TrainedRun train_to_folder(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
+TrainedRun train_to_folder(Device& device, const TrainingSet& data, const ClipStore& clips,
                            RunFolder& run, const CheckpointSettings& settings = {},
-                           const TrainingWatch& watch = {});
+                           const TrainingWatch& watch = {}, const Model* start = nullptr);
 
 }  // namespace mcdbn

@@ -19,9 +19,12 @@ struct TrainedNetwork {
 };
 
 /// make_training_set as a training run's settings say.
-TrainingSet make_training_set(const std::vector<LoadedClip>& clips, const TrainingConfig& config);
+TrainingSet make_training_set(const ClipStore& clips, const TrainingConfig& config);
+/// The same with a model's features and scaling, for a training that starts from it.
+TrainingSet make_training_set(const ClipStore& clips, const Modalities& modalities,
+                              const TrainingConfig& config);
 /// make_augmented_views likewise.
-TrainingSet make_augmented_views(const std::vector<LoadedClip>& clips, const Modalities& modalities,
+TrainingSet make_augmented_views(const ClipStore& clips, const Modalities& modalities,
                                  const TrainingConfig& config);
 
 /// Fine-tuning with the loss on poses (PoseLoss). Of at least config.hold_out_among people one is
@@ -33,12 +36,13 @@ TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& 
 
 /// The greedy stages (Algorithm 1) on the clips as they are, or on augmented views of them and then
 /// fine-tuning, or that alone, as config.fine_tuning says.
-/// @param clips as make_training_set took them, for the views; gone once those are made
+/// @param data of those clips (make_training_set)
 /// The observer may throw to stop.
 /// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
+/// @param from parameters to start from instead of random ones
 /// @throws DivergenceError, InputError
-TrainedNetwork train_network(Device& device, const TrainingSet& data, std::vector<LoadedClip> clips,
+TrainedNetwork train_network(Device& device, const TrainingSet& data, const ClipStore& clips,
                              const TrainingConfig& config, const EpochObserver& observer = {},
-                             Checkpoints* checkpoints = nullptr);
+                             Checkpoints* checkpoints = nullptr, const Mcdbn* from = nullptr);
 
 }  // namespace mcdbn

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/corpus/clip_store.hpp"
 #include "mcdbn/corpus/training_set.hpp"
 #include "mcdbn/learning/sequence_source.hpp"
 #include "mcdbn/motion_model/training_config.hpp"
@@ -30,28 +31,61 @@ class ClipSource : public SequenceSource {
   const TrainingSet& set_;
 };
 
-/// Augmented views of clips (make_augmented_views), made when they are first asked for, and others
-/// at each renewal.
+/// Augmented views of clips that are made when they are first asked for and then kept
+/// (make_augmented_views).
 class ViewSource : public SequenceSource {
  public:
-  /// @param clips at their own rate, gone once the last views are made: at once, unless
-  ///        config.fine_tuning.new_views_every says that there will be others
-  /// @param modalities must live on
-  ViewSource(std::vector<LoadedClip> clips, const Modalities& modalities,
-             const TrainingConfig& config)
-      : clips_(std::move(clips)), modalities_(modalities), config_(config) {}
+  /// @param data of those clips (make_training_set), must live on
+  ViewSource(ClipStore clips, const TrainingSet& data, const TrainingConfig& config)
+      : clips_(std::move(clips)), data_(data), config_(config) {}
 
   const TrainingSet& views() const;
   SynchronizedClips sequences() const override { return ClipSource(views()).sequences(); }
-  bool renew(std::size_t round) const override;
 
  private:
-  void make_views(std::size_t round) const;
-
-  mutable std::vector<LoadedClip> clips_;
-  const Modalities& modalities_;
+  ClipStore clips_;
+  const TrainingSet& data_;
   TrainingConfig config_;
   mutable std::optional<TrainingSet> views_;
 };
+
+class ViewLoader;
+
+/// Views of pieces of clips (FreshViews) that give way to fresh ones while they are learnt from,
+/// one after config.fine_tuning.view_uses windows of it. Threads of its own make them ahead. Which
+/// views a mini-batch is drawn from hangs on its number alone. So does its cost, whatever the
+/// corpus.
+class FreshViewSource : public SequenceSource {
+ public:
+  /// One person is held out as config.hold_out_among says.
+  FreshViewSource(const ClipStore& clips, const TrainingSet& data, const TrainingConfig& config);
+  ~FreshViewSource() override;
+  FreshViewSource(const FreshViewSource&) = delete;
+  FreshViewSource& operator=(const FreshViewSource&) = delete;
+
+  SynchronizedClips sequences() const override;
+  bool renew(std::size_t step) const override;
+  /// Mini-batches from any one on after which all views are others.
+  std::size_t lifetime() const;
+  /// Views of the person held out, always the same, if one is.
+  const std::optional<TrainingSet>& strangers() const { return strangers_; }
+
+ private:
+  std::unique_ptr<ViewLoader> loader_;
+  std::optional<TrainingSet> strangers_;
+};
+
+/// Whether fine-tuning learns from a FreshViewSource: if the settings ask for it, or all views at
+/// once would be more than some two hours.
+bool learns_from_fresh_views(const ClipStore& clips, const TrainingConfig& config);
+
+/// Some two hours of the views that a FreshViewSource begins with, for others to learn from.
+/// @param clips as they were learnt from
+TrainingSet some_fresh_views(const ClipStore& clips, const Modalities& modalities,
+                             const TrainingConfig& config);
+
+/// Views that a FreshViewSource holds at a time: config.augment.views of each piece, but not more
+/// than some half an hour.
+std::size_t fresh_views_at_once(const ClipStore& clips, const TrainingConfig& config);
 
 }  // namespace mcdbn

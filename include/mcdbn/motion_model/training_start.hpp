@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "mcdbn/base/said_setting.hpp"
+#include "mcdbn/motion_model/model_file.hpp"
+#include "mcdbn/motion_model/training_config.hpp"
+
+namespace mcdbn {
+
+// A training that starts from a model: its parameters, features and scaling instead of random and
+// new ones. The greedy stages are left out: they would train them anew.
+
+/// What is the model's own and no training's choice: rate, sizes, camera.
+std::vector<SaidSetting> settings_of_start(const Model& start);
+
+/// Whether those settings are the model's, the skeleton is, and there is fine-tuning and nothing
+/// before it.
+/// @throws ConfigError that names what differs
+void check_start(const Model& start, const TrainingConfig& config);
+
+}  // namespace mcdbn

@@ -1,0 +1,88 @@
+#include "corpus/fresh_views.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "base/made_ahead.hpp"
+#include "base/missing_values.hpp"
+#include "base/random_sequence.hpp"
+#include "base/random_streams.hpp"
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+
+EncodedView encode_view(const Modalities& modalities, const AugmentedView& view, std::size_t clip) {
+  // Limbs out of sight: as Mcdbn::fills_gaps says, and nothing is learnt from them.
+  const MatrixF track = modalities.encode_track(view.track, view.camera);
+  return {at_mean_where_unknown(track),
+          modalities.encode_pose(view.motion, view.camera.camera_from_world),
+          (!track.array().isNaN()).cast<float>().matrix(), clip};
+}
+
+void add_view(EncodedView view, const ClipStore& clips, const ClipGroups& groups,
+              TrainingSet& views) {
+  views.tracks_seen.push_back(std::move(view.track_seen));
+  views.tracks.push_back(std::move(view.track));
+  views.poses.push_back(std::move(view.pose));
+  views.clips.push_back(clips.record(view.clip).clip);
+  groups.add(view.clip, 1, views);
+}
+
+FreshViews::FreshViews(ClipStore clips, Modalities modalities, const CorpusSettings& settings,
+                       std::shared_ptr<const PosePool> pool, std::uint64_t seed,
+                       const PieceChoice& choice)
+    : clips_(std::move(clips)),
+      groups_(clips_),
+      modalities_(std::move(modalities)),
+      settings_(settings),
+      pool_(std::move(pool)),
+      seed_(seed),
+      choice_(choice) {
+  const auto counts = [&](std::size_t clip) {
+    const std::size_t person = groups_.people()[clip];
+    return person != choice_.without && (!choice_.only || person == choice_.only);
+  };
+  std::map<std::size_t, double> frames_of;
+  for (std::size_t i = 0; i < clips_.count(); ++i)
+    if (counts(i)) frames_of[groups_.groups()[i]] += clips_.record(i).seconds() * settings_.fps;
+  if (frames_of.empty()) throw InputError("no clips are left to learn from");
+  double end = 0;
+  for (std::size_t i = 0; i < clips_.count(); ++i) {
+    // A long clip has as many pieces as fit; windows are drawn from views as their frames.
+    const double frames = clips_.record(i).seconds() * settings_.fps;
+    if (counts(i))
+      end += std::max(1.0, frames / choice_.frames) *
+             std::pow(frames_of.at(groups_.groups()[i]), choice_.groups_power - 1);
+    ends_.push_back(end);
+  }
+}
+
+EncodedView FreshViews::make(std::size_t number) const {
+  const RandomKey key{seed_, static_cast<std::uint32_t>(number), random_streams::kFreshViews, 0};
+  RandomSequence random(mixed_seed({key.seed, key.step, key.stream}));
+  const auto found = std::ranges::upper_bound(ends_, random.uniform() * ends_.back());
+  const auto clip =
+      std::min<std::size_t>(static_cast<std::size_t>(found - ends_.begin()), clips_.count() - 1);
+  const ClipRecord& record = clips_.record(clip);
+  const int wanted =
+      static_cast<int>(std::ceil(choice_.frames / (settings_.fps * record.frame_time_s)));
+  const int frames = std::min(wanted, record.frames);
+  const auto first =
+      static_cast<int>(random.below(static_cast<std::size_t>(record.frames - frames) + 1));
+  return encode_view(modalities_,
+                     augmented_view(clips_.piece(clip, first, frames), settings_.fps,
+                                    settings_.camera, settings_.augment, key, false, pool_.get()),
+                     clip);
+}
+
+TrainingSet FreshViews::make_set(std::size_t first, std::size_t count) const {
+  TrainingSet views{modalities_, {}, {}, {}, {}, {}};
+  MadeAhead<EncodedView> made([this](std::size_t number) { return make(number); }, first,
+                              first + count, usual_threads(), 4 * usual_threads());
+  for (std::size_t i = 0; i < count; ++i) add_view(made.next(), clips_, groups_, views);
+  return views;
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "corpus/clip_groups.hpp"
+#include "corpus/clip_pieces.hpp"
+#include "corpus/pose_pool.hpp"
+#include "mcdbn/corpus/clip_store.hpp"
+#include "mcdbn/corpus/training_set.hpp"
+
+namespace mcdbn {
+
+/// An augmented view as a network learns it, standardized.
+struct EncodedView {
+  MatrixF track, pose;  ///< [frames x dimension]
+  MatrixF track_seen;   ///< 1 what was seen, 0 what was not, where the track is at its mean
+  std::size_t clip = 0;
+};
+
+EncodedView encode_view(const Modalities& modalities, const AugmentedView& view, std::size_t clip);
+/// As one more of a set's sequences.
+void add_view(EncodedView view, const ClipStore& clips, const ClipGroups& groups,
+              TrainingSet& views);
+
+/// Which pieces of clips are seen.
+struct PieceChoice {
+  /// Frames of a piece at the model's rate, before its tempo is another; all of a shorter clip.
+  int frames = kPieceFrames;
+  /// People and actions come as their frames to this power (FineTuningSettings::people_power).
+  double groups_power = 1;
+  /// People, as ClipGroups numbers them.
+  std::optional<std::size_t> without = {}, only = {};
+};
+
+/// As many augmented views of pieces of clips as anybody wants. View n is the same whoever makes it
+/// and when; making it takes as long whatever the corpus.
+class FreshViews {
+ public:
+  /// @param pool what new poses are made of; none: there are none
+  /// @throws InputError if no clip is left
+  FreshViews(ClipStore clips, Modalities modalities, const CorpusSettings& settings,
+             std::shared_ptr<const PosePool> pool, std::uint64_t seed, const PieceChoice& choice);
+
+  /// Several threads may call it at once.
+  EncodedView make(std::size_t number) const;
+  /// Views `first` to `first` + `count` − 1, made by several threads. Each says what was seen.
+  TrainingSet make_set(std::size_t first, std::size_t count) const;
+
+ private:
+  ClipStore clips_;
+  ClipGroups groups_;
+  Modalities modalities_;
+  CorpusSettings settings_;
+  std::shared_ptr<const PosePool> pool_;
+  std::uint64_t seed_;
+  PieceChoice choice_;
+  std::vector<double> ends_;  ///< of each clip's share in the draw, added up
+};
+
+}  // namespace mcdbn
