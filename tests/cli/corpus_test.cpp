@@ -56,6 +56,18 @@ TEST_CASE("corpus: every option changes what its help says") {
           CHECK(first.at("humanoid").at("mean_mm").get<double>() < 1);
           CHECK(json.at("clips").at(4).at("problems").at(0).at("kind") == "unreadable");
         }},
+       {"--joint-map",
+        [&] {
+          // The ankle that is said to be a knee is nobody's ankle.
+          const fs::path map = folder.write("map.toml", "left_knee = \"LeftFoot\"\n");
+          const auto json = nlohmann::json::parse(
+              run_cli(fmt::format("{} --json --joint-map '{}'", data, map.string()))
+                  .standard_output);
+          CHECK(json.at("usable") == 0);
+          const std::string problem = json.at("clips").at(0).at("problems").at(0).at("text");
+          CHECK(problem.find("left_ankle") != std::string::npos);
+          CHECK(run_cli(data + " --joint-map absent").exit_code == 3);
+        }},
        {"--quiet", [&] {
           const fs::path quiet = folder / "quiet.toml";
           const CliResult result = run_cli(fmt::format("{} -o '{}' --quiet", data, quiet.string()));

@@ -121,6 +121,44 @@ TEST_CASE("train: every option changes what its help says") {
                     CHECK(model().find("JOINT left_shoulder") != std::string::npos);
                     CHECK(plain.find("JOINT left_shoulder") == std::string::npos);
                   }});
+  rows.push_back(
+      {"--joint-map", [&] {
+         const fs::path map = folder.write("map.toml", "head = \"Neck\"\n");
+         const std::string said = fmt::format("--joint-map '{}'", map.string());
+         trained(pipeline.training_clips(), said);
+         CHECK(model().find("JOINT left_shoulder") != std::string::npos);  // the humanoid
+         CHECK(train(pipeline.training_clips(), run, kQuick + " --force --skeleton own " + said)
+                   .exit_code == 2);
+         folder.write("map.toml", "left_knee = \"LeftFoot\"\n");
+         const CliResult lame = train(pipeline.training_clips(), run, kQuick + " --force " + said);
+         CHECK(lame.exit_code == 3);
+         CHECK(lame.standard_error.find("left_ankle") != std::string::npos);
+         folder.write("map.toml", "left_knee = 3\n");
+         CHECK(train("x.bvh", run, said).exit_code == 3);
+       }});
+  rows.push_back(
+      {"--from", [&] {
+         const fs::path start = folder.write("start.safetensors", plain);
+         const auto from = [&](const std::string& what, const std::string& options) {
+           return train(pipeline.test_clips(), folder / "from",
+                        fmt::format("--force --fine-tuning-steps 2 --fine-tuning-windows "
+                                    "4 --augment-views 1 --from {} {}",
+                                    what, options));
+         };
+         const CliResult result = from(fmt::format("'{}'", start.string()), "");
+         CAPTURE(result.standard_error);
+         CHECK(result.exit_code == 0);
+         const std::string info =
+             run_cli(fmt::format("info '{}'", (folder / "from/model.safetensors").string()))
+                 .standard_output;
+         CHECK(info.find("start.safetensors") != std::string::npos);
+         CHECK(from("absent", "").exit_code == 3);
+         const CliResult wider = from(fmt::format("'{}'", start.string()), "--hidden 99");
+         CHECK(wider.exit_code == 2);
+         CHECK(wider.standard_error.find("--hidden is 99, but") != std::string::npos);
+         CHECK(from("default", "--hidden 99").standard_error.find("start from") !=
+               std::string::npos);
+       }});
   rows.push_back({"--tracks", [&] {
                     CHECK(train("x.bvh", run, "--tracks other").exit_code == 2);
                     const auto share = [&](const std::string& said) {
