@@ -14,7 +14,7 @@ std::uint32_t multiply_high(std::uint32_t a, std::uint32_t b) {
 
 #include "philox.clh"
 
-PHILOX_DEFINE(philox_rounds, std::uint32_t, multiply_high)
+PHILOX_DEFINE(philox_rounds, std::uint32_t, multiply_high, )
 
 }  // namespace
 
