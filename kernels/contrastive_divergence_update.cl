@@ -28,7 +28,7 @@ INLINE void update_w(local float* x, local float* x_end, int panel, int rows, fl
   const int tiles = TILES_IN(panel, V_LD);
   at += row0 * H_LD;
   ADD_UP_PANEL(
-      rows, tiles, H_LD, gradients + at, VISIBLE - row0,
+      rows, tiles, H_LD, gradients + at, VISIBLE - row0, false,
       {
         pack_row(x, i, tiles, visible_data + (first + i) * V_LD + row0);
         pack_row(x_end, i, tiles, visible + (first + i) * V_LD + row0);
@@ -56,7 +56,7 @@ INLINE void update_directed(local float* x, int panel, const int order, const in
   frames += (shift - order) * V_LD + row0;
   at += row0 * ld;
   ADD_UP_PANEL(
-      rows, tiles, ld, gradients + at, PANEL_ROWS,
+      rows, tiles, ld, gradients + at, PANEL_ROWS, false,
       { pack_row(x, i, tiles, frames + index[first + i] * V_LD); },
       { add_outer(sum, count, x + x_at, change + (first + i) * ld + column, 1.0f); },
       {

@@ -69,7 +69,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void joint_likelihood_
       global const float* data = codes + stride * UNITS_BEFORE(m) + row0;
       global const float* end = visible + stride * UNITS_BEFORE(m) + row0;
       ADD_UP_PANEL(
-          rows, tiles, H_LD, gradients + at, UNITS(m) - row0,
+          rows, tiles, H_LD, gradients + at, UNITS(m) - row0, false,
           {
             pack_row(x, i, tiles, data + (first + i) * ld);
             pack_row(x_end, i, tiles, end + (first + i) * ld);

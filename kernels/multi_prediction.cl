@@ -1,6 +1,7 @@
 // Multi-prediction of the MRBM (eq 42) in launches of three kernels: multi_prediction runs the unrolled
 // mean field (eq 32, 33) and its back-propagation for a block of rows, multi_prediction_update.cl makes
-// every gradient and applies it.
+// every gradient and applies it. A long mini-batch is taken in parts of `rows` of its `batch` rows, from
+// `first` on, so that what a part leaves for its gradients stays in cache.
 //
 // global: (blocks · GROUP, MODALITIES), local: (GROUP, 1). Group (i, d) carries rows i · ROWS … through
 // the direction in which modality d is absent and the others are present. Compile-time: mrbm_shape.clh,
@@ -8,7 +9,7 @@
 // Stacks are made of blocks of `stride` rows, block t after block t − 1, for one modality after
 // another; rows past `rows` have errors of zero. Of a modality: codes [1 block], the mini-batch; values
 // and value_errors [STEPS blocks]. Of direction d: hidden, hidden_errors [STEPS blocks at d · STEPS],
-// drive, drive_errors [1 block at d], loss[d · stride + row] = −log p(target | prediction)
+// drive, drive_errors [1 block at d], loss[d · batch + first + row] = −log p(target | prediction)
 // of the row but for a constant: Σ cross-entropy, or of Gaussian units half the squared errors.
 //
 // Variants that `scripts/lint kernels` compiles:
@@ -56,10 +57,11 @@ INLINE float row_half_squares(global const float* target, local const float* pre
 }
 
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
-    global const int* layout, int rows, int stride, global const float* parameters,
-    global const float* transposed, global const float* codes, global float* values,
-    global float* value_errors, global float* hidden, global float* hidden_errors,
-    global float* drive, global float* drive_errors, global float* loss) {
+    global const int* layout, int rows, int stride, int first, int batch,
+    global const float* parameters, global const float* transposed, global const float* codes,
+    global float* values, global float* value_errors, global float* hidden,
+    global float* hidden_errors, global float* drive, global float* drive_errors,
+    global float* loss) {
   local float x[ROWS * X_LD];
   local float h[ROWS * H_LD];
   const int row0 = get_group_id(0) * ROWS;
@@ -77,7 +79,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
   hidden_errors += (q * STEPS * stride + row0) * H_LD;
   drive += (q * stride + row0) * H_LD;
   drive_errors += (q * stride + row0) * H_LD;
-  loss += q * stride + row0;
+  loss += q * batch + first + row0;
 
   const int value_block = stride * Q_LD, hidden_block = stride * H_LD;
   const int present_rows = min(ROWS, rows - row0);
@@ -111,7 +113,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
   }
 
   // The error before the units' activation is prediction − target, of either kind.
-  const float mean = 1.0f / (float)rows;
+  const float mean = 1.0f / (float)batch;
   for (int r = get_local_id(0); r < ROWS && row0 + r < rows; r += GROUP)
     loss[r] = gaussian ? row_half_squares(target + r * Q_LD, x + r * X_LD, Q_LD)
                        : row_cross_entropy(target + r * Q_LD, x + r * X_LD, Q, Q_LD);

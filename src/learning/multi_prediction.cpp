@@ -22,6 +22,11 @@ std::optional<RowTile> choose_tile(const Mrbm& mrbm, std::size_t batch) {
   return choose_chain_tile(mrbm.device(), shape, batch);
 }
 
+/// Parts as long as each other, but for the last.
+std::size_t rows_of_part(std::size_t batch, std::size_t most) {
+  return ceil_divide(batch, std::max<std::size_t>(1, ceil_divide(batch, most)));
+}
+
 std::vector<std::size_t> all_but(std::size_t modality, std::size_t modalities) {
   std::vector<std::size_t> others;
   for (std::size_t m = 0; m < modalities; ++m)
@@ -33,7 +38,8 @@ std::vector<std::size_t> all_but(std::size_t modality, std::size_t modalities) {
 
 MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
                                  OptimizerKind optimizer)
-    : MultiPrediction(mrbm, batch, settings, choose_tile(mrbm, batch), optimizer) {}
+    : MultiPrediction(mrbm, batch, settings, choose_tile(mrbm, rows_of_part(batch, kMostPartRows)),
+                      optimizer) {}
 
 MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
                                  std::optional<RowTile> tile, OptimizerKind optimizer)
@@ -41,14 +47,15 @@ MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettin
       settings_(settings),
       steps_(settings.mean_field_steps),
       batch_(batch),
+      part_rows_(tile ? rows_of_part(batch, kMostPartRows) : batch),
       tile_(tile),
-      block_(whole_blocks(batch, tile)),
+      block_(whole_blocks(part_rows_, tile)),
       optimizer_(mrbm.parameters(), optimizer),
       drive_(mrbm.device(), (tile ? mrbm.modality_count() : 1) * block_, mrbm.hidden()),
       drive_error_(Matrix::like(drive_)),
       hidden_(mrbm.device(), steps_ * drive_.rows(), mrbm.hidden()),
       hidden_errors_(Matrix::like(hidden_)),
-      row_losses_(mrbm.device(), 1, mrbm.modality_count() * block_) {
+      row_losses_(mrbm.device(), 1, mrbm.modality_count() * batch) {
   if (steps_ == 0) throw ConfigError("`mrbm.mean-field-steps` must be at least 1");
   if (tile_)
     make_stacks();
@@ -62,6 +69,10 @@ void MultiPrediction::make_stacks() {
   codes_ = Matrix(device, 1, block_ * all_units(mrbm_));
   stacked_values_ = Matrix(device, 1, steps_ * codes_.columns());
   stacked_value_errors_ = Matrix::like(stacked_values_);
+  // The biases' gradients stand behind the pieces.
+  const std::size_t hidden = padded(mrbm_.hidden());
+  const std::size_t biases = ceil_divide(all_units(mrbm_) + hidden, hidden);
+  partial_ = Matrix(device, pieces() * all_units(mrbm_) + biases, mrbm_.hidden());
 }
 
 void MultiPrediction::make_matrices() {
@@ -88,9 +99,7 @@ void MultiPrediction::step(const std::vector<Rows>& codes, const UpdateRule& rul
   }
   optimizer_.next_step();
   if (tile_) {
-    gather_codes(codes, block_, codes_);
-    fused_chain();
-    fused_update(rule, losses);
+    fused_step(codes, rule, losses);
     return;
   }
   optimizer_.gradients().set_zero();

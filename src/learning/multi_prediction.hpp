@@ -13,9 +13,9 @@ namespace mcdbn {
 /// cross-entropy of that prediction (half the squared error, if its units are Gaussian) is
 /// back-propagated through all steps, in every direction.
 ///
-/// A mini-batch is gathered, then taken in three launches (multi_prediction.cl,
-/// multi_prediction_update.cl) where a block of rows fits the device's local memory, else in one
-/// product after another.
+/// A mini-batch is taken in parts of at most kMostPartRows rows, each gathered and taken in two
+/// launches, and a last launch (multi_prediction.cl, multi_prediction_update.cl) where a block of
+/// rows fits the device's local memory, else in one product after another.
 class MultiPrediction : public LearningRule {
  public:
   /// @throws ConfigError without a mean-field step
@@ -48,19 +48,32 @@ class MultiPrediction : public LearningRule {
   void make_stacks();
   void make_matrices();
 
-  void fused_chain();
-  std::size_t fused_products(const Defines& defines);
+  /// Rows `first` … `first` + `rows` of the mini-batch. In the stacks they are `stride`, so that
+  /// blocks are whole.
+  struct Part {
+    std::size_t first, rows, stride;
+  };
+  void fused_step(const std::vector<Rows>& codes, const UpdateRule& rule, LossAccumulator& losses);
+  void fused_chain(const Part& part);
+  void fused_products(const Part& part);
   void fused_update(const UpdateRule& rule, LossAccumulator& losses);
   Defines fused_defines() const;
+  Defines update_defines() const;
+  std::size_t piece_steps() const;
+  std::size_t pieces() const;
 
+  /// Of a part: the steps of its mean field, read again for the gradients, stay in a CPU's cache.
+  static constexpr std::size_t kMostPartRows = 256;
   /// Rows of the stacks that are added up at once: two pieces should fit a core's cache.
   static constexpr std::size_t kPieceRows = 1024;
 
   Mrbm& mrbm_;
   MrbmSettings settings_;
   std::size_t steps_, batch_;
+  std::size_t
+      part_rows_;  ///< of every part but the last, which may have fewer; composed: the batch
   std::optional<RowTile> tile_;
-  std::size_t block_;  ///< rows of one mean-field step in the stacks: the batch, or whole blocks
+  std::size_t block_;  ///< rows of one mean-field step in the stacks: a part's, in whole blocks
   Optimizer optimizer_;
   // Stacks of all modalities [1 x floats] as multi_prediction.cl has them, fused.
   Matrix codes_, stacked_values_, stacked_value_errors_;
@@ -70,8 +83,8 @@ class MultiPrediction : public LearningRule {
   // Composed: of one direction; fused: of all, one after the other.
   Matrix drive_, drive_error_;            // [block x hidden]
   Matrix hidden_, hidden_errors_;         // [steps·block x hidden]
-  Matrix row_losses_;                     // [1 x modalities·block], fused
-  Matrix partial_;                        // [pieces · all_units() x hidden], fused
+  Matrix row_losses_;                     // [1 x modalities·batch], fused
+  Matrix partial_;                        // of multi_prediction_products, fused
   std::optional<MrbmMatrices> gradient_;  // the optimizer's, composed
 };
 

@@ -16,9 +16,11 @@ struct Case {
   std::size_t track, pose, hidden, batch, steps;
 };
 
-// The second one's stacks are added up in several pieces.
-const std::vector<Case> kCases = {{33, 17, 21, 11, 10}, {9, 5, 7, 229, 9}};
+// The second one is taken in three parts, whose stacks are added up in several pieces.
+const std::vector<Case> kCases = {{33, 17, 21, 11, 10}, {9, 5, 7, 517, 9}};
 const Case kOddCase{17, 33, 19, 29, 3};
+// Two parts; the pieces of the stacks end within them.
+const Case kLongCase{5, 3, 7, 301, 8};
 
 struct Problem {
   explicit Problem(const Case& test)
@@ -135,16 +137,34 @@ TEST_CASE("multi-prediction's gradients, fused and composed, are the double refe
 
 TEST_CASE("every tile of fused multi-prediction gives the same bits, and so does another run") {
   on_every_device([](Device& device) {
-    const Problem problem(kOddCase);
-    const Step want = run_step(device, problem, tile_for(device, kOddCase), UpdateRule::adam(), 3);
-    for (const RowTile& tile :
-         {RowTile{16, 7, 2, 1, 8, 3}, RowTile{4, 4, 1, 32, 4, 2}, RowTile{1, 3, 1, 64, 16, 4}}) {
-      CAPTURE(tile.vector_width);
-      CAPTURE(tile.rows);
-      check_against_reference(device, kOddCase, tile);
-      const Step got = run_step(device, problem, tile, UpdateRule::adam(), 3);
-      CHECK(same_bits(got.after, want.after));
-      CHECK(got.launches == 3 * 4);  // three mini-batches: one gathers, three work
+    for (const Case& test : {kOddCase, kLongCase}) {
+      const Problem problem(test);
+      const Step want = run_step(device, problem, tile_for(device, test), UpdateRule::adam(), 3);
+      for (const RowTile& tile :
+           {RowTile{16, 7, 2, 1, 8, 3}, RowTile{4, 4, 1, 32, 4, 2}, RowTile{1, 3, 1, 64, 16, 4}}) {
+        CAPTURE(test.batch);
+        CAPTURE(tile.vector_width);
+        CAPTURE(tile.rows);
+        check_against_reference(device, test, tile);
+        const Step got = run_step(device, problem, tile, UpdateRule::adam(), 3);
+        CHECK(same_bits(got.after, want.after));
+        // Three mini-batches: of each part one gathers and two work, the last updates.
+        const std::size_t parts = test.batch > 256 ? 2 : 1;
+        CHECK(got.launches == 3 * (3 * parts + 1));
+      }
+    }
+  });
+}
+
+// On oclgrind's device too: two parts, work-items that share blocks and panels, and the biases'
+// sums.
+TEST_CASE("small: work-items that share fused multi-prediction wait for each other") {
+  const Problem problem({2, 3, 3, 259, 2});
+  on_every_device([&](Device& device) {
+    const Step want = run_step(device, problem, RowTile{16, 10, 1, 1, 8, 2}, UpdateRule::adam());
+    for (const RowTile& tile : {RowTile{4, 10, 1, 4, 4, 1}, RowTile{1, 8, 1, 8, 4, 2}}) {
+      CAPTURE(tile.group);
+      CHECK(same_bits(run_step(device, problem, tile, UpdateRule::adam()).after, want.after));
     }
   });
 }
