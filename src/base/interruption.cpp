@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <future>
 #include <thread>
 #include <utility>
@@ -35,9 +36,21 @@ void check_interruption() {
 
 void run_interruptibly(std::function<void()> call) {
   constexpr auto kLookEvery = std::chrono::milliseconds(50);
-  std::packaged_task<void()> task(std::move(call));
-  std::future<void> end = task.get_future();
-  std::thread(std::move(task)).detach();
+  std::promise<void> promise;
+  std::future<void> end = promise.get_future();
+  std::thread([call = std::move(call), promise = std::move(promise)]() mutable {
+    std::exception_ptr failure;
+    try {
+      call();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    call = nullptr;  // what it holds is given back before anyone hears of its end
+    if (failure)
+      promise.set_exception(failure);
+    else
+      promise.set_value();
+  }).detach();
   while (end.wait_for(kLookEvery) != std::future_status::ready) check_interruption();
   end.get();
 }
