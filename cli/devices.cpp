@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -25,7 +26,12 @@ void print_as_json(const std::vector<DeviceInfo>& devices) {
                     {"type", device.is_gpu ? "gpu" : "cpu"},
                     {"compute_units", device.compute_units},
                     {"global_memory_bytes", device.global_memory_bytes},
-                    {"local_memory_bytes", device.local_memory_bytes}});
+                    {"largest_buffer_bytes", device.largest_buffer_bytes},
+                    {"local_memory_bytes", device.local_memory_bytes},
+                    {"largest_work_group", device.largest_group},
+                    {"largest_work_group_sides", device.largest_group_sides},
+                    {"preferred_vector_width", device.preferred_vector_width},
+                    {"native_vector_width", device.native_vector_width}});
   }
   print_json({{"devices", list}});
 }
@@ -33,10 +39,13 @@ void print_as_json(const std::vector<DeviceInfo>& devices) {
 void print_as_text(const std::vector<DeviceInfo>& devices) {
   for (const DeviceInfo& device : devices) {
     std::cout << fmt::format(
-        "platform {} {}\n  device {} {}\n    driver {}, {}, {} compute units, {:.1f} GiB\n",
+        "platform {} {}\n  device {} {}\n    driver {}, {}, {} compute units, {:.1f} GiB\n"
+        "    work-groups of up to {}, {} KiB of local memory, vectors of {}\n",
         device.platform_index, device.platform_name, device.device_index, device.name,
         device.driver_version, device.opencl_c_version, device.compute_units,
-        static_cast<double>(device.global_memory_bytes) / kBytesPerGib);
+        static_cast<double>(device.global_memory_bytes) / kBytesPerGib, device.largest_group,
+        device.local_memory_bytes / 1024,
+        std::max(device.preferred_vector_width, device.native_vector_width));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "base/interruption.hpp"
+#include "device/opencl_errors.hpp"
 #include "device/program.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -73,6 +74,13 @@ DeviceInfo describe(const cl::Platform& platform, int platform_index, const cl::
   info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
   info.global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
   info.local_memory_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+  info.largest_buffer_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  info.largest_group = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+  const auto sides = device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>();
+  std::copy_n(sides.begin(), std::min(sides.size(), info.largest_group_sides.size()),
+              info.largest_group_sides.begin());
+  info.preferred_vector_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>();
+  info.native_vector_width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
   return info;
 }
 
@@ -83,9 +91,14 @@ std::vector<DeviceInfo> list_devices() {
   const auto all_platforms = platforms();
   for (std::size_t p = 0; p < all_platforms.size(); ++p) {
     const auto devices = devices_of(all_platforms[p]);
-    for (std::size_t d = 0; d < devices.size(); ++d)
-      list.push_back(
-          describe(all_platforms[p], static_cast<int>(p), devices[d], static_cast<int>(d)));
+    for (std::size_t d = 0; d < devices.size(); ++d) {
+      try {
+        list.push_back(
+            describe(all_platforms[p], static_cast<int>(p), devices[d], static_cast<int>(d)));
+      } catch (const cl::Error&) {
+        // one that does not say what it is cannot be worked with
+      }
+    }
   }
   return list;
 }
@@ -107,25 +120,31 @@ DeviceSelection DeviceSelection::from_environment() {
   return {value("MCDBN_PLATFORM"), value("MCDBN_DEVICE")};
 }
 
+std::vector<DeviceInfo> matching_devices(const DeviceSelection& selection) {
+  std::vector<DeviceInfo> matching = list_devices();
+  std::erase_if(matching, [&](const DeviceInfo& info) {
+    return !matches(selection.platform, info.platform_index, info.platform_name) ||
+           !matches(selection.device, info.device_index, info.name);
+  });
+  return matching;
+}
+
 Device Device::open(const DeviceSelection& selection) {
-  const auto all = list_devices();
-  if (all.empty()) throw DeviceError(describe_devices(all));
-  std::vector<DeviceInfo> fitting;
-  for (const auto& info : all)
-    if (matches(selection.platform, info.platform_index, info.platform_name) &&
-        matches(selection.device, info.device_index, info.name))
-      fitting.push_back(info);
-  if (fitting.empty())
+  const auto fitting = matching_devices(selection);
+  if (fitting.empty()) {
+    const auto all = list_devices();
+    if (all.empty()) throw DeviceError(describe_devices(all));
     throw DeviceError(
         fmt::format("no OpenCL device matches platform '{}', device '{}'; there is:\n{}",
                     selection.platform, selection.device, describe_devices(all)));
+  }
   const auto gpu = std::find_if(fitting.begin(), fitting.end(),
                                 [](const DeviceInfo& info) { return info.is_gpu; });
   return Device(gpu != fitting.end() ? *gpu : fitting.front());
 }
 
 Device::Device(const DeviceInfo& info)
-    : info_(info), tuning_(load_tuning(info).value_or(default_tuning(info))) {
+    : info_(info), tuning_(limited(load_tuning(info).value_or(default_tuning(info)), info)) {
   try {
     const auto platform = platforms().at(static_cast<std::size_t>(info.platform_index));
     device_ = devices_of(platform).at(static_cast<std::size_t>(info.device_index));
@@ -133,8 +152,7 @@ Device::Device(const DeviceInfo& info)
     queue_ = cl::CommandQueue(context_, device_);
     programs_ = std::make_unique<ProgramCache>(context_, device_);
   } catch (const cl::Error& error) {
-    throw DeviceError(
-        fmt::format("cannot open {}: {} returned {}", info.name, error.what(), error.err()));
+    throw device_error(info.name, "opening the device", error);
   } catch (const std::out_of_range&) {
     throw DeviceError(fmt::format("no such device: {}", info.name));
   }
@@ -145,13 +163,10 @@ Device::~Device() = default;
 
 void Device::keep_launch_times(bool keep) {
   finish();
-  try {
-    queue_ = cl::CommandQueue(context_, device_,
-                              keep ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0});
-  } catch (const cl::Error& error) {
-    throw DeviceError(
-        fmt::format("{} keeps no times: {} returned {}", info_.name, error.what(), error.err()));
-  }
+  queue_ = checked(info_.name, "a queue that keeps times", [&] {
+    return cl::CommandQueue(context_, device_,
+                            keep ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0});
+  });
   keeps_launch_times_ = keep;
 }
 
@@ -163,26 +178,20 @@ std::vector<LaunchTime> Device::take_launch_times() {
   finish();
   std::vector<LaunchTime> times;
   times.reserve(kept_launches_.size());
-  try {
+  checked(info_.name, "times of launches", [&] {
     for (const auto& [kernel, event] : kept_launches_)
       times.push_back({trimmed(kernel.getInfo<CL_KERNEL_FUNCTION_NAME>()),
                        event.getProfilingInfo<CL_PROFILING_COMMAND_QUEUED>(),
                        event.getProfilingInfo<CL_PROFILING_COMMAND_START>(),
                        event.getProfilingInfo<CL_PROFILING_COMMAND_END>()});
-  } catch (const cl::Error& error) {
-    throw DeviceError(
-        fmt::format("times of {}: {} returned {}", info_.name, error.what(), error.err()));
-  }
+  });
   kept_launches_.clear();
   return times;
 }
 
 void Device::finish() {
-  try {
-    run_interruptibly([queue = queue_] { queue.finish(); });
-  } catch (const cl::Error& error) {
-    throw DeviceError(fmt::format("{}: {} returned {}", info_.name, error.what(), error.err()));
-  }
+  checked(info_.name, "waiting for the device",
+          [&] { run_interruptibly([queue = queue_] { queue.finish(); }); });
 }
 
 }  // namespace mcdbn

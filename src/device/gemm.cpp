@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "device/kernel_arguments.hpp"
+#include "device/opencl_errors.hpp"
 #include "device/pointwise.hpp"
 
 namespace mcdbn {
@@ -129,7 +130,8 @@ void gemm_clblast(const Rows& a, const Rows& b, const Rows& c, float alpha, floa
       c.matrix->buffer()(), static_cast<std::size_t>(c.offset()),
       static_cast<std::size_t>(c.stride()), &queue);
   if (status != clblast::StatusCode::kSuccess)
-    throw DeviceError(fmt::format("CLBlast's Gemm returned {}", static_cast<int>(status)));
+    throw DeviceError(fmt::format("{}: CLBlast's product: {}", device.info().name,
+                                  opencl_failure(static_cast<cl_int>(status))));
   device.count_launch();
 }
 

@@ -1,9 +1,11 @@
 #include "device/launch.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 
 #include "base/interruption.hpp"
+#include "device/opencl_errors.hpp"
 
 namespace mcdbn {
 
@@ -24,13 +26,41 @@ void keep_pace(Device& device) {
   check_interruption();
 }
 
-std::array<std::size_t, 2> local_size_for(const std::array<std::size_t, 2>& global) {
+std::array<std::size_t, 2> local_size_for(const std::array<std::size_t, 2>& global,
+                                          const DeviceInfo& info) {
   constexpr std::size_t kItems = 64;
+  const std::size_t most = std::min(kItems, std::max<std::size_t>(info.largest_group, 1));
   const auto power_of_two_in = [](std::size_t number) {
     return number == 0 ? 1 : number & (~number + 1);
   };
-  const std::size_t x = std::min(power_of_two_in(global[0]), kItems);
-  return {x, std::min(power_of_two_in(global[1]), kItems / x)};
+  const auto side = [&](std::size_t range, std::size_t items, std::size_t largest) {
+    return std::min(power_of_two_in(range),
+                    std::bit_floor(std::max<std::size_t>(std::min(items, largest), 1)));
+  };
+  const std::size_t x = side(global[0], most, info.largest_group_sides[0]);
+  return {x, side(global[1], most / x, info.largest_group_sides[1])};
+}
+
+void enqueue(Device& device, const cl::Kernel& kernel, const LaunchSize& size) {
+  auto group = size.local;
+  if (group[0] == 0 && !device.info().is_gpu) group = local_size_for(size.global, device.info());
+  const cl::NDRange local = group[0] == 0 ? cl::NullRange : cl::NDRange(group[0], group[1]);
+  cl::Event event;
+  device.queue().enqueueNDRangeKernel(kernel, cl::NullRange,
+                                      cl::NDRange(size.global[0], size.global[1]), local, nullptr,
+                                      device.keeps_launch_times() ? &event : nullptr);
+  if (device.keeps_launch_times()) device.keep_launch(kernel, event);
+  device.count_launch();
+}
+
+DeviceError launch_error(const Device& device, const cl::Kernel& kernel, const cl::Error& error) {
+  std::string name = "a kernel";
+  try {
+    name = "kernel " + kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
+  } catch (const cl::Error&) {
+    // a device that is lost may not even tell that
+  }
+  return device_error(device.info().name, name, error);
 }
 
 }  // namespace mcdbn

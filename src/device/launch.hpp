@@ -14,16 +14,24 @@ struct LaunchSize {
   std::array<std::size_t, 2> local{0, 0};
 };
 
-/// Work-groups on a CPU, for work-items of a few instructions: up to 64 items, in powers of two
-/// that divide the range. Left to itself PoCL compiles a kernel anew for every size of the range,
-/// each other length of clip, and may make one group, which one core runs, of it all.
-std::array<std::size_t, 2> local_size_for(const std::array<std::size_t, 2>& global);
+/// Work-groups on a CPU, for work-items of a few instructions: up to 64 items, as far as the device
+/// takes them, in powers of two that divide the range. Left to itself PoCL compiles a kernel anew
+/// for every size of the range, each other length of clip, and may make one group, which one core
+/// runs, of it all.
+std::array<std::size_t, 2> local_size_for(const std::array<std::size_t, 2>& global,
+                                          const DeviceInfo& info);
 
 /// Keeps a host that only enqueues from running far ahead of its device: now and then, some ten
 /// times a second, it waits for the queue. Otherwise nobody would hear for minutes that the work is
 /// to stop. A wait costs some 50 µs.
 /// @throws Interrupted if that was asked for, DeviceError
 void keep_pace(Device& device);
+
+/// Enqueues a kernel whose arguments are set. @throws cl::Error
+void enqueue(Device& device, const cl::Kernel& kernel, const LaunchSize& size);
+
+/// What became of a launch, with the kernel's name.
+DeviceError launch_error(const Device& device, const cl::Kernel& kernel, const cl::Error& error);
 
 /// Enqueues one kernel with its arguments set in order; returns at once, but for keep_pace().
 /// @throws DeviceError naming the kernel, Interrupted
@@ -33,21 +41,11 @@ void launch(Device& device, cl::Kernel& kernel, const LaunchSize& size,
   try {
     cl_uint index = 0;
     (kernel.setArg(index++, arguments), ...);
-    auto group = size.local;
-    if (group[0] == 0 && !device.info().is_gpu) group = local_size_for(size.global);
-    const cl::NDRange local = group[0] == 0 ? cl::NullRange : cl::NDRange(group[0], group[1]);
-    cl::Event event;
-    device.queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-                                        cl::NDRange(size.global[0], size.global[1]), local, nullptr,
-                                        device.keeps_launch_times() ? &event : nullptr);
-    if (device.keeps_launch_times()) device.keep_launch(kernel, event);
-    device.count_launch();
-    keep_pace(device);
+    enqueue(device, kernel, size);
   } catch (const cl::Error& error) {
-    throw DeviceError("kernel " + kernel.getInfo<CL_KERNEL_FUNCTION_NAME>() + " on " +
-                      device.info().name + ": " + error.what() + " returned " +
-                      std::to_string(error.err()));
+    throw launch_error(device, kernel, error);
   }
+  keep_pace(device);
 }
 
 }  // namespace mcdbn

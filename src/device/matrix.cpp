@@ -4,20 +4,11 @@
 
 #include <limits>
 
+#include "device/opencl_errors.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
-
-/// Runs an OpenCL call, turning its errors into ours.
-template <typename Call>
-auto checked(const char* what, Call&& call) {
-  try {
-    return call();
-  } catch (const cl::Error& error) {
-    throw DeviceError(fmt::format("{}: {} returned {}", what, error.what(), error.err()));
-  }
-}
 
 bool is_lack_of_memory(cl_int code) {
   return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES ||
@@ -31,8 +22,7 @@ cl::Buffer allocate(const Device& device, std::size_t bytes) {
     return {device.context(), CL_MEM_READ_WRITE, bytes};
   } catch (const cl::Error& error) {
     if (!is_lack_of_memory(error.err()))
-      throw DeviceError(
-          fmt::format("allocating a matrix: {} returned {}", error.what(), error.err()));
+      throw device_error(device.info().name, "allocating a matrix", error);
     throw DeviceError(fmt::format(
         "{}: no room for {:.0f} MB more, of {:.0f} MB that it has; smaller layers and mini-batches "
         "need less",
@@ -73,7 +63,7 @@ Matrix Matrix::part(std::size_t first, std::size_t rows, std::size_t columns) co
                 "a part reaches past its matrix");
   if (matrix.empty()) return matrix;
   const cl_buffer_region region{first * sizeof(float), matrix.element_count() * sizeof(float)};
-  checked("taking a part of a matrix", [&] {
+  checked(device_->info().name, "taking a part of a matrix", [&] {
     cl::Buffer whole = buffer_;
     matrix.buffer_ =
         whole.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region);
@@ -89,7 +79,7 @@ MatrixF Matrix::to_host() const {
   MatrixF wide(rows_, stride());
   if (!empty()) {
     device_->finish();  // which can be interrupted
-    checked("reading a matrix", [&] {
+    checked(device_->info().name, "reading a matrix", [&] {
       device_->queue().enqueueReadBuffer(buffer_, CL_TRUE, 0, element_count() * sizeof(float),
                                          wide.data());
     });
@@ -104,7 +94,7 @@ void Matrix::upload(const Eigen::Ref<const MatrixF>& values) {
   if (empty()) return;
   MatrixF wide = MatrixF::Zero(values.rows(), static_cast<Eigen::Index>(stride()));
   wide.leftCols(values.cols()) = values;
-  checked("writing a matrix", [&] {
+  checked(device_->info().name, "writing a matrix", [&] {
     device_->queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, element_count() * sizeof(float),
                                         wide.data());
   });
@@ -112,7 +102,7 @@ void Matrix::upload(const Eigen::Ref<const MatrixF>& values) {
 
 void Matrix::set_zero() {
   if (empty()) return;
-  checked("clearing a matrix", [&] {
+  checked(device_->info().name, "clearing a matrix", [&] {
     device_->queue().enqueueFillBuffer(buffer_, 0.0F, 0, element_count() * sizeof(float));
   });
 }
@@ -121,7 +111,7 @@ void Matrix::copy_from(const Matrix& other) {
   require_shape(other.rows_ == rows_ && other.columns_ == columns_,
                 "copy: the matrices differ in shape");
   if (empty()) return;
-  checked("copying a matrix", [&] {
+  checked(device_->info().name, "copying a matrix", [&] {
     device_->queue().enqueueCopyBuffer(other.buffer_, buffer_, 0, 0,
                                        element_count() * sizeof(float));
   });
@@ -133,7 +123,7 @@ void Matrix::copy_rows_from(const Matrix& other, std::size_t first, std::size_t 
                 "copy: the rows do not fit");
   if (count == 0 || columns_ == 0) return;
   const std::size_t row_bytes = stride() * sizeof(float);
-  checked("copying rows", [&] {
+  checked(device_->info().name, "copying rows", [&] {
     device_->queue().enqueueCopyBuffer(other.buffer_, buffer_, first * row_bytes, to * row_bytes,
                                        count * row_bytes);
   });
@@ -148,7 +138,7 @@ IndexBuffer::IndexBuffer(Device& device, const std::vector<std::int32_t>& values
 void IndexBuffer::upload(Device& device, const std::vector<std::int32_t>& values) {
   require_shape(values.size() == size_, "upload: the index has another size");
   if (values.empty()) return;
-  checked("writing an index", [&] {
+  checked(device.info().name, "writing an index", [&] {
     device.queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, size_ * sizeof(std::int32_t),
                                       values.data());
   });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "device/opencl_errors.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -9,8 +10,9 @@ namespace {
 
 /// Floats at whose multiples a part of a buffer may begin (CL_DEVICE_MEM_BASE_ADDR_ALIGN).
 std::size_t alignment_floats(const Device& device) {
-  const auto bits =
-      device.queue().getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_MEM_BASE_ADDR_ALIGN>();
+  const auto bits = checked(device.info().name, "asking for its alignment", [&] {
+    return device.queue().getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_MEM_BASE_ADDR_ALIGN>();
+  });
   return std::max<std::size_t>(bits / 8 / sizeof(float), kColumnPad);
 }
 

@@ -6,11 +6,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <sstream>
 
 #include "base/interruption.hpp"
 #include "base/user_cache.hpp"
 #include "device/embedded_kernels.hpp"
+#include "device/opencl_errors.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -58,28 +60,40 @@ bool driver_keeps_programs(const cl::Device& device) {
   return platform.getInfo<CL_PLATFORM_NAME>() == "Portable Computing Language";
 }
 
-/// Where the whole log of a failed build can be read; empty if it cannot be kept.
+/// Where the whole log of a failed build can be read, a file of its own; empty if it cannot be
+/// kept.
 std::string kept_log(const std::string& log) {
   std::error_code error;
-  const fs::path path =
-      fs::temp_directory_path(error) / fmt::format("mcdbn-cl-build-{}.log", ::getpid());
-  if (!error) std::ofstream(path, std::ios::binary) << log;
-  return fs::exists(path, error) ? path.string() : std::string();
+  std::string path = (fs::temp_directory_path(error) / "mcdbn-cl-build-XXXXXX").string();
+  const int file = error ? -1 : ::mkstemp(path.data());
+  if (file < 0) return {};
+  ::close(file);
+  std::ofstream stream(path, std::ios::binary);
+  stream << log;
+  return stream.flush() ? path : std::string();
+}
+
+bool is_blank(const std::string& text) {
+  return text.find_first_not_of(" \t\r\n") == std::string::npos;
+}
+
+bool names_error(const std::string& line) {
+  return line.find("error") != std::string::npos;
 }
 
 /// What went wrong in a line: the first of the log that speaks of an error.
 std::string build_failure(const std::string& log, const std::string& options) {
-  if (log.find_first_not_of(" \t\r\n") == std::string::npos)
+  if (is_blank(log))
     return fmt::format(
         "building kernels with {}: the OpenCL driver says nothing of why; is there room where it "
         "keeps what it builds (PoCL: $POCL_CACHE_DIR, else ~/.cache/pocl)?",
         options);
   std::istringstream lines(log);
   std::string line, first;
-  while (std::getline(lines, line) && line.find("error") == std::string::npos)
-    if (first.empty()) first = line;
+  while (std::getline(lines, line) && !names_error(line))
+    if (is_blank(first)) first = line;
   const std::string path = kept_log(log);
-  return fmt::format("building kernels with {}: {}{}", options, line.empty() ? first : line,
+  return fmt::format("building kernels with {}: {}{}", options, names_error(line) ? line : first,
                      path.empty() ? "" : fmt::format(" (the whole log: {})", path));
 }
 
@@ -102,9 +116,9 @@ std::string kernel_source(const std::string& file) {
 ProgramCache::ProgramCache(cl::Context context, cl::Device device)
     : context_(std::move(context)), device_(std::move(device)) {
   keeps_binaries_ = !driver_keeps_programs(device_);
-  device_key_ = device_.getInfo<CL_DEVICE_NAME>() + '|' + device_.getInfo<CL_DEVICE_VENDOR>() +
-                '|' + device_.getInfo<CL_DRIVER_VERSION>() + '|' +
-                device_.getInfo<CL_DEVICE_VERSION>();
+  device_name_ = device_.getInfo<CL_DEVICE_NAME>();
+  device_key_ = device_name_ + '|' + device_.getInfo<CL_DEVICE_VENDOR>() + '|' +
+                device_.getInfo<CL_DRIVER_VERSION>() + '|' + device_.getInfo<CL_DEVICE_VERSION>();
 }
 
 cl::Kernel& ProgramCache::kernel(const std::string& file, const std::string& name,
@@ -115,8 +129,7 @@ cl::Kernel& ProgramCache::kernel(const std::string& file, const std::string& nam
     try {
       found = kernels_.emplace(key, cl::Kernel(program(file, defines), name.c_str())).first;
     } catch (const cl::Error& error) {
-      throw DeviceError(
-          fmt::format("kernel {} in {}: {} returned {}", name, file, error.what(), error.err()));
+      throw device_error(device_name_, fmt::format("kernel {} in {}", name, file), error);
     }
   }
   return found->second;
@@ -152,12 +165,25 @@ cl::Program ProgramCache::build(const std::string& source, const std::string& op
 
 cl::Program ProgramCache::built_from_source(const std::string& source, const std::string& options) {
   cl::Program program(context_, source);
-  try {
-    run_interruptibly([program, options]() mutable { program.build(options.c_str()); });
-  } catch (const cl::Error&) {
-    throw DeviceError(build_failure(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_), options));
+  auto log = log_of_failed_build(program, options);
+  if (log && !names_error(*log)) {
+    // PoCL may fail so where two processes build the same program at once.
+    program = cl::Program(context_, source);
+    log = log_of_failed_build(program, options);
   }
+  if (log) throw DeviceError(build_failure(*log, options));
   return program;
+}
+
+std::optional<std::string> ProgramCache::log_of_failed_build(const cl::Program& program,
+                                                             const std::string& options) const {
+  // Not cl::Program::build, which asks for the log, and fails at that, whatever the failure was.
+  const auto code = std::make_shared<cl_int>(CL_SUCCESS);
+  run_interruptibly(
+      [=] { *code = ::clBuildProgram(program(), 0, nullptr, options.c_str(), nullptr, nullptr); });
+  if (*code == CL_SUCCESS) return std::nullopt;
+  if (*code != CL_BUILD_PROGRAM_FAILURE) throw cl::Error(*code, "clBuildProgram");
+  return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_);
 }
 
 }  // namespace mcdbn

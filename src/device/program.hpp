@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "mcdbn/device/device.hpp"
@@ -36,10 +37,13 @@ class ProgramCache {
   cl::Program& program(const std::string& file, const Defines& defines);
   cl::Program build(const std::string& source, const std::string& options);
   cl::Program built_from_source(const std::string& source, const std::string& options);
+  /// Nothing if the build goes well. @throws cl::Error if it fails otherwise than by its source
+  std::optional<std::string> log_of_failed_build(const cl::Program& program,
+                                                 const std::string& options) const;
 
   cl::Context context_;
   cl::Device device_;
-  std::string device_key_;
+  std::string device_name_, device_key_;
   bool keeps_binaries_;
   std::map<std::string, cl::Program> programs_;
   std::map<std::string, cl::Kernel> kernels_;

@@ -23,7 +23,15 @@ double busiest_unit_cost(std::size_t batch, std::size_t rows, std::size_t units)
 /// On a CPU a panel of 24 rows: what it reads of the other factor serves three tiles of 8 rows.
 int panel_tiles(const RowTile& tile) {
   constexpr int kPanelRows = 24;
-  return tile.group == 1 ? std::max(1, kPanelRows / tile.update_rows) : 1;
+  const int wanted = tile.group == 1 ? std::max(1, kPanelRows / tile.update_rows) : 1;
+  return std::min(wanted, tile.most_panel_tiles);
+}
+
+/// Tiles of so many rows whose panel, packed for both factors (weight_tile.clh), fits.
+std::size_t fitting_panel_tiles(const DeviceInfo& info, int update_rows) {
+  constexpr std::size_t kFactors = 2;
+  return info.local_memory_bytes /
+         (kFactors * kUpdateChunk * static_cast<std::size_t>(update_rows) * sizeof(float));
 }
 
 }  // namespace
@@ -33,7 +41,8 @@ std::optional<RowTile> choose_row_tile(const Device& device, std::size_t floats_
   const DeviceInfo& info = device.info();
   const std::size_t row_bytes = floats_per_row * sizeof(float);
   const std::size_t fitting = info.local_memory_bytes / std::max<std::size_t>(row_bytes, 1);
-  if (fitting == 0) {
+  constexpr int kFewestUpdateRows = 4;
+  if (fitting == 0 || fitting_panel_tiles(info, kFewestUpdateRows) == 0) {
     spdlog::debug(
         "{}: one row takes {} bytes of local memory, the device has {}; composed kernels instead",
         what, row_bytes, info.local_memory_bytes);
@@ -44,7 +53,10 @@ std::optional<RowTile> choose_row_tile(const Device& device, std::size_t floats_
   tile.vector_width = tuning.vector_width;
   tile.group = tuning.group;
   tile.update_rows = tuning.update_rows;
+  while (fitting_panel_tiles(info, tile.update_rows) == 0) tile.update_rows /= 2;
   tile.update_columns = tuning.update_columns;
+  tile.most_panel_tiles = static_cast<int>(std::min<std::size_t>(
+      fitting_panel_tiles(info, tile.update_rows), RowTile{}.most_panel_tiles));
   const std::size_t largest =
       std::min({fitting, batch, static_cast<std::size_t>(tuning.largest_rows)});
   const std::size_t units = std::max(1U, info.compute_units);

@@ -34,25 +34,40 @@ bool makes_sense(const Tuning& tuning) {
          tuning.summed_rows >= 0 && tuning.clblast_from >= 0;
 }
 
+/// A CPU that has vectors does best with twice or more of what it takes at once; one that has none
+/// would keep so many floats in memory.
+int vector_width_for_cpu(const DeviceInfo& info) {
+  return std::max(info.preferred_vector_width, info.native_vector_width) > 1 ? 16 : 1;
+}
+
 }  // namespace
 
 Tuning default_tuning(const DeviceInfo& info) {
   if (!info.is_gpu)
-    return {.largest_rows = 12,
+    return {.vector_width = vector_width_for_cpu(info),
+            .largest_rows = 12,
             .update_rows = 8,
             .update_columns = 2,
             .product_columns = 2,
             .transposed_rows = 8,
             .transposed_columns = 2};
   // Single lanes that coalesce, of which four keep enough work in flight.
-  return {.vector_width = 4,
-          .largest_rows = 4,
-          .accumulators = 4,
-          .group = 64,
-          .update_rows = 4,
-          .product_rows = 4,
-          .transposed_rows = 4,
-          .summed_rows = 0};
+  return limited({.vector_width = 4,
+                  .largest_rows = 4,
+                  .accumulators = 4,
+                  .group = 64,
+                  .update_rows = 4,
+                  .product_rows = 4,
+                  .transposed_rows = 4,
+                  .summed_rows = 0},
+                 info);
+}
+
+Tuning limited(Tuning tuning, const DeviceInfo& info) {
+  const std::size_t most = std::min(info.largest_group, info.largest_group_sides[0]);
+  if (static_cast<std::size_t>(tuning.group) > most)
+    tuning.group = static_cast<int>(std::max<std::size_t>(most, 1));
+  return tuning;
 }
 
 std::vector<Tuning> tuning_candidates(const DeviceInfo& info, const Tuning& from) {
@@ -61,7 +76,8 @@ std::vector<Tuning> tuning_candidates(const DeviceInfo& info, const Tuning& from
     for (const int value : values) {
       Tuning tuning = from;
       tuning.*parameter = value;
-      if (tuning != from) candidates.push_back(tuning);
+      tuning = limited(tuning, info);
+      if (std::ranges::count(candidates, tuning) == 0) candidates.push_back(tuning);
     }
   };
   if (info.is_gpu) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "device/kernel_arguments.hpp"
+#include "device/opencl_errors.hpp"
 #include "device/pointwise.hpp"
 #include "device/training_state.hpp"
 #include "features/pose_bones.hpp"
@@ -15,8 +16,10 @@ namespace {
 template <typename T>
 cl::Buffer constant_table(Device& device, std::vector<T> values) {
   if (values.empty()) values.resize(1);
-  return {device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, values.size() * sizeof(T),
-          values.data()};
+  return checked(device.info().name, "writing a table", [&] {
+    return cl::Buffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
+                      values.size() * sizeof(T), values.data());
+  });
 }
 
 }  // namespace

@@ -259,7 +259,12 @@ TEST_CASE("devices: every option changes what its help says") {
                                         {"type", info.is_gpu ? "gpu" : "cpu"},
                                         {"compute_units", info.compute_units},
                                         {"global_memory_bytes", info.global_memory_bytes},
-                                        {"local_memory_bytes", info.local_memory_bytes}});
+                                        {"largest_buffer_bytes", info.largest_buffer_bytes},
+                                        {"local_memory_bytes", info.local_memory_bytes},
+                                        {"largest_work_group", info.largest_group},
+                                        {"largest_work_group_sides", info.largest_group_sides},
+                                        {"preferred_vector_width", info.preferred_vector_width},
+                                        {"native_vector_width", info.native_vector_width}});
                     }
                   }}});
 }

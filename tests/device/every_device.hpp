@@ -11,12 +11,14 @@
 
 namespace mcdbn::test {
 
-/// Every OpenCL device of this machine, opened once, so that programs are built once. Never closed:
+/// Every OpenCL device of this machine, or those that MCDBN_PLATFORM and MCDBN_DEVICE name, opened
+/// once, so that programs are built once. Never closed:
 /// at the end of a process the OpenCL platform may be gone before its devices.
 inline std::vector<Device>& devices() {
   static std::vector<Device>& open = *[] {
     auto all = std::make_unique<std::vector<Device>>();
-    for (const DeviceInfo& info : list_devices()) all->emplace_back(info);
+    for (const DeviceInfo& info : matching_devices(DeviceSelection::from_environment()))
+      all->emplace_back(info);
     return all.release();
   }();
   return open;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "device/every_device.hpp"
+#include "device/fitting_tiles.hpp"
 #include "learning/within_bounds.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -190,8 +191,10 @@ TEST_CASE("every tile of the fused kernels gives the same bits") {
     const auto chosen = choose_chain_tile(device, kOddCase.shape, kOddCase.batch);
     REQUIRE(chosen);
     const TrainedBits want = train_two(device, kOddCase, *chosen);
-    for (const RowTile& tile : {RowTile{16, 7, 2, 1, 8, 3}, RowTile{8, 14, 1, 1, 4, 1},
-                                RowTile{4, 4, 1, 32, 4, 2}, RowTile{1, 3, 1, 64, 16, 4}}) {
+    for (const RowTile& tile : fitting_tiles(device, {{16, 7, 2, 1, 8, 3},
+                                                      {8, 14, 1, 1, 4, 1},
+                                                      {4, 4, 1, 32, 4, 2},
+                                                      {1, 3, 1, 64, 16, 4}})) {
       CAPTURE(tile.vector_width);
       CAPTURE(tile.rows);
       CAPTURE(tile.group);
@@ -207,7 +210,7 @@ TEST_CASE("small: work-items that share panels of gradients wait for each other"
   const Case test{{3, 9, 3, kGaussian}, 130, 1};
   on_every_device([&](Device& device) {
     const TrainedBits want = train_two(device, test, RowTile{16, 10, 1, 1, 8, 2});
-    for (const RowTile& tile : {RowTile{4, 10, 1, 4, 4, 1}, RowTile{1, 8, 1, 8, 4, 2}}) {
+    for (const RowTile& tile : fitting_tiles(device, {{4, 10, 1, 4, 4, 1}, {1, 8, 1, 8, 4, 2}})) {
       CAPTURE(tile.group);
       CHECK(train_two(device, test, tile) == want);
     }

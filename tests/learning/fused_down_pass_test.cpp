@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
+#include "device/fitting_tiles.hpp"
 #include "device/pointwise.hpp"
 #include "learning/small_network.hpp"
 #include "reference/error_bounds.hpp"
@@ -188,7 +189,7 @@ TEST_CASE("small: every tile of the fused down-pass gives the same bits") {
     for (const Case& test : {kCases[1], kCases[3]}) {
       const Passed want = passed(device, test, std::nullopt);
       for (const RowTile& tile :
-           {RowTile{16, 3, 2, 1}, RowTile{8, 5, 1, 1}, RowTile{4, 2, 1, 4}, RowTile{1, 4, 3, 8}}) {
+           fitting_tiles(device, {{16, 3, 2, 1}, {8, 5, 1, 1}, {4, 2, 1, 4}, {1, 4, 3, 8}})) {
         CAPTURE(tile.vector_width);
         CAPTURE(tile.group);
         CHECK(passed(device, test, tile) == want);

@@ -3,6 +3,8 @@
 // Add here: a kernel in kernels/, its host side here (pointwise.cpp shows the pattern).
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -22,6 +24,11 @@ struct DeviceInfo {
   unsigned compute_units = 0;
   std::uint64_t global_memory_bytes = 0;
   std::uint64_t local_memory_bytes = 0;
+  std::uint64_t largest_buffer_bytes = 0;
+  std::size_t largest_group = 1;                            ///< work-items of a work-group, at most
+  std::array<std::size_t, 3> largest_group_sides{1, 1, 1};  ///< of them in each dimension
+  unsigned preferred_vector_width = 1;                      ///< floats
+  unsigned native_vector_width = 1;                         ///< floats
 };
 
 /// Every device of every OpenCL platform; platforms without devices are passed over.
@@ -38,6 +45,9 @@ struct DeviceSelection {
   /// MCDBN_PLATFORM and MCDBN_DEVICE, as far as set.
   static DeviceSelection from_environment();
 };
+
+/// Those of list_devices() that match, in its order.
+std::vector<DeviceInfo> matching_devices(const DeviceSelection& selection);
 
 /// When a kernel ran, in nanoseconds of the device's own clock.
 struct LaunchTime {
@@ -64,7 +74,8 @@ class Device {
   ProgramCache& programs() { return *programs_; }
   /// The user's tuned choices for this device, else what suits its kind.
   const Tuning& tuning() const { return tuning_; }
-  void set_tuning(const Tuning& tuning) { tuning_ = tuning; }
+  /// As far as the device takes it.
+  void set_tuning(const Tuning& tuning) { tuning_ = limited(tuning, info_); }
   /// Waits until everything enqueued has run. @throws DeviceError
   void finish();
   /// Kernel launches since the device was opened: `bench` reports launches a step.

@@ -35,6 +35,9 @@ struct Tuning {
 /// What suits most CPUs or GPUs.
 Tuning default_tuning(const DeviceInfo& info);
 
+/// `tuning` with no larger work-groups than the device takes.
+Tuning limited(Tuning tuning, const DeviceInfo& info);
+
 /// The default and its variants, one parameter changed in each: what a tuner tries and what the
 /// kernel tests run with.
 std::vector<Tuning> tuning_candidates(const DeviceInfo& info, const Tuning& from);

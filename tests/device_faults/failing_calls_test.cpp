@@ -1,0 +1,99 @@
+// Whatever call of OpenCL's fails, and whenever: a DeviceError in words, and nothing kept.
+#include <array>
+
+#include "device/opencl_errors.hpp"
+#include "device_faults/tiny_training.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/device/matrix.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+template <typename Work>
+std::string error_of(const Work& work) {
+  try {
+    work();
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool says(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "any call that fails in a training, the first, the last and one between, is a DeviceError") {
+  const HealthyDriver driver;
+  const TinyTraining training;
+  training.train();
+  const auto before = layer::objects();
+  layer::heal();
+  const auto want = training.train();
+  const auto calls = layer::calls();
+  REQUIRE(calls.size() > 15);  // else the layer is not between
+  int failed = 0;
+  for (const auto& [name, count] : calls) {
+    if (name.starts_with("clRetain") || name.starts_with("clRelease")) continue;
+    for (const std::size_t after : {std::size_t{0}, count / 2, count - 1}) {
+      CAPTURE(name);
+      CAPTURE(after);
+      layer::heal();
+      layer::fail(name, after, CL_OUT_OF_RESOURCES);
+      CHECK_THROWS_AS(training.train(), DeviceError);
+      CHECK(layer::objects() == before);
+      ++failed;
+    }
+  }
+  CHECK(failed >= 3 * 15);
+  layer::heal();
+  CHECK(training.train() == want);
+}
+
+TEST_CASE("a device that is lost in the middle, once and for all, is a DeviceError that says so") {
+  const HealthyDriver driver;
+  const TinyTraining training;
+  training.train();
+  const auto before = layer::objects();
+  for (const int code : {CL_DEVICE_NOT_AVAILABLE, CL_INVALID_COMMAND_QUEUE, CL_OUT_OF_RESOURCES}) {
+    layer::heal();
+    layer::fail("clEnqueueNDRangeKernel", 40, code, true);
+    layer::fail("clGetKernelInfo", 0, code);  // nor does it tell which kernel it was
+    const std::string error = error_of([&] { training.train(); });
+    CAPTURE(error);
+    CHECK(says(error, code == CL_OUT_OF_RESOURCES ? "its driver reset it" : "the device is lost"));
+    CHECK(says(error, Device::open().info().name) == (code != code));
+    CHECK(layer::objects() == before);
+  }
+}
+
+TEST_CASE("out of device memory: how much was wanted, or what needs less") {
+  const HealthyDriver driver;
+  Device device = Device::open();
+  layer::fail("clCreateBuffer", 0, CL_MEM_OBJECT_ALLOCATION_FAILURE);
+  const std::string refused = error_of([&] { Matrix(device, 1000, 1000); });
+  CAPTURE(refused);
+  CHECK(says(refused, device.info().name + ": no room for 4 MB more, of "));
+  CHECK(says(refused, "smaller layers and mini-batches"));
+  // Many drivers give memory only when it is first used.
+  layer::heal();
+  layer::fail("clEnqueueFillBuffer", 0, CL_MEM_OBJECT_ALLOCATION_FAILURE);
+  const std::string late = error_of([&] { Matrix(device, 1000, 1000); });
+  CAPTURE(late);
+  CHECK(says(late, device.info().name + ": clearing a matrix: out of memory"));
+  CHECK(says(late, "CL_MEM_OBJECT_ALLOCATION_FAILURE"));
+}
+
+TEST_CASE("a code is said in words with its name, one that nobody knows by its number") {
+  CHECK(says(opencl_failure(CL_DEVICE_NOT_AVAILABLE), "lost"));
+  CHECK(says(opencl_failure(CL_DEVICE_NOT_AVAILABLE), "(CL_DEVICE_NOT_AVAILABLE)"));
+  CHECK(says(opencl_failure(CL_OUT_OF_HOST_MEMORY), "out of memory"));
+  CHECK(says(opencl_failure(CL_INVALID_WORK_GROUP_SIZE), "work-groups"));
+  CHECK(opencl_failure(CL_INVALID_VALUE) == "CL_INVALID_VALUE");
+  CHECK(opencl_failure(-4711) == "OpenCL's error -4711");
+}

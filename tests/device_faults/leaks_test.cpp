@@ -1,0 +1,37 @@
+// What a training makes on a device is gone with it.
+#include <doctest/doctest.h>
+
+#include <fstream>
+
+#include "device_faults/tiny_training.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+/// Bytes of this process that are in memory, of its own.
+double resident_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  double all = 0, resident = 0;
+  statm >> all >> resident;
+  return 4096 * resident;
+}
+
+}  // namespace
+
+TEST_CASE("a hundred trainings leave no OpenCL object and need no more memory than a few") {
+  const HealthyDriver driver;
+  const TinyTraining training;
+  const auto before = layer::objects();
+  CHECK(before.empty());
+  const auto train = [&](int count) {
+    for (int i = 0; i < count; ++i) training.train();
+    CHECK(layer::objects() == before);
+    return resident_bytes();
+  };
+  const double few = train(20), many = train(80);
+  const double few_mb = few * 1e-6, many_mb = many * 1e-6;
+  MESSAGE(few_mb, " MB after 20 trainings, ", many_mb, " MB after 100");
+  CHECK(layer::calls().at("clCreateContext") == 100);
+}

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include "corpus/training_files.hpp"
+#include "mcdbn/corpus/training_clips.hpp"
+#include "mcdbn/motion_model/training_run.hpp"
+#include "mcdbn/motion_model/training_schedule.hpp"
+#include "opencl_layer/opencl_layer.hpp"
+
+namespace mcdbn::test {
+
+/// The driver as it is before a test and after it.
+struct HealthyDriver {
+  HealthyDriver() { set_up(); }
+  ~HealthyDriver() { set_up(); }
+  HealthyDriver(const HealthyDriver&) = delete;
+  HealthyDriver& operator=(const HealthyDriver&) = delete;
+
+ private:
+  static void set_up() {
+    layer::heal();
+    layer::limit({});
+  }
+};
+
+/// A whole training of motion, both stages, that takes a moment.
+class TinyTraining {
+ public:
+  /// On the usual device, opened for this. @return every parameter, one after another
+  std::vector<MatrixF> train() const {
+    Device device = Device::open();
+    return bits_of(train_model(device, data_, clips_, config).model.network);
+  }
+  /// With a checkpoint after each mini-batch.
+  std::vector<MatrixF> train_to(RunFolder& run) const {
+    Device device = Device::open();
+    return bits_of(train_to_folder(device, data_, clips_, run, {.minutes = 0}).model.network);
+  }
+  std::vector<ListedClip> listed() const { return {walks_.files().begin(), walks_.files().end()}; }
+
+  const TrainingConfig config = settings();
+
+ private:
+  static TrainingConfig settings() {
+    TrainingConfig config;
+    config.seed = 19;
+    config.hidden = 8;
+    config.mrbm_hidden = 6;
+    config.order = 2;
+    config.look_ahead = 2;
+    config.batch = 20;
+    config.least_batches = 2;
+    config.gaussian.epochs = config.mrbm.epochs = 2;
+    config.gaussian.gibbs_steps = 1;
+    config.mrbm.mean_field_steps = 4;
+    config.augment.views = 2;
+    config.fine_tuning.steps = 3;
+    config.fine_tuning.windows = 4;
+    config.fine_tuning.window_frames = 4;
+    config.fine_tuning.mean_field_steps = 2;
+    return config;
+  }
+  static std::vector<MatrixF> bits_of(const Mcdbn& network) {
+    std::vector<MatrixF> bits;
+    for (const Cdbn& cdbn : network.cdbns)
+      for (const Crbm& layer : cdbn.layers)
+        for (const char* name : {"W", "A", "B", "a", "b"})
+          bits.push_back(layer.parameters().to_host(name));
+    const MrbmParameters mrbm = network.mrbm.to_host();
+    bits.insert(bits.end(), mrbm.W.begin(), mrbm.W.end());
+    bits.push_back(mrbm.b);
+    return bits;
+  }
+
+  TrainingFiles walks_{{{1, 1, 30.0, 1.2}, {2, 1, 30.0, 1.0}}};
+  std::vector<LoadedClip> clips_ = load_clips(walks_.files());
+  TrainingSet data_ = make_training_set(clips_, config);
+};
+
+}  // namespace mcdbn::test
