@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
+#include "device/fitting_tiles.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/within_bounds.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -140,8 +141,8 @@ TEST_CASE("every tile of fused multi-prediction gives the same bits, and so does
     for (const Case& test : {kOddCase, kLongCase}) {
       const Problem problem(test);
       const Step want = run_step(device, problem, tile_for(device, test), UpdateRule::adam(), 3);
-      for (const RowTile& tile :
-           {RowTile{16, 7, 2, 1, 8, 3}, RowTile{4, 4, 1, 32, 4, 2}, RowTile{1, 3, 1, 64, 16, 4}}) {
+      for (const RowTile& tile : fitting_tiles(
+               device, {{16, 7, 2, 1, 8, 3}, {4, 4, 1, 32, 4, 2}, {1, 3, 1, 64, 16, 4}})) {
         CAPTURE(test.batch);
         CAPTURE(tile.vector_width);
         CAPTURE(tile.rows);
@@ -162,7 +163,7 @@ TEST_CASE("small: work-items that share fused multi-prediction wait for each oth
   const Problem problem({2, 3, 3, 259, 2});
   on_every_device([&](Device& device) {
     const Step want = run_step(device, problem, RowTile{16, 10, 1, 1, 8, 2}, UpdateRule::adam());
-    for (const RowTile& tile : {RowTile{4, 10, 1, 4, 4, 1}, RowTile{1, 8, 1, 8, 4, 2}}) {
+    for (const RowTile& tile : fitting_tiles(device, {{4, 10, 1, 4, 4, 1}, {1, 8, 1, 8, 4, 2}})) {
       CAPTURE(tile.group);
       CHECK(same_bits(run_step(device, problem, tile, UpdateRule::adam()).after, want.after));
     }

@@ -3,6 +3,7 @@
 #include "learning/joint_likelihood.hpp"
 
 #include "device/every_device.hpp"
+#include "device/fitting_tiles.hpp"
 #include "learning/mrbm_rules_scene.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "reference/crbm_enumeration.hpp"
@@ -37,7 +38,7 @@ void check_joint_likelihood(const Scene& scene, const MrbmSettings& settings,
   on_every_device([&](Device& device) {
     Mrbm mrbm(device, scene.start);
     auto tiles = both_ways(mrbm, scene.rows());
-    tiles.insert(tiles.end(), more.begin(), more.end());
+    for (const RowTile& tile : fitting_tiles(device, more)) tiles.emplace_back(tile);
     for (const auto& tile : tiles) {
       CAPTURE(tile.has_value());
       JointLikelihood rule(mrbm, scene.rows(), tile, settings, OptimizerKind::none);
@@ -63,6 +64,10 @@ TEST_CASE("small: the joint likelihood's gradient is contrastive divergence over
       CAPTURE(sampled);
       check_joint_likelihood(*scene, {.gibbs_steps = k, .sample_visible = sampled});
     }
+}
+
+TEST_CASE("small: work-items that share a block of the joint likelihood wait for each other") {
+  check_joint_likelihood(three(), {.gibbs_steps = 2, .sample_visible = true}, {{4, 3, 1, 4, 4, 1}});
 }
 
 TEST_CASE("the joint likelihood's gradient is the reference's with every tile, for odd sizes") {
@@ -101,7 +106,7 @@ TEST_CASE("every tile of the fused joint likelihood gives the same bits, by two 
         .rate = 0.01, .gibbs_steps = 2, .persistent = true, .sample_visible = true};
     std::optional<MrbmParameters> want;
     Mrbm any(device, odd().start);
-    std::vector<RowTile> tiles = kOtherTiles;
+    std::vector<RowTile> tiles = fitting_tiles(device, kOtherTiles);
     tiles.push_back(both_ways(any, odd().rows())[0].value());
     for (const RowTile& tile : tiles) {
       CAPTURE(tile.vector_width);

@@ -192,6 +192,25 @@ TEST_CASE("decoder: sampled frames are the reference's with the same draws") {
   });
 }
 
+TEST_CASE("small: work-items that share a block of sequences decode the same bits, drawn or not") {
+  on_every_device([](Device& device) {
+    const CrbmParameters p = parameters_of({7, 5, 3, kBinary}, 3);
+    constexpr std::size_t kSequences = 4;
+    const MatrixF code = random_code(kSequences * kFrames, 5);
+    const Tuning usual = device.tuning();
+    for (const double temperature : {0.0, 1.0}) {
+      CAPTURE(temperature);
+      RegenerationOptions options;
+      options.temperature = temperature;
+      const MatrixF want = decoded(device, {p}, code, kSequences, options);
+      device.set_tuning({.vector_width = 4, .largest_rows = 3, .accumulators = 4, .group = 4});
+      CHECK(decoded(device, {p}, code, kSequences, options) == want);
+      device.set_tuning(usual);
+      if (temperature == 0.0) check_means(want, code, p, kSequences, p.shape.order);
+    }
+  });
+}
+
 TEST_CASE("decoder: a temperature between 0 and 1 draws as the reference does") {
   const CrbmParameters p = parameters_of({7, 13, 1, kBinary}, 3);
   const MatrixF code = random_code(kFrames, 13);

@@ -186,6 +186,20 @@ TEST_CASE("small: generation of one layer and of two, same seed, same bits; anot
   });
 }
 
+TEST_CASE("small: work-items that share a block of sequences generate the same bits") {
+  on_every_device([](Device& device) {
+    const Stack stack{layer({7, 5, 2, kGaussian}, 1)};
+    const Cdbn cdbn = on(device, stack);
+    const auto seeds = seeds_for(stack, 3);
+    const GenerationOptions options = options_with(2, 1.0);
+    const auto want = generate(cdbn, seeds, options);
+    const Tuning usual = device.tuning();
+    device.set_tuning({.vector_width = 4, .largest_rows = 3, .accumulators = 4, .group = 4});
+    CHECK(generate(cdbn, seeds, options) == want);
+    device.set_tuning(usual);
+  });
+}
+
 TEST_CASE("generation: no more of a seed counts than its history, and it is needed whole") {
   on_every_device([](Device& device) {
     for (const Stack& stack : stacks()) {

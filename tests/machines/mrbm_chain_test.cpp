@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "device/every_device.hpp"
+#include "device/fitting_tiles.hpp"
 #include "device/gemm.hpp"
 #include "machines/two_modalities.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -166,6 +167,17 @@ TEST_CASE("the clamped chain at odd and at the model's sizes, within rounding") 
   });
 }
 
+TEST_CASE("small: work-items that share a block of the clamped chain wait for each other") {
+  on_every_device([](Device& device) {
+    const Problem problem(kSmallCases[1]);
+    const MrbmChainOptions options = problem.options(0.5F);
+    const MatrixF want =
+        run(device, problem, modality::pose, options, chosen_tile(device, problem));
+    for (const RowTile& tile : fitting_tiles(device, {{4, 3, 1, 4, 4}}))
+      CHECK(run(device, problem, modality::pose, options, tile) == want);
+  });
+}
+
 TEST_CASE("every tile of the clamped chain gives the same bits") {
   on_every_device([](Device& device) {
     const Problem problem(kOddCase);
@@ -175,8 +187,8 @@ TEST_CASE("every tile of the clamped chain gives the same bits") {
     const auto check = [&](const std::optional<RowTile>& tile) {
       CHECK(run(device, problem, modality::pose, options, tile) == want);
     };
-    for (const RowTile& tile : {RowTile{16, 7, 2, 1, 8}, RowTile{8, 14, 1, 1, 4},
-                                RowTile{4, 4, 1, 32, 4}, RowTile{1, 3, 1, 64, 16}}) {
+    for (const RowTile& tile : fitting_tiles(
+             device, {{16, 7, 2, 1, 8}, {8, 14, 1, 1, 4}, {4, 4, 1, 32, 4}, {1, 3, 1, 64, 16}})) {
       CAPTURE(tile.vector_width);
       CAPTURE(tile.rows);
       CAPTURE(tile.group);

@@ -228,6 +228,39 @@ TEST_CASE("the unrolled pass predicts what the reference does, frame by frame") 
   });
 }
 
+TEST_CASE(
+    "small: the derivative of the loss on poses is the finite differences', of every feature") {
+  const SmallFigure figure;
+  const Windows windows(figure.dimension());
+  const PoseLossWeights weights{1.0, 0.02, 0.004, 0.004};
+  const MatrixF predicted = random_matrix(kWindows.rows(), figure.dimension(), 63, 0.8F);
+  const auto frames = static_cast<Eigen::Index>(kWindows.frames);
+  MatrixD want(predicted.rows(), predicted.cols());
+  MatrixF target(predicted.rows(), predicted.cols());
+  for (std::size_t i = 0; i < kWindows.count; ++i) {
+    const auto first = static_cast<Eigen::Index>(i) * frames;
+    target.middleRows(first, frames) = windows.window(windows.pose, i).cast<float>();
+    const MatrixD here = predicted.middleRows(first, frames).cast<double>();
+    const auto loss = [&](const Eigen::VectorXd& flat) {
+      return loss_in_double(figure, weights, 1,
+                            Eigen::Map<const MatrixD>(flat.data(), here.rows(), here.cols()),
+                            windows.window(windows.pose, i)) /
+             static_cast<double>(kWindows.count);
+    };
+    const Eigen::VectorXd slope = reference::finite_difference(
+        loss, Eigen::Map<const Eigen::VectorXd>(here.data(), here.size()));
+    want.middleRows(first, frames) =
+        Eigen::Map<const MatrixD>(slope.data(), here.rows(), here.cols());
+  }
+  on_every_device([&](Device& device) {
+    PoseLoss loss(device, figure.modalities(), kWindows, weights);
+    Matrix error = Matrix::from_host(device, predicted);
+    loss.differentiate(Matrix::from_host(device, predicted), Matrix::from_host(device, target),
+                       error);
+    check_near(error, want, "error");
+  });
+}
+
 TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
   const SmallFigure figure;
   const SmallNetwork small(figure.dimension());
