@@ -27,10 +27,14 @@ struct HealthyDriver {
 /// A whole training of motion, both stages, that takes a moment.
 class TinyTraining {
  public:
-  /// On the usual device, opened for this. @return every parameter, one after another
+  /// @return every parameter, one after another
+  std::vector<MatrixF> train(Device& device) const {
+    return bits_of(train_model(device, data_, clips_, config).model.network);
+  }
+  /// The same on the usual device, opened for this.
   std::vector<MatrixF> train() const {
     Device device = Device::open();
-    return bits_of(train_model(device, data_, clips_, config).model.network);
+    return train(device);
   }
   /// With a checkpoint after each mini-batch.
   std::vector<MatrixF> train_to(RunFolder& run) const {
