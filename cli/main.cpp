@@ -48,8 +48,8 @@ constexpr const char* kDescription =
     "from the 2D joint tracks of one camera, on any OpenCL device.";
 
 constexpr const char* kExitCodes =
-    "Exit codes: 0 ok, 1 failure, 2 usage or configuration, 3 bad input, 4 no device, 130 "
-    "interrupted.";
+    "Exit codes: 0 ok, 1 failure, 2 usage or configuration, 3 bad input, 4 no device or one that\n"
+    "failed, 130 interrupted.";
 
 /// Lines as the pattern says, with nothing in them that a terminal would obey: names in messages
 /// come out of files.

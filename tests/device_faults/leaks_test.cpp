@@ -40,7 +40,12 @@ TEST_CASE("a hundred trainings leave no OpenCL object and need no more memory th
     return resident_bytes();
   };
   const double few = train(2), many = train(8);
-  const double few_mb = few * 1e-6, many_mb = many * 1e-6;
-  MESSAGE(few_mb, " MB after 20 trainings, ", many_mb, " MB after 100");
+#ifndef __SANITIZE_ADDRESS__  // which keeps what was freed for a while
+  // Less than what a training reads; PoCL keeps some 400 KB of each device that was opened.
+  constexpr double kMost = 10e6;
+  CAPTURE(few);
+  CAPTURE(many);
+  CHECK(many - few < kMost);
+#endif
   CHECK(layer::calls().at("clCreateContext") == 10);
 }
