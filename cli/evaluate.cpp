@@ -1,6 +1,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -70,6 +71,21 @@ void print_limbs(const EvaluationReport& report) {
   }
 }
 
+/// How many 90 % intervals hold the truth; the JSON says it joint by joint, channel by channel.
+void print_coverage(const EvaluationReport& report) {
+  if (report.joints.empty()) return;
+  const auto by_share = [](const auto& x, const auto& y) {
+    return x.second.share() < y.second.share();
+  };
+  const auto& joints = report.joints.by_name();
+  const auto worst = std::min_element(joints.begin(), joints.end(), by_share);
+  fmt::print("\n90 % intervals that hold the truth: of joints {:.1f} % ({} {:.1f} %)",
+             100 * report.joints.overall().share(), worst->first, 100 * worst->second.share());
+  if (!report.channels.empty())
+    fmt::print(", of the network's channels {:.1f} %", 100 * report.channels.overall().share());
+  fmt::print("\n");
+}
+
 void print_table(const EvaluationReport& report) {
   int frames = 0;
   for (const ReportClip& clip : report.clips) frames += clip.frames();
@@ -80,6 +96,7 @@ void print_table(const EvaluationReport& report) {
                method.mean.pcc_flat, method.mean.pcc_channel, method.mean.error.mpjpe_mm,
                method.mean.error.pa_mpjpe_mm, method.mean.root_mm);
   if (report.tracks != kExact) print_limbs(report);
+  print_coverage(report);
   const TrackError track = overall_track_error(report);
   fmt::print(
       "\n2D from 3D: joints {:.1f} px off, relative to the root (the mean track {:.1f} px)\n\n",
@@ -113,12 +130,16 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
     if (options.elevation_deg) run.camera.elevation_deg = *options.elevation_deg;
     run.regeneration = options.sampling.regeneration(
         model.network, context.seed, options.protocol == "paper" ? kPaperSamples : 1);
-    if (run.fit) run.uncertainty_draws = {options.uncertainty_draws, context.seed};
+    run.uncertainty_draws = {options.uncertainty_draws, context.seed};
     report.temperature = run.regeneration.temperature;
     add_training_views(model, run);
     run.progress = show(0.0, kTestShare);
-    report.clips = report_clips(model, run_test(model, find_clips(options.test), run),
-                                options.actions == "by-folder");
+    const std::vector<ClipResult> results = run_test(model, find_clips(options.test), run);
+    for (const ClipResult& result : results) {
+      report.joints.add(result.joints);
+      report.channels.add(result.channels);
+    }
+    report.clips = report_clips(model, results, options.actions == "by-folder");
     report.actions = analyse_actions(report.clips, context.seed, show(kTestShare, 1.0));
   }
   report.model = model_file.filename().string();
@@ -180,7 +201,7 @@ void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
   command
       .add_option("--uncertainty-draws", options.uncertainty_draws,
                   "Motions drawn of each clip's posterior, to tell how sure the model's single "
-                  "answer is and in how many cases rightly; 0: it is not asked. Of the fit only")
+                  "answer is and in how many cases rightly; 0: it is not asked")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   add_view_flags(command, options.azimuth_deg, options.elevation_deg);

@@ -2,8 +2,10 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -59,11 +61,9 @@ void check_direction(const RegenerateOptions& options) {
           flag));
 }
 
-/// What the fit does not tell. @throws ConfigError
+/// What draws do not tell. @throws ConfigError
 void check_uncertainty(const RegenerateOptions& options) {
   if (options.uncertainty.empty()) return;
-  if (!track_fit(options.fit))
-    throw ConfigError("--uncertainty is the fit's: leave out --fit none");
   if (options.sampling.samples.value_or(1) > 1)
     throw ConfigError("--uncertainty is that of a single answer: leave out --samples");
 }
@@ -97,6 +97,26 @@ void report(const std::filesystem::path& path, const TrackFindings& findings) {
   if (filled.interpolated + filled.missing > 0)
     spdlog::warn("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
                  path.string(), filled.interpolated, filled.missing);
+}
+
+/// The usual deviation of a joint but the root along an axis, and the least sure joints'.
+void report_uncertainty(const Motion& motion, const MatrixD& deviations) {
+  if (deviations.size() == 0) return;
+  const Skeleton& skeleton = motion.skeleton;
+  std::vector<std::pair<double, std::string>> joints;
+  for (int joint = 1; joint < skeleton.joint_count(); ++joint)
+    joints.emplace_back(std::sqrt(deviations.middleCols(3 * joint, 3).squaredNorm() /
+                                  static_cast<double>(3 * deviations.rows())),
+                        skeleton.joints[static_cast<std::size_t>(joint)].name);
+  std::ranges::sort(joints, std::greater());
+  double squares = 0;
+  for (const auto& [deviation, name] : joints) squares += deviation * deviation;
+  if (joints.empty()) return;
+  spdlog::info(
+      "joints are off by a standard deviation of {:.3g} in the file's unit along each axis, "
+      "{} most, by {:.3g}",
+      std::sqrt(squares / static_cast<double>(joints.size())), joints.front().second,
+      joints.front().first);
 }
 
 /// By the model, or by a simpler method if there is one; what is wrong with the track is said with
@@ -139,7 +159,10 @@ ClipPlacement placement_of(const RegenerateOptions& options, const std::optional
     placement.skeleton_channels = std::move(clip.channels);
   }
   placement.fit = track_fit(options.fit);
-  if (!options.uncertainty.empty()) placement.uncertainty_draws = {kUncertaintyDraws, seed};
+  // The network alone always says how sure it is: that costs next to nothing.
+  const bool single = options.sampling.samples.value_or(1) == 1;
+  if (!options.uncertainty.empty() || (single && !placement.fit))
+    placement.uncertainty_draws = {kUncertaintyDraws, seed};
   if (!options.joint_map.empty()) placement.joint_map = read_joint_map(options.joint_map);
   return placement;
 }
@@ -168,6 +191,7 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
       write_bvh(path, motions[i]);
       report(path, motions[i].frames(), motions[i].fps());
     }
+    report_uncertainty(motions.front(), findings.uncertainty);
     if (!options.uncertainty.empty())
       write_uncertainty_csv(person_path(options.uncertainty, person, people.size()),
                             motions.front(), findings.uncertainty);

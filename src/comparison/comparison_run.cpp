@@ -150,6 +150,29 @@ Regeneration answer(const Model& model, const TestRunOptions& options, const Enc
   return result;
 }
 
+/// What of the truth the intervals of the single answer hold, and those of its prior.
+void count_coverage(const Model& model, const TestRunOptions& options, const Regeneration& single,
+                    const PosePrior& prior, ClipResult& clip) {
+  if (single.deviation_mm.size() == 0) return;
+  const Modalities& modalities = model.modalities;
+  const Skeleton& skeleton = clip.truth.motion.skeleton;
+  const std::vector<std::string> joints =
+      judged_joints(skeleton, skeleton.find(modalities.root_name()));
+  const auto columns = 3 * (std::ssize(joints) - 1);  // the root is where it is
+  clip.joints.add(
+      {joints.begin() + 1, joints.end()},
+      judged_positions(clip.truth.motion, joints).rightCols(columns),
+      judged_positions(single.motion, joints).rightCols(columns),
+      of_joints(single.deviation_mm, single.motion.skeleton, joints).rightCols(columns));
+  if (!prior.has_deviation() || !options.camera_known) return;
+  const std::vector<std::string> names = modalities.pose_features.feature_names();
+  std::vector<std::string> kept;
+  for (const int column : modalities.pose_scale.kept_columns())
+    kept.push_back(names[static_cast<std::size_t>(column)]);
+  clip.channels.add(kept, clip.truth.pose_features.cast<double>(), prior.mean.cast<double>(),
+                    prior.deviation.cast<double>());
+}
+
 /// Of the single answer.
 PosteriorDraws draws_of_clip(const TestRunOptions& options, std::size_t clip) {
   PosteriorDraws draws = options.uncertainty_draws;
@@ -184,6 +207,8 @@ void regenerate_clips(const Model& model, const TestRunOptions& options, const P
       results[clip].samples.push_back(
           answer(model, options, results[clip].truth, results[clip].seen, poses[i],
                  single ? draws_of_clip(options, clip) : PosteriorDraws{}));
+      if (single)
+        count_coverage(model, options, results[clip].samples.back(), poses[i], results[clip]);
     }
     if (!drawn) continue;
     regeneration.temperature = 0;
@@ -193,6 +218,7 @@ void regenerate_clips(const Model& model, const TestRunOptions& options, const P
       ClipResult& result = results[first + i];
       result.others[kMeanField] = answer(model, options, result.truth, result.seen, single[i],
                                          draws_of_clip(options, first + i));
+      count_coverage(model, options, result.others[kMeanField], single[i], result);
     }
   }
 }

@@ -15,6 +15,7 @@
 #include "corpus/detector_view.hpp"
 #include "corpus/encoded_clip.hpp"
 #include "evaluation/clip_score.hpp"
+#include "evaluation/coverage.hpp"
 #include "evaluation/report_clip.hpp"
 #include "evaluation/track_error.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
@@ -66,6 +67,10 @@ struct ClipResult {
   /// The baselines by name, and kMeanField, the model's single answer, if samples were drawn.
   std::map<std::string, Regeneration> others;
   TrackError track;  ///< 2D from the true 3D, by the model's mean field
+  /// Of the single answer, if uncertainty was drawn: of its judged joints, mm from the root along
+  /// each axis; of the network's own channels, standardized, before any fit, if the camera is known
+  /// and the network says deviations.
+  Coverage joints, channels;
 };
 
 /// @throws InputError if a clip was trained on, or a training clip that the baselines need is gone

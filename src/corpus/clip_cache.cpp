@@ -1,6 +1,7 @@
 #include "corpus/clip_cache.hpp"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -125,10 +126,11 @@ class MappedChannels : public ClipChannels {
     constexpr std::size_t kMost = 128U << 20U;
     if ((read_ += bytes) < kMost) return;
     read_ = 0;
-    region_.advise(ipc::mapped_region::advice_dontneed);
+    // Not Boost's advise(): posix_madvise does nothing in glibc for what is not needed.
+    ::madvise(region_.get_address(), region_.get_size(), MADV_DONTNEED);
   }
 
-  mutable ipc::mapped_region region_;
+  ipc::mapped_region region_;
   std::vector<Extent> extents_;
   mutable std::atomic<std::size_t> read_ = 0;
 };

@@ -7,6 +7,7 @@
 
 #include "base/random_sequence.hpp"
 #include "base/random_streams.hpp"
+#include "motion/rotation_vector.hpp"
 
 namespace mcdbn {
 namespace {
@@ -16,10 +17,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi;
-
-Matrix3d turn_of(const Vector3d& vector) {
-  return Eigen::AngleAxisd(vector.norm(), vector.normalized()).toRotationMatrix();
-}
 
 /// A number that wanders smoothly about 0 with deviation 1: three waves of 0.1 to 0.8 Hz.
 class Wandering {
@@ -133,7 +130,7 @@ void turn_limbs(HumanoidPoses& poses, const PosePool& pool, double deviation_deg
     for (int t = 0; t < poses.frames(); ++t) {
       const Matrix3d was = poses.local(t, role);
       poses.local(t, role) =
-          pool.limits(role).clamped(was * turn_of(deviation * wandering.at(t * step_s)), was);
+          pool.limits(role).clamped(was * rotation_of(deviation * wandering.at(t * step_s)), was);
     }
   }
 }
@@ -162,7 +159,7 @@ void lean(HumanoidPoses& poses, double deviation_deg, std::uint64_t seed) {
     const Matrix3d left = poses.world(t, left_hip), right = poses.world(t, right_hip);
     const double time_s = t * poses.frame_time_s();
     poses.local(t, pelvis) =
-        turn_of(deviation * Vector3d(x.at(time_s), 0, z.at(time_s))) * poses.local(t, pelvis);
+        rotation_of(deviation * Vector3d(x.at(time_s), 0, z.at(time_s))) * poses.local(t, pelvis);
     poses.set_world(t, left_hip, left);
     poses.set_world(t, right_hip, right);
   }

@@ -144,6 +144,9 @@ ordered_json summary_json(const EvaluationReport& report) {
   json["baselines"] = std::move(baselines);
   if (!mean_field.is_null()) json["model_mean_field"] = std::move(mean_field);
   json["track_from_pose"] = track_json(overall_track_error(report));
+  for (const auto& [name, coverage] :
+       {std::pair("joints", &report.joints), {"channels", &report.channels}})
+    if (!coverage->empty()) json["coverage"][name] = coverage_json(*coverage);
   json["model_file"] = report.model;
   json["protocol"] = report.protocol;
   json["temperature"] = report.temperature;

@@ -9,6 +9,7 @@
 
 #include "camera/track_noise.hpp"
 #include "evaluation/action_report.hpp"
+#include "evaluation/coverage.hpp"
 
 namespace mcdbn {
 
@@ -30,6 +31,8 @@ struct EvaluationReport {
   TrackDamage damage;            ///< done to the tracks before any method saw them
   std::vector<ReportClip> clips;
   std::vector<ActionReport> actions;  ///< analyse_actions of the clips
+  /// Of the model's answers, if that was asked for: of joints in mm, of the network's channels.
+  Coverage joints, channels;
 };
 
 /// Mean scores over every clip, whatever its action: `model` (all samples) first, then the others
@@ -44,7 +47,8 @@ TrackError overall_track_error(const EvaluationReport& report);
 std::vector<Verdict> verdicts(const EvaluationReport& report);
 
 /// {"clips", "frames", "model": {pcc_flat, …}, "baselines": {name: {…}},
-/// "track_from_pose": {track_error_px, …}, …}; figures that are not
+/// "track_from_pose": {track_error_px, …}, "coverage": {"joints": …, "channels": …} if it was asked
+/// for, …}; figures that are not
 /// finite are null. Without the clips' motion.
 nlohmann::ordered_json summary_json(const EvaluationReport& report);
 

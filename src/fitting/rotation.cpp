@@ -1,15 +1,8 @@
 #include "fitting/rotation.hpp"
 
-#include <Eigen/Geometry>
 #include <cmath>
 
 namespace mcdbn {
-
-Eigen::Matrix3d rotation_of(const Eigen::Vector3d& turn_rad) {
-  const double angle = turn_rad.norm();
-  if (angle < 1e-12) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, turn_rad / angle).toRotationMatrix();
-}
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d matrix;

@@ -2,10 +2,9 @@
 
 #include <Eigen/Core>
 
-namespace mcdbn {
+#include "motion/rotation_vector.hpp"
 
-/// Rotation by the vector's length (radians) about it.
-Eigen::Matrix3d rotation_of(const Eigen::Vector3d& turn_rad);
+namespace mcdbn {
 
 /// The matrix that multiplies as v × does.
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);

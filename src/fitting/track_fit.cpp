@@ -9,6 +9,7 @@
 #include "fitting/clip_evidence.hpp"
 #include "fitting/posterior_draws.hpp"
 #include "fitting/prior_deviations.hpp"
+#include "fitting/prior_draws.hpp"
 #include "fitting/root_trajectory.hpp"
 #include "fitting/seen_noise.hpp"
 #include "fitting/track_smoothing.hpp"
@@ -112,6 +113,29 @@ class ClipFit {
     return motions;
   }
 
+  /// Where no track is met. Before put_at_origin.
+  void keep_open(const PosePrior& prior, bool own_skeleton) {
+    mean_ = features_;
+    evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, camera_);
+    evidence_->clip.turn_deviation_rad =
+        turn_deviations_rad(prior, modalities_, settings_of_draws({}));
+    evidence_->clip.body_unknown = !own_skeleton;
+  }
+  /// After keep_open. The clip stays as it is.
+  std::vector<Motion> drawn_by_prior(const PosteriorDraws& draws) {
+    const MatrixD features = features_, root = root_;
+    const Skeleton skeleton = skeleton_;
+    std::vector<Motion> motions;
+    for (const PosteriorPoint& point : prior_draws(evidence_->clip, {}, draws.count, draws.seed)) {
+      take(point);
+      motions.push_back(motion());
+    }
+    features_ = features;
+    root_ = root;
+    skeleton_ = skeleton;
+    return motions;
+  }
+
   Motion motion() const { return decoded(root_); }
 
   /// @param image whose size the result takes
@@ -192,13 +216,16 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
   if (settings) check_settings(*settings);
   ClipFit clip(prior, features, track, known);
   clip.place_root();
-  if (settings) {
-    clip.meet_track(prior, track_noise_px(track), known.skeleton.has_value(), *settings);
-  }
+  const bool own_skeleton = known.skeleton.has_value(), draws_any = draws.count > 0;
+  if (settings)
+    clip.meet_track(prior, track_noise_px(track), own_skeleton, *settings);
+  else if (draws_any)
+    clip.keep_open(prior, own_skeleton);
   FittedClip result;
   result.shown = clip.shown(track);
   if (!known.camera) clip.put_at_origin();
-  if (settings && draws.count > 0) result.draws = clip.drawn(prior, *settings, draws);
+  if (draws_any)
+    result.draws = settings ? clip.drawn(prior, *settings, draws) : clip.drawn_by_prior(draws);
   result.motion = clip.motion();
   result.camera = clip.camera();
   return result;

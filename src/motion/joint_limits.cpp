@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "motion/nearest_rotation.hpp"
+#include "motion/rotation_vector.hpp"
 
 namespace mcdbn {
 namespace {
@@ -12,10 +13,6 @@ namespace {
 Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
   const Eigen::AngleAxisd turn(rotation);
   return turn.angle() * turn.axis();
-}
-
-Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector) {
-  return Eigen::AngleAxisd(vector.norm(), vector.normalized()).toRotationMatrix();
 }
 
 }  // namespace

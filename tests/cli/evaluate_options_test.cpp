@@ -69,7 +69,12 @@ json by_library(const Call& call, const std::optional<Views>& views = {}) {
     options.view_poses = views->poses;
   }
   mcdbn::EvaluationReport report;
-  report.clips = report_clips(model, run_test(model, call.test, options), call.by_folder);
+  const auto results = run_test(model, call.test, options);
+  for (const mcdbn::ClipResult& result : results) {
+    report.joints.add(result.joints);
+    report.channels.add(result.channels);
+  }
+  report.clips = report_clips(model, results, call.by_folder);
   report.actions = analyse_actions(report.clips, call.seed);
   report.temperature = call.temperature;
   report.fit = call.fit ? "track" : "none";
@@ -272,6 +277,7 @@ TEST_CASE("evaluate: every option changes what its help says") {
          const json by_five = without_baselines(by_program(fitted, "--baselines none --seed 3"));
          CHECK(by_five == without_baselines(by_library(fitted)));
          CHECK(by_five.at("model").at("within_90").is_number());
+         CHECK(by_five.at("coverage").at("joints").at("all").at("share").is_number());
          fitted.uncertainty_draws = 0;
          CHECK(by_program(fitted, "--baselines none").at("model").at("within_90").is_null());
          CHECK(refused("--include-training --uncertainty-draws -1", 2));

@@ -250,7 +250,16 @@ TEST_CASE("regenerate: every option changes what its help says") {
          CHECK(five == mcdbn::read_text_file(folder / "wanted.csv"));
          REQUIRE(run_cli(sure + " --seed 6").exit_code == 0);
          CHECK(mcdbn::read_text_file(written) != five);
-         for (const char* other : {"--fit none", "--samples 2", "--to track"}) {
+         // The network alone says it, too, if in fewer words.
+         const CliResult alone = run_cli(sure + " --fit none --seed 5");
+         CHECK(alone.exit_code == 0);
+         CHECK(alone.standard_error.find("standard deviation of") != std::string::npos);
+         placement.fit.reset();
+         const auto unfitted = regenerate_clip(model, mcdbn::read_track_csv(one.track), placement,
+                                               regeneration, &findings);
+         write_uncertainty_csv(folder / "wanted.csv", unfitted.at(0), findings.uncertainty);
+         CHECK(mcdbn::read_text_file(written) == mcdbn::read_text_file(folder / "wanted.csv"));
+         for (const char* other : {"--samples 2", "--to track"}) {
            CAPTURE(other);
            CHECK(run_cli(sure + " " + other).exit_code == 2);
          }

@@ -103,6 +103,7 @@ TEST_CASE("a test run draws of each clip by its own seed, and counts the interva
       REQUIRE(answer.deviation_mm.rows() == answer.motion.frames());
       CHECK(largest(answer.deviation_mm - deviation_mm) < 1e-9 * largest(deviation_mm));
       CHECK(answer.score.within_90 == doctest::Approx(share_by_hand(results[i], answer)));
+      CHECK(results[i].joints.overall().share() == doctest::Approx(answer.score.within_90));
       CHECK(answer.score.within_90 > 0);
       CHECK(answer.score.within_90 < 1);
     }
@@ -129,8 +130,8 @@ TEST_CASE("a test run draws of the single answer alone, and of none without a fi
     const auto alone = run_test(model, scene.tests, options);
     CHECK(alone[1].samples.at(0).deviation_mm == deviation_mm);  // whatever else is drawn
 
-    options.fit.reset();
-    CHECK(std::isnan(run_test(model, scene.tests, options)[0].samples.at(0).score.within_90));
+    options.fit.reset();  // then it is the prior that says how sure it is
+    CHECK(std::isfinite(run_test(model, scene.tests, options)[0].samples.at(0).score.within_90));
     options = scene.options();
     options.uncertainty_draws = {};
     CHECK(std::isnan(run_test(model, scene.tests, options)[0].samples.at(0).score.within_90));

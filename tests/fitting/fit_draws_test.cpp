@@ -2,8 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "fitting/prior_deviations.hpp"
 #include "fitting/walk_scene.hpp"
 #include "motion/joint_uncertainty.hpp"
 
@@ -51,8 +53,57 @@ TEST_CASE("fit draws: as many as are asked for, and the likeliest stays what it 
   CHECK(clip.draws[0].channels == drawn(scene, scene.mean).draws[0].channels);
   CHECK(clip.draws[0].channels != clip.draws[1].channels);
   CHECK(clip.draws[0].channels != drawn(scene, scene.mean, {}, {1, 5}).draws[0].channels);
-  CHECK(fit_to_track(scene.mean, scene.modalities, scene.track, scene.known, std::nullopt, kDraws)
-            .draws.empty());
+}
+
+TEST_CASE("without a fit draws are what the prior leaves open, bones turned with their parents") {
+  const Scene scene = make_scene(0, 30);
+  constexpr double kDeviation_rad = 0.05;
+  constexpr PosteriorDraws kMany{.count = 400, .seed = 4};
+  const PosePrior prior = prior_of(scene, kDeviation_rad);
+  const auto unfitted = [&](const PosteriorDraws& draws) {
+    return fit_to_track(prior, scene.modalities, scene.track, scene.known, std::nullopt, draws);
+  };
+  const FittedClip clip = unfitted(kMany);
+  CHECK(clip.motion.channels == unfitted({}).motion.channels);
+  REQUIRE(clip.draws.size() == 400);
+  // e of deviation s about every axis moves a bone b by e × b: 2 s² |b|² in all. Two bones, of
+  // which the lower one's e is as the upper one's by the correlation k, add 4 k s s' b·b'.
+  TrackFitSettings as_told;
+  as_told.doubt = 1;
+  const MatrixD told = turn_deviations_rad(prior, scene.modalities, as_told);
+  const auto bone = [&](const char* upper, const char* lower) {
+    const MatrixD places = joint_positions(clip.motion);
+    const std::vector<int>& turning = scene.modalities.pose_features.joints();
+    const auto turn =
+        std::ranges::find(turning, scene.modalities.pose_features.skeleton().find(upper)) -
+        turning.begin();
+    const MatrixD along = places.middleCols(3 * clip.motion.skeleton.find(lower), 3) -
+                          places.middleCols(3 * clip.motion.skeleton.find(upper), 3);
+    return (along.array().colwise() * told.col(turn).array()).matrix().eval();
+  };
+  const MatrixD hip = bone("Hips", "LeftUpLeg"), thigh = bone("LeftUpLeg", "LeftLeg");
+  const double one = hip.squaredNorm(), two = one + thigh.squaredNorm(),
+               together = 2 * TrackFitSettings{}.likeness * hip.cwiseProduct(thigh).sum();
+  const auto wanted = [&](double squares) {
+    return std::sqrt(2 * squares / static_cast<double>(hip.size()));
+  };
+  CHECK(width_of(scene, clip, "LeftUpLeg") == doctest::Approx(wanted(one)).epsilon(0.1));
+  CHECK(width_of(scene, clip, "LeftLeg") == doctest::Approx(wanted(two + together)).epsilon(0.1));
+  CHECK(unfitted({1, 4}).draws[0].channels == clip.draws[0].channels);
+  CHECK(unfitted({1, 5}).draws[0].channels != clip.draws[0].channels);
+  // Nobody's own skeleton: its bones may be longer or shorter.
+  KnownOfClip stranger = scene.known;
+  stranger.skeleton.reset();
+  const FittedClip bodies =
+      fit_to_track(prior, scene.modalities, scene.track, stranger, std::nullopt, kMany);
+  double sum = 0;
+  const int leg = bodies.motion.skeleton.find("LeftLeg");
+  const double usual = bodies.motion.skeleton.joints[static_cast<std::size_t>(leg)].offset.norm();
+  for (const Motion& draw : bodies.draws) {
+    const double length = draw.skeleton.joints[static_cast<std::size_t>(leg)].offset.norm();
+    sum += std::pow(std::log(length / usual), 2);
+  }
+  CHECK(std::sqrt(sum / 400) == doctest::Approx(TrackFitSettings{}.proportions).epsilon(0.15));
 }
 
 TEST_CASE("fit draws: they spread as the settings say, and less where the track shows") {

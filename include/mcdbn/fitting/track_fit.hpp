@@ -132,7 +132,8 @@ struct FittedClip {
 /// starts above the origin, at the height that the features say.
 /// @param features what decodes features to poses, and the joints to look at
 /// @param track at the model's rate, as many frames as the prior; joined by name
-/// @param settings unset: orientations stay as the prior's mean has them, and nothing is drawn
+/// @param settings unset: orientations stay as the prior's mean has them, and draws are what the
+///        prior alone leaves open
 /// @param draws for these an orientation's deviation is what the prior says, and a detector's
 ///        lasting error lasts throughout: what is likeliest and how sure it is are not told by the
 ///        same settings
