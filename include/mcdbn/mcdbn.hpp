@@ -29,6 +29,7 @@
 #include "mcdbn/device/tuning.hpp"
 #include "mcdbn/drawing/render.hpp"
 #include "mcdbn/evaluation/distribution_fit.hpp"
+#include "mcdbn/evaluation/interval_share.hpp"
 #include "mcdbn/evaluation/joint_error.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
 #include "mcdbn/features/modalities.hpp"
