@@ -122,8 +122,7 @@ int main(int argc, char** argv) {
                 gaussian ? CrbmShape{96, peer::kHidden, peer::kOrder, VisibleKind::gaussian}
                          : CrbmShape{300, peer::kHidden, peer::kOrder, VisibleKind::binary},
                 arguments.batch, gaussian ? 5 : 1);
-  peer::print("CLBlast + elementwise",
-              peer::median_us(
-                  arguments.seconds, [&] { step(); }, [&] { device.finish(); }));
+  peer::serve(
+      "CLBlast + elementwise", arguments.seconds, [&] { step(); }, [&] { device.finish(); });
   return 0;
 }

@@ -205,8 +205,8 @@ class MrbmStep {
 int main(int argc, char** argv) {
   const peer::Arguments arguments = peer::arguments(argc, argv);
   const auto report = [&](auto step) {
-    peer::print("Eigen + OpenMP", peer::median_us(
-                                      arguments.seconds, [&] { step(); }, [] {}));
+    peer::serve(
+        "Eigen + OpenMP", arguments.seconds, [&] { step(); }, [] {});
   };
   if (arguments.layer == "gaussian_crbm") report(CrbmStep(96, arguments.batch, 5, false));
   if (arguments.layer == "binary_crbm") report(CrbmStep(300, arguments.batch, 1, true));

@@ -2,7 +2,7 @@
 
     python jax_peer.py LAYER BATCH SECONDS
 
-prints {"jax": median_us}. Layers are those of pytorch_peer.py; BATCH is the number of samples of a
+prints {} when it is ready, then {"jax": median_us} for each line of its input. Layers are those of pytorch_peer.py; BATCH is the number of samples of a
 generation or regeneration, of windows of fine_tuning.
 """
 
@@ -308,22 +308,30 @@ def step_of(layer, batch):
                 layer.startswith("persistent"))
 
 
-def main():
-    layer, batch, seconds = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
-    step, state = step_of(layer, batch)
-    for _ in range(3):
-        start = time.perf_counter()
-        state = jax.block_until_ready(step(state))
-        once = time.perf_counter() - start
-    runs = max(1, min(1000, int(0.01 / once)))
+def measure(step, state, seconds):
+    """Median microseconds of a step, and the state after the last."""
+    start = time.perf_counter()
+    state = jax.block_until_ready(step(state))
+    runs = max(1, min(1000, int(0.01 / (time.perf_counter() - start))))
     times, end = [], time.perf_counter() + seconds
-    while time.perf_counter() < end or len(times) < 3:
+    while not times or time.perf_counter() < end:
         start = time.perf_counter()
         for _ in range(runs):
             state = step(state)
         jax.block_until_ready(state)
         times.append((time.perf_counter() - start) / runs * 1e6)
-    print(json.dumps({"jax": statistics.median(times)}))
+    return statistics.median(times), state
+
+
+def main():
+    layer, batch, seconds = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
+    step, state = step_of(layer, batch)
+    for _ in range(2):
+        state = jax.block_until_ready(step(state))
+    print("{}", flush=True)
+    for _ in sys.stdin:
+        median, state = measure(step, state, seconds)
+        print(json.dumps({"jax": median}), flush=True)
 
 
 main()

@@ -1,7 +1,8 @@
 #pragma once
 
 // What the C++ peers share: the command line `PEER LAYER BATCH SECONDS`, the timing loop and the
-// output, one JSON object {"variant": median_us}.
+// output. Each line of the input asks for one measurement of so many seconds, which is answered by
+// a line, one JSON object {"variant": median_us}. The first line of the output is {}: ready.
 
 #include <algorithm>
 #include <chrono>
@@ -60,7 +61,17 @@ inline double median_us(double seconds, const std::function<void()>& step,
 }
 
 inline void print(const std::string& variant, double median) {
-  std::cout << "{\"" << variant << "\": " << median << "}\n";
+  std::cout << "{\"" << variant << "\": " << median << "}" << std::endl;
+}
+
+/// Answers whoever asks, until the input ends.
+inline void serve(const std::string& variant, double seconds, const std::function<void()>& step,
+                  const std::function<void()>& wait) {
+  step();
+  wait();
+  std::cout << "{}" << std::endl;
+  for (std::string line; std::getline(std::cin, line);)
+    print(variant, median_us(seconds, step, wait));
 }
 
 }  // namespace peer
