@@ -24,7 +24,7 @@ cl::Buffer allocate(const Device& device, std::size_t bytes) {
     if (!is_lack_of_memory(error.err()))
       throw device_error(device.info().name, "allocating a matrix", error);
     throw DeviceError(fmt::format(
-        "{}: no room for {:.0f} MB more, of {:.0f} MB that it has; smaller layers and mini-batches "
+        "{}: no room for {:.3g} MB more, of {:.0f} MB that it has; smaller layers and mini-batches "
         "need less",
         device.info().name, static_cast<double>(bytes) / kMegabyte,
         static_cast<double>(device.info().global_memory_bytes) / kMegabyte));

@@ -97,7 +97,7 @@ TEST_CASE("out of device memory: how much was wanted, or what needs less") {
   layer::fail("clCreateBuffer", 0, CL_MEM_OBJECT_ALLOCATION_FAILURE);
   const std::string refused = error_of([&] { Matrix(device, 1000, 1000); });
   CAPTURE(refused);
-  CHECK(says(refused, device.info().name + ": no room for 4 MB more, of "));
+  CHECK(says(refused, device.info().name + ": no room for 4.03 MB more, of "));
   CHECK(says(refused, "smaller layers and mini-batches"));
   // Many drivers give memory only when it is first used.
   layer::heal();
