@@ -92,7 +92,12 @@ TEST_CASE("a view is a piece of a clip from anywhere in it, seen as the settings
   plain.augment = nothing();
   const FreshViews some = views(plain, {.frames = 40});
   const ClipStore clips = three_clips();
-  std::map<std::size_t, std::vector<int>> firsts;
+  // Where in the first clip a view begins: at the frame of a view of all of it that is nearest.
+  const FreshViews whole = views(plain, {.frames = 1000});
+  std::size_t number = 0;
+  while (whole.make(number).clip != 0) ++number;
+  const MatrixF all = whole.make(number).pose;
+  std::map<std::size_t, std::vector<Eigen::Index>> firsts;
   for (std::size_t n = 0; n < 60; ++n) {
     const EncodedView view = some.make(n);
     const int frames = clips.record(view.clip).frames;
@@ -102,9 +107,14 @@ TEST_CASE("a view is a piece of a clip from anywhere in it, seen as the settings
     const int want = std::min(40, frames);
     CHECK(view.pose.rows() >= want - 1);
     CHECK(view.pose.rows() <= want);
-    firsts[view.clip].push_back(0);
+    Eigen::Index nearest = 0;
+    if (view.clip == 0) (all.rowwise() - view.pose.row(0)).rowwise().norm().minCoeff(&nearest);
+    firsts[view.clip].push_back(nearest);
   }
   CHECK(firsts.size() == 3);
+  const auto [first, last] = std::ranges::minmax(firsts[0]);
+  CHECK(first < 8);
+  CHECK(last > 40);
   // With new poses and with what a detector loses they are others.
   bool unseen = false, other = false;
   const FreshViews changed = views(settings(), {.frames = 40});
