@@ -93,10 +93,13 @@ double minibatches_s(Device& device, double seconds) {
 
 void run_bench(const CommandContext& context, const BenchOptions& options) {
   Device device = Device::open({context.platform, context.device});
-  if (options.tune)
+  if (options.tune) {
+    const TuningNotice notice = [](const std::string& measured) { spdlog::info("{}", measured); };
     tune(
-        device, [&](const Tuning&) { return minibatches_s(device, options.seconds / kTunedPairs); },
-        options.seconds, [](const std::string& measured) { spdlog::info("{}", measured); });
+        device, tuning_for_units(device, notice),
+        [&](const Tuning&) { return minibatches_s(device, options.seconds / kTunedPairs); },
+        options.seconds, notice);
+  }
   const double peak_gflops = measure_peak_gflops(device);
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   if (!context.json)

@@ -1,7 +1,6 @@
 #include "device/peak.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -12,27 +11,24 @@
 namespace mcdbn {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_of(Device& device, const std::function<void()>& run) {
-  device.finish();
-  const auto start = Clock::now();
-  run();
-  device.finish();
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// The shortest of the medians of several rounds: a round in which a core was late or busy with
-/// something else does not count, nor does a single lucky run.
+/// The shortest median of a few launches in a row, of many that follow each other: threads that the
+/// system first put on one core have moved apart by then, as they do not sleep in between; and
+/// neither a disturbed launch counts nor a single lucky one.
 double best_median_s(Device& device, const std::function<void()>& run) {
-  constexpr std::size_t kRounds = 5, kRuns = 5;
-  run();
+  constexpr std::size_t kRuns = 40, kInARow = 5;
+  run();  // builds the program
+  const bool keeps = device.keeps_launch_times();
+  device.keep_launch_times(true);
+  for (std::size_t i = 0; i < kRuns; ++i) run();
+  const std::vector<LaunchTime> times = device.take_launch_times();
+  device.keep_launch_times(keeps);
+  std::vector<double> runs_s;
+  runs_s.reserve(times.size());
+  for (const LaunchTime& time : times)
+    runs_s.push_back(1e-9 * static_cast<double>(time.ended_ns - time.started_ns));
   double best_s = std::numeric_limits<double>::infinity();
-  for (std::size_t round = 0; round < kRounds; ++round) {
-    std::vector<double> runs_s(kRuns);
-    for (double& run_s : runs_s) run_s = seconds_of(device, run);
-    best_s = std::min(best_s, upper_median(std::move(runs_s)));
-  }
+  for (auto first = runs_s.begin(); runs_s.end() - first >= std::ptrdiff_t{kInARow}; ++first)
+    best_s = std::min(best_s, upper_median({first, first + kInARow}));
   return best_s;
 }
 
@@ -47,8 +43,11 @@ struct Range {
 }  // namespace
 
 double measure_peak_gflops(Device& device) {
+  return measure_peak_gflops(device, vector_width(device));
+}
+
+double measure_peak_gflops(Device& device, int vec) {
   constexpr int kChains = 16, kIterations = 20000;
-  const int vec = vector_width(device);
   const Range range(device, 64);
   cl::Kernel& kernel =
       device.programs().kernel("peak.cl", "fma_loop", {{"VEC", vec}, {"CHAINS", kChains}});
@@ -60,13 +59,18 @@ double measure_peak_gflops(Device& device) {
   return 2e-9 * vec * kChains * kIterations * static_cast<double>(range.items) / seconds;
 }
 
+bool has_units_of_16_floats(Device& device) {
+  constexpr double kBetween = 1.5;  // 1 where a unit takes two passes, 2 where it takes one
+  return measure_peak_gflops(device, 16) > kBetween * measure_peak_gflops(device, 8);
+}
+
 double measure_read_gbytes_per_s(Device& device, std::size_t bytes) {
   constexpr double kLeastBytes = 256e6;  // of a run: some milliseconds
   const int vec = vector_width(device);
   const Range range(device, 16);
   const auto row = std::size_t{8} * static_cast<std::size_t>(vec);  // what a step of the loop reads
   const std::size_t rows = std::max<std::size_t>(1, bytes / sizeof(float) / range.items / row);
-  const double pass_bytes = static_cast<double>(rows * row * range.items * sizeof(float));
+  const auto pass_bytes = static_cast<double>(rows * row * range.items * sizeof(float));
   const int passes = std::max(1, static_cast<int>(kLeastBytes / pass_bytes));
   cl::Kernel& kernel = device.programs().kernel("peak.cl", "read_loop", {{"VEC", vec}});
   const Matrix in(device, range.items, rows * row), out(device, 1, range.items);

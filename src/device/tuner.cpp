@@ -6,8 +6,10 @@
 #include <array>
 
 #include "base/upper_median.hpp"
+#include "device/default_tuning.hpp"
 #include "device/gemm.hpp"
 #include "device/median_time.hpp"
+#include "device/peak.hpp"
 #include "mcdbn/device/matrix.hpp"
 
 namespace mcdbn {
@@ -70,8 +72,16 @@ double product_s(Device& device, std::size_t size, GemmBackend backend, double s
 
 }  // namespace
 
-Tuning fastest_tuning(const DeviceInfo& info, const TunedTime& time_s, const TuningNotice& notice) {
-  const Tuning usual = default_tuning(info);
+Tuning tuning_for_units(Device& device, const TuningNotice& notice) {
+  const Tuning usual = default_tuning(device.info());
+  if (device.info().is_gpu || usual.vector_width < 16) return usual;
+  const bool is_full = has_units_of_16_floats(device);
+  if (notice) notice(fmt::format("units of {} bits", is_full ? 512 : 256));
+  return is_full ? usual : for_units_of_8_floats(usual);
+}
+
+Tuning fastest_tuning(const DeviceInfo& info, const Tuning& usual, const TunedTime& time_s,
+                      const TuningNotice& notice) {
   Tuning best = usual;
   for (const Tuning& rival : tuning_candidates(info, usual)) {
     if (rival == usual) continue;
@@ -104,9 +114,10 @@ std::int64_t clblast_threshold(Device& device, double seconds, const TuningNotic
   return 0;
 }
 
-void tune(Device& device, const TunedTime& time_s, double seconds, const TuningNotice& notice) {
+void tune(Device& device, const Tuning& usual, const TunedTime& time_s, double seconds,
+          const TuningNotice& notice) {
   Tuning best = fastest_tuning(
-      device.info(),
+      device.info(), usual,
       [&](const Tuning& tuning) {
         device.set_tuning(tuning);
         return time_s(tuning);

@@ -13,8 +13,11 @@ using TunedTime = std::function<double(const Tuning&)>;
 /// Hears of each measurement.
 using TuningNotice = std::function<void(const std::string&)>;
 
-/// The fastest that one parameter changed after another leads to (tuning_candidates).
-Tuning fastest_tuning(const DeviceInfo& info, const TunedTime& time_s,
+/// Where a tuner begins: the default, for units as wide as they are measured to be.
+Tuning tuning_for_units(Device& device, const TuningNotice& notice = {});
+
+/// The fastest that one parameter changed after another leads to from `usual` (tuning_candidates).
+Tuning fastest_tuning(const DeviceInfo& info, const Tuning& usual, const TunedTime& time_s,
                       const TuningNotice& notice = {});
 
 /// The fewest multiply-adds from which CLBlast's product takes less time than ours and is right; 0
@@ -23,7 +26,8 @@ Tuning fastest_tuning(const DeviceInfo& info, const TunedTime& time_s,
 std::int64_t clblast_threshold(Device& device, double seconds, const TuningNotice& notice = {});
 
 /// Finds both, sets them on the device and stores them in the user's cache folder.
-/// @param seconds for each measurement of a product
-void tune(Device& device, const TunedTime& time_s, double seconds, const TuningNotice& notice = {});
+/// @param usual where to begin  @param seconds for each measurement of a product
+void tune(Device& device, const Tuning& usual, const TunedTime& time_s, double seconds,
+          const TuningNotice& notice = {});
 
 }  // namespace mcdbn

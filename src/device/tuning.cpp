@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kKind = "tuning";
 
 std::string key_of(const DeviceInfo& info) {
-  return "3|" + info.platform_name + '|' + info.name + '|' + info.driver_version + '|' +
+  return "4|" + info.platform_name + '|' + info.name + '|' + info.driver_version + '|' +
          std::to_string(info.compute_units);
 }
 
@@ -34,34 +34,7 @@ bool makes_sense(const Tuning& tuning) {
          tuning.summed_rows >= 0 && tuning.clblast_from >= 0;
 }
 
-/// A CPU that has vectors does best with twice or more of what it takes at once; one that has none
-/// would keep so many floats in memory.
-int vector_width_for_cpu(const DeviceInfo& info) {
-  return std::max(info.preferred_vector_width, info.native_vector_width) > 1 ? 16 : 1;
-}
-
 }  // namespace
-
-Tuning default_tuning(const DeviceInfo& info) {
-  if (!info.is_gpu)
-    return {.vector_width = vector_width_for_cpu(info),
-            .largest_rows = 12,
-            .update_rows = 8,
-            .update_columns = 2,
-            .product_columns = 2,
-            .transposed_rows = 8,
-            .transposed_columns = 2};
-  // Single lanes that coalesce, of which four keep enough work in flight.
-  return limited({.vector_width = 4,
-                  .largest_rows = 4,
-                  .accumulators = 4,
-                  .group = 64,
-                  .update_rows = 4,
-                  .product_rows = 4,
-                  .transposed_rows = 4,
-                  .summed_rows = 0},
-                 info);
-}
 
 Tuning limited(Tuning tuning, const DeviceInfo& info) {
   const std::size_t most = std::min(info.largest_group, info.largest_group_sides[0]);
@@ -86,7 +59,7 @@ std::vector<Tuning> tuning_candidates(const DeviceInfo& info, const Tuning& from
     vary(&Tuning::group, {32, 64, 128});
     vary(&Tuning::update_rows, {4, 8});
   } else {
-    vary(&Tuning::vector_width, {8, 16});
+    vary(&Tuning::vector_width, {8, 16, 4});
     vary(&Tuning::largest_rows, {8, 10, 14});
     vary(&Tuning::accumulators, {12, 24, 28});
     vary(&Tuning::update_rows, {4, 8, 16});

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/scratch_folder.hpp"
+#include "device/default_tuning.hpp"
 #include "device/every_device.hpp"
 #include "device/gemm.hpp"
 #include "device/row_tile.hpp"
@@ -52,6 +53,30 @@ TEST_CASE("tuning: what was stored for a device is loaded, for that device only"
   store_tuning(some_device(), kTuned);
   CHECK(load_tuning(some_device()) == kTuned);
   CHECK_FALSE(load_tuning(some_device("2")));
+}
+
+TEST_CASE("tuning: no tile of a default wants more registers than a CPU has") {
+  struct Registers {
+    unsigned floats;
+    int count, width;
+  };
+  for (const Registers& registers :
+       {Registers{16, 32, 16}, Registers{8, 16, 8}, Registers{4, 16, 4}, Registers{1, 16, 1}}) {
+    CAPTURE(registers.floats);
+    const Tuning tuning = cpu_tuning(registers.floats);
+    CHECK(tuning.vector_width == registers.width);
+    // Sums, a vector of each column, a row's value.
+    const auto fits = [&](int rows, int columns) {
+      return (rows + 1) * columns + 1 <= registers.count;
+    };
+    CHECK(fits(tuning.largest_rows, tuning.accumulators / tuning.largest_rows));
+    CHECK(fits(tuning.update_rows, tuning.update_columns));
+    CHECK(fits(tuning.product_rows, tuning.product_columns));
+    CHECK(fits(tuning.transposed_rows, tuning.transposed_columns));
+  }
+  const Tuning narrow = for_units_of_8_floats(cpu_tuning(16));
+  CHECK(narrow.largest_rows == 10);
+  CHECK(narrow.accumulators == 20);
 }
 
 TEST_CASE("tuning: a damaged or senseless entry is as none") {
