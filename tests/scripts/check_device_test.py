@@ -37,7 +37,7 @@ def main():
         print("SKIPPED check_device: no OpenCL device here")
         sys.exit(77)
 
-    right = checked(build, "--cases", CASE)
+    right = checked(build, "--cases", "small: differences*")
     assert right.returncode == 0, right.stderr
     for words in ("driver", "compute units", "local memory", "work-groups", "device: 1 of 1 cases right",
                   "CD mini-batch of 100:", "GFLOP/s with fma alone", "it works"):
@@ -46,10 +46,12 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         kernels = pathlib.Path(folder) / "kernels"
         wrong_kernels(kernels)
-        wrong = checked(build, "--cases", CASE, MCDBN_KERNEL_DIR=str(kernels))
+        wrong = checked(build, "--cases", "small: differences*", MCDBN_KERNEL_DIR=str(kernels))
         assert wrong.returncode == 1
         assert f"wrong: {CASE}" in wrong.stdout and "NOT to be relied on" in wrong.stdout
 
+        nothing = checked(build, "--cases", "no case is called so")
+        assert nothing.returncode == 1 and "NOT to be relied on" in nothing.stdout
         none = checked(build, "--icd", folder)
         assert none.returncode == 4 and "no OpenCL device found" in none.stderr
         other = checked(build, "--device", "no such device")
