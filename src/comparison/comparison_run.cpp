@@ -124,16 +124,14 @@ Regeneration answer(const Model& model, const TestRunOptions& options, const Enc
                     const SeenClip& seen, const PosePrior& prior,
                     const PosteriorDraws& draws = {}) {
   ClipPlacement placement = placement_of(truth, options);
-  placement.view = seen.view;
+  placement.found = seen.view;
   FittedClip fitted =
       fit_to_track(prior, model.modalities, seen.joints, placement, options.fit, draws);
   // Who does not know the camera answers in another's axes: what it saw is the same.
   const auto in_truths_axes = [&](Motion& motion) {
     if (placement.camera) return;
-    motion =
-        turned_motion(std::move(motion),
-                      truth.camera.camera_from_world.transpose() *
-                          placement.camera_of(truth.track, model.modalities).camera_from_world);
+    motion = turned_motion(std::move(motion), truth.camera.camera_from_world.transpose() *
+                                                  fitted.camera.camera_from_world);
   };
   in_truths_axes(fitted.motion);
   for (Motion& draw : fitted.draws) in_truths_axes(draw);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/upper_median.hpp"
+#include "fitting/camera_angles.hpp"
 #include "fitting/robust_residuals.hpp"
 #include "fitting/rotation.hpp"
 #include "fitting/turned_bones.hpp"
@@ -43,9 +44,7 @@ std::vector<int> length_groups(const PoseFeatures& features, const std::vector<i
 
 ClipEvidence::ClipEvidence(const PoseFeatures& features, const Motion& answer,
                            const MatrixD& travelled, const TrackRays& track, const Camera& camera)
-    : skeleton_(answer.skeleton),
-      camera_(camera),
-      units_per_m_(file_units_per_metre(answer.skeleton)) {
+    : skeleton_(answer.skeleton), units_per_m_(file_units_per_metre(answer.skeleton)) {
   std::vector<int> joints;
   for (const std::string& name : track.joint_names) joints.push_back(skeleton_.find(name));
   const TurnedBones bones(features, skeleton_, joints);
@@ -55,11 +54,20 @@ ClipEvidence::ClipEvidence(const PoseFeatures& features, const Motion& answer,
   clip.frame_time_s = 1 / track.fps;
   clip.root.resize(answer.frames(), 3);
   clip.travelled = travelled * camera.camera_from_world.transpose() / units_per_m_;
-  const std::vector<int> feet = foot_joints(skeleton_);
+  clip.up = camera.camera_from_world.col(1);
+  const std::vector<int> feet = foot_joints(skeleton_), opposite = opposite_joints(skeleton_);
+  std::vector<int> grounds;  // by its first foot
+  const auto ground_of = [&](int foot) {
+    const int other = opposite.empty() ? foot : opposite[static_cast<std::size_t>(foot)];
+    const auto known = std::ranges::find(grounds, std::min(foot, other));
+    if (known == grounds.end()) grounds.push_back(std::min(foot, other));
+    return static_cast<int>(std::ranges::find(grounds, std::min(foot, other)) - grounds.begin());
+  };
   for (std::size_t k = 0; k < joints.size(); ++k) {
     if (std::ranges::find(feet, joints[k]) == feet.end()) continue;
     clip.feet.push_back(k);
     feet_.push_back(joints[k]);
+    clip.grounds.push_back(ground_of(joints[k]));
   }
   for (int t = 0; t < answer.frames(); ++t) {
     const WorldPose pose = forward_kinematics(skeleton_, answer.channels.row(t));
@@ -91,6 +99,28 @@ void ClipEvidence::find_planted(const Motion& motion) {
   }
 }
 
+Eigen::VectorXd ClipEvidence::ground(const PosteriorPoint& point) const {
+  constexpr double kStands = 0.5;
+  const Eigen::Vector3d up = rotation_of(point.lean) * clip.up;
+  std::vector<std::vector<double>> heights(static_cast<std::size_t>(point.ground_m.size()));
+  for (std::size_t f = 0; f < clip.feet.size(); ++f)
+    for (Eigen::Index t = 0; t < clip.frames(); ++t)
+      if (clip.planted(t, static_cast<Eigen::Index>(f)) > kStands)
+        heights[static_cast<std::size_t>(clip.grounds[f])].push_back(
+            up.dot(place_of(clip, point, t, clip.feet[f])));
+  Eigen::VectorXd ground = point.ground_m;
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    if (!heights[i].empty())
+      ground[static_cast<Eigen::Index>(i)] = upper_median(std::move(heights[i]));
+  return ground;
+}
+
+ExpectedLean ClipEvidence::balanced(const Eigen::Vector3d& upright, double deviation_rad) const {
+  const Eigen::Vector3d up = upright.normalized();
+  return {pitch_rad(up) - pitch_rad(clip.up), roll_rad(up) - roll_rad(clip.up), deviation_rad,
+          deviation_rad};
+}
+
 MatrixD ClipEvidence::turned(MatrixD features, const PosteriorPoint& point) const {
   for (Eigen::Index t = 0; t < features.rows(); ++t) {
     for (Eigen::Index k = 0; k < point.turns.cols() / 3; ++k) {
@@ -104,10 +134,11 @@ MatrixD ClipEvidence::turned(MatrixD features, const PosteriorPoint& point) cons
   return features;
 }
 
-MatrixD ClipEvidence::root(const PosteriorPoint& point) const {
+MatrixD ClipEvidence::root(const PosteriorPoint& point, double scale, const Camera& camera) const {
   // x_camera = R·x_world + t, row by row.
-  return (((clip.root + point.shift) * units_per_m_).rowwise() - camera_.translation.transpose()) *
-         camera_.camera_from_world;
+  return (((clip.root + point.shift) * (scale * units_per_m_)).rowwise() -
+          camera.translation.transpose()) *
+         camera.camera_from_world;
 }
 
 Skeleton ClipEvidence::body(const PosteriorPoint& point) const {
@@ -123,6 +154,7 @@ Skeleton ClipEvidence::body(const PosteriorPoint& point) const {
 
 double ClipEvidence::usual_residual(const PosteriorPoint& point) const {
   std::vector<double> residuals;
+  const double magnified = std::exp(point.log_focal);
   for (Eigen::Index t = 0; t < clip.frames(); ++t) {
     const auto& seen = clip.seen[static_cast<std::size_t>(t)];
     for (std::size_t joint = 0; joint < seen.size(); ++joint) {
@@ -130,7 +162,7 @@ double ClipEvidence::usual_residual(const PosteriorPoint& point) const {
       const Eigen::Vector3d x = place_of(clip, point, t, joint);
       if (!(x.z() > 0)) continue;
       const Eigen::Vector2d residual =
-          std::sqrt(seen[joint].confidence) * (x.head<2>() / x.z() - seen[joint].ray);
+          std::sqrt(seen[joint].confidence) * (magnified * x.head<2>() / x.z() - seen[joint].ray);
       residuals.push_back(residual.x());
       residuals.push_back(residual.y());
     }

@@ -21,10 +21,18 @@ class ClipEvidence {
   /// they are (kPlantedInAnswer), the ground being the lowest foot of the frame.
   void find_planted(const Motion& motion);
 
+  /// How high the ground is under each kind of foot joint: the middle height of those that stand;
+  /// as before where none does. @return as PosteriorPoint::ground_m
+  Eigen::VectorXd ground(const PosteriorPoint& point) const;
+  /// How the camera stands if the body's middle is, on average, straight above the feet.
+  /// @param upright from feet to middle, camera axes, any length
+  ExpectedLean balanced(const Eigen::Vector3d& upright, double deviation_rad) const;
+
   /// The answer's features, turned. @return [frames x dimension] along the camera's axes
   MatrixD turned(MatrixD features, const PosteriorPoint& point) const;
-  /// Its root. @return [frames x 3] world, file units
-  MatrixD root(const PosteriorPoint& point) const;
+  /// Its root. @param scale of distances from the camera  @param camera that sees it
+  /// @return [frames x 3] world, file units
+  MatrixD root(const PosteriorPoint& point, double scale, const Camera& camera) const;
   /// Its body. @return the answer's skeleton, bones as long as the point has them
   Skeleton body(const PosteriorPoint& point) const;
 
@@ -36,7 +44,6 @@ class ClipEvidence {
 
  private:
   Skeleton skeleton_;
-  Camera camera_;
   double units_per_m_;
   std::vector<int> feet_;        ///< joints of the skeleton, as clip.feet
   std::vector<int> turn_above_;  ///< by joint of the skeleton, what turns its bone, or −1

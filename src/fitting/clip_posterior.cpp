@@ -28,20 +28,26 @@ PosteriorPoint PosteriorPoint::zero(const PosteriorClip& clip) {
   const auto turns = 3 * static_cast<Eigen::Index>(clip.parents.size());
   const int lengths =
       clip.lengths.empty() ? 0 : 1 + *std::max_element(clip.lengths.begin(), clip.lengths.end());
+  const int grounds =
+      clip.grounds.empty() ? 0 : 1 + *std::max_element(clip.grounds.begin(), clip.grounds.end());
   return {MatrixD::Zero(clip.frames(), turns), MatrixD::Zero(clip.frames(), 3),
-          Eigen::VectorXd::Zero(lengths)};
+          Eigen::VectorXd::Zero(lengths), Eigen::VectorXd::Zero(grounds)};
 }
 
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
                            const TrackFitSettings& settings, PosteriorPoint from) {
   const std::vector<ClipWindow> windows = windows_of(clip.frames());
-  const auto solved = [&](const ClipWindow& window, bool lengths_too) {
+  const auto solved = [&](const ClipWindow& window, bool shared_too) {
     WindowProblem problem(clip, noise, settings, from, window.first, window.frames);
-    problem.solve(lengths_too);
+    problem.solve(shared_too);
     return problem.solution();
   };
-  if (windows.size() == 1) return solved(windows.front(), clip.body_unknown);
-  if (clip.body_unknown) from.log_lengths = solved(windows[windows.size() / 2], true).log_lengths;
+  if (windows.size() == 1) return solved(windows.front(), true);
+  const PosteriorPoint middle = solved(windows[windows.size() / 2], true);
+  from.log_lengths = middle.log_lengths;
+  from.ground_m = middle.ground_m;
+  from.lean = middle.lean;
+  from.log_focal = middle.log_focal;
   PosteriorPoint whole = from;
   Eigen::Index known = 0;
   for (std::size_t i = 0; i < windows.size(); i += 2) {  // two at once

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
+#include "fitting/camera_doubt.hpp"
 #include "fitting/lever.hpp"
 #include "mcdbn/base/matrices.hpp"
 #include "mcdbn/fitting/track_fit.hpp"
@@ -28,8 +30,11 @@ struct PosteriorClip {
   MatrixD travelled;                         ///< [frames x 3] the prior's velocity, summed up
   std::vector<std::vector<SeenJoint>> seen;  ///< by frame and joint
   std::vector<std::size_t> feet;             ///< indices among the joints
-  MatrixD planted;  ///< [frames x feet] how surely each stands, 0…1, from
-                    ///< the frame before
+  MatrixD planted;               ///< [frames x feet] how surely each stands, 0…1, from
+                                 ///< the frame before
+  std::vector<int> grounds;      ///< by foot, which height it stands at: left and right the same
+  Eigen::Vector3d up{0, -1, 0};  ///< against gravity, as the camera is assumed to stand
+  std::optional<CameraDoubt> camera;  ///< unset: known
   bool body_unknown = false;
   double frame_time_s = 1;
 
@@ -43,9 +48,13 @@ struct RayNoise {
 
 /// A motion as it differs from the prior's mean.
 struct PosteriorPoint {
-  MatrixD turns;                ///< [frames x 3·orientations] radians, camera axes
-  MatrixD shift;                ///< [frames x 3] of the root
-  Eigen::VectorXd log_lengths;  ///< by length, the body's over the skeleton's
+  MatrixD turns;                  ///< [frames x 3·orientations] radians, camera axes
+  MatrixD shift;                  ///< [frames x 3] of the root
+  Eigen::VectorXd log_lengths;    ///< by length, the body's over the skeleton's
+  Eigen::VectorXd ground_m;       ///< heights that feet stand at, above the camera
+  Eigen::Vector3d lean{0, 0, 0};  ///< turn of the world otherwise than the camera is assumed to
+                                  ///< stand, radians, camera axes; never about y
+  double log_focal = 0;           ///< the camera's focal length over the assumed one
 
   static PosteriorPoint zero(const PosteriorClip& clip);
 };

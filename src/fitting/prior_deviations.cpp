@@ -40,10 +40,7 @@ MatrixD turn_deviations_rad(const PosePrior& prior, const Modalities& features,
          4)
             .cwiseSqrt()
             .cwiseMax(kLeastTurn_rad);
-  const double typical = settings.turn_deg * kDegree;
-  return result.unaryExpr([&](double told) {
-    return told <= typical ? told : typical * std::pow(told / typical, settings.doubt);
-  });
+  return result;
 }
 
 double root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities& features,

@@ -7,9 +7,8 @@ namespace mcdbn {
 
 /// How far a prior's orientations may be off about each axis, from the deviations of their six
 /// numbers: two unit vectors that a turn of deviation s about every axis moves by 2 s² each, summed
-/// over their coordinates. Less than a tenth of a degree is never believed, and what is beyond the
-/// settings' typical deviation counts as their `doubt` says: the RMS of a network's errors is that
-/// of a few large ones. What a prior does not say is as the settings have it.
+/// over their coordinates. Less than a tenth of a degree is never believed; what a prior does not
+/// say is as the settings have it.
 /// @return [frames x orientations] radians
 MatrixD turn_deviations_rad(const PosePrior& prior, const Modalities& features,
                             const TrackFitSettings& settings);

@@ -6,15 +6,18 @@
 #include <cmath>
 
 #include "camera/track_rays.hpp"
+#include "fitting/camera_angles.hpp"
 #include "fitting/clip_evidence.hpp"
 #include "fitting/posterior_draws.hpp"
 #include "fitting/prior_deviations.hpp"
 #include "fitting/prior_draws.hpp"
 #include "fitting/root_trajectory.hpp"
+#include "fitting/rotation.hpp"
 #include "fitting/seen_noise.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
+#include "motion/foot_joints.hpp"
 
 namespace mcdbn {
 namespace {
@@ -22,10 +25,13 @@ namespace {
 /// What is wrong with the root's velocity where the prior says no deviation and no fit follows.
 constexpr double kVelocityError_m_s2 = 1.0;
 
-/// What the posterior's width is told by: `doubt` and a detector's error that passes make the
-/// likeliest motion better, and would make it surer than it is. Chosen as `spread`.
+/// The settings' deviation of bones also has to do with where a detector sees joints; people differ
+/// by less.
+constexpr double kProportionsOfPeople = 0.1;
+
+/// What the posterior's width is told by: a detector's error that passes makes the likeliest motion
+/// better, and would make it surer than it is. Chosen as `spread`.
 TrackFitSettings settings_of_draws(TrackFitSettings settings) {
-  settings.doubt = 1;
   settings.noise_lasts_s = 10;
   return settings;
 }
@@ -54,6 +60,28 @@ void check(const PosePrior& prior, const Modalities& features, const Track2d& tr
   }
 }
 
+constexpr double kDegree = EIGEN_PI / 180;
+
+/// What is not known of the camera, where the network sees and answers in a level view: nothing
+/// tells pitch and roll where it does not.
+std::optional<CameraDoubt> doubt_of(const KnownOfClip& known, const Modalities& modalities,
+                                    const Track2d& track, const TrackFitSettings& settings) {
+  if (known.camera || !modalities.level_view) return {};
+  const Camera assumed = known.camera_of(track, modalities),
+               usual = modalities.assumed_camera(known.view, track.width_px, track.height_px);
+  const Eigen::Vector3d up = usual.camera_from_world.col(1),
+                        up_now = assumed.camera_from_world.col(1);
+  CameraDoubt doubt;
+  doubt.usual = {pitch_rad(up) - pitch_rad(up_now), roll_rad(up) - roll_rad(up_now),
+                 settings.pitch_deg * kDegree, settings.roll_deg * kDegree};
+  doubt.pitch_known = known.view.pitch_deg.has_value();
+  doubt.roll_known = known.view.roll_deg.has_value();
+  doubt.focal_known = known.view.field_of_view_deg.has_value();
+  doubt.log_focal = std::log(usual.fy_px / assumed.fy_px);
+  doubt.log_focal_deviation = settings.focal;
+  return doubt;
+}
+
 /// One clip on its way to its track.
 class ClipFit {
  public:
@@ -61,7 +89,9 @@ class ClipFit {
           const KnownOfClip& known)
       : modalities_(modalities),
         skeleton_(known.skeleton ? *known.skeleton : modalities.pose_features.skeleton()),
-        camera_(in_file_units(known.camera_of(track, modalities), skeleton_)),
+        assumed_(in_file_units(known.camera_of(track, modalities), skeleton_)),
+        camera_(assumed_),
+        units_per_m_(file_units_per_metre(skeleton_)),
         names_(tracked_joints(modalities.track_features)),
         track_(track_rays(names_, track, camera_)),
         features_(modalities.pose_in_camera(prior.mean, camera_.camera_from_world)) {
@@ -77,19 +107,24 @@ class ClipFit {
     root_ = root_trajectory(relative_positions(), track_, camera_, velocity_, velocity_error_m_s2_);
   }
 
-  /// @param own_skeleton else its proportions are unknown
-  void meet_track(const PosePrior& prior, double track_noise_px, bool own_skeleton,
-                  const TrackFitSettings& settings) {
+  /// @param known as the constructor's; without a skeleton its proportions are unknown
+  void meet_track(const PosePrior& prior, double track_noise_px, const KnownOfClip& known,
+                  const Track2d& track, const TrackFitSettings& settings) {
+    const bool own_skeleton = known.skeleton.has_value();
     mean_ = features_;
     evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, camera_);
     PosteriorClip& clip = evidence_->clip;
     clip.turn_deviation_rad = turn_deviations_rad(prior, modalities_, settings);
     clip.root_m_s2 = root_acceleration_deviation_m_s2(prior, modalities_, settings);
     clip.body_unknown = !own_skeleton;
+    clip.camera = doubt_of(known, modalities_, track, settings);
     SeenNoise noise(track_noise_px, camera_, evidence_->usual_depth_m(), own_skeleton, settings);
     point_ = PosteriorPoint::zero(clip);
     for (std::size_t solution = 0; solution < settings.solutions; ++solution) {
       evidence_->find_planted(motion());
+      point_.ground_m = evidence_->ground(point_);
+      if (clip.camera)
+        clip.camera->balanced = evidence_->balanced(upright(), settings.balance_deg * kDegree);
       rays_ = noise.rays();
       point_ = most_likely(clip, rays_, settings, std::move(point_));
       take(point_);
@@ -126,7 +161,10 @@ class ClipFit {
     const MatrixD features = features_, root = root_;
     const Skeleton skeleton = skeleton_;
     std::vector<Motion> motions;
-    for (const PosteriorPoint& point : prior_draws(evidence_->clip, {}, draws.count, draws.seed)) {
+    TrackFitSettings settings;
+    settings.proportions = kProportionsOfPeople;
+    for (const PosteriorPoint& point :
+         prior_draws(evidence_->clip, settings, draws.count, draws.seed)) {
       take(point);
       motions.push_back(motion());
     }
@@ -157,13 +195,54 @@ class ClipFit {
   }
 
   const Camera& camera() const { return camera_; }
+  /// How it looks, as it was found, where it was not known.
+  AssumedView view() const {
+    const Eigen::Vector3d up = camera_.camera_from_world.col(1);
+    return {pitch_rad(up) / kDegree, roll_rad(up) / kDegree,
+            2 * std::atan(camera_.height_px / (2 * camera_.fy_px)) / kDegree};
+  }
 
  private:
-  /// Pose, root and, if it is unknown, body are what the point makes of the prior's mean.
+  /// Pose, root and, if it is unknown, body are what the point makes of the prior's mean. A single
+  /// camera does not tell how large things are: body and distance are scaled so that the body is
+  /// one of 1.7 m, as the camera's metres are meant, and it looks the same.
   void take(const PosteriorPoint& point) {
     features_ = evidence_->turned(mean_, point);
-    root_ = evidence_->root(point).rowwise() + shift_;
-    if (evidence_->clip.body_unknown) skeleton_ = evidence_->body(point);
+    double scale = 1;
+    if (evidence_->clip.body_unknown) {
+      skeleton_ = evidence_->body(point);
+      scale = units_per_m_ / file_units_per_metre(skeleton_);
+      for (Joint& joint : skeleton_.joints) joint.offset *= scale;
+    }
+    if (evidence_->clip.camera) look_as(point);
+    root_ = evidence_->root(point, scale, seen_by()).rowwise() + shift_;
+  }
+
+  void look_as(const PosteriorPoint& point) {
+    camera_.camera_from_world = rotation_of(point.lean) * assumed_.camera_from_world;
+    camera_.fx_px = std::exp(point.log_focal) * assumed_.fx_px;
+    camera_.fy_px = std::exp(point.log_focal) * assumed_.fy_px;
+  }
+
+  /// The camera as it stood before put_at_origin.
+  Camera seen_by() const {
+    Camera camera = camera_;
+    camera.translation += camera.camera_from_world * shift_.transpose();
+    return camera;
+  }
+
+  /// From the feet to the body's middle, on average, camera axes.
+  Eigen::Vector3d upright() const {
+    const MatrixD positions = joint_positions(decoded(MatrixD::Zero(features_.rows(), 3)));
+    const Eigen::RowVectorXd mean = positions.colwise().mean();
+    const std::vector<int> feet = foot_joints(skeleton_);
+    if (feet.empty()) return camera_.camera_from_world.col(1);
+    Eigen::Vector3d upright(0, 0, 0);
+    for (int joint = 0; joint < skeleton_.joint_count(); ++joint)
+      upright += mean.segment<3>(3 * joint).transpose() / skeleton_.joint_count();
+    for (const int foot : feet)
+      upright -= mean.segment<3>(3 * foot).transpose() / static_cast<double>(feet.size());
+    return camera_.camera_from_world * upright;
   }
 
   /// [frames x 3] world axes, file units
@@ -192,7 +271,8 @@ class ClipFit {
 
   const Modalities& modalities_;
   Skeleton skeleton_;
-  Camera camera_;
+  Camera assumed_, camera_;  ///< at first, and as it was found
+  double units_per_m_;
   std::vector<std::string> names_;
   TrackRays track_;
   MatrixD features_;  ///< not standardized, along the camera's own axes
@@ -218,7 +298,7 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
   clip.place_root();
   const bool own_skeleton = known.skeleton.has_value(), draws_any = draws.count > 0;
   if (settings)
-    clip.meet_track(prior, track_noise_px(track), own_skeleton, *settings);
+    clip.meet_track(prior, track_noise_px(track), known, track, *settings);
   else if (draws_any)
     clip.keep_open(prior, own_skeleton);
   FittedClip result;
@@ -228,6 +308,7 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
     result.draws = settings ? clip.drawn(prior, *settings, draws) : clip.drawn_by_prior(draws);
   result.motion = clip.motion();
   result.camera = clip.camera();
+  if (!known.camera) result.view = settings ? clip.view() : known.assumed();
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <ceres/crs_matrix.h>
 #include <ceres/loss_function.h>
+#include <ceres/manifold.h>
 #include <ceres/solver.h>
 
 #include <algorithm>
@@ -11,6 +12,8 @@
 #include "fitting/one_thread_solver.hpp"
 #include "fitting/robust_residuals.hpp"
 #include "fitting/slow_process.hpp"
+#include "fitting/terms/camera_lean.hpp"
+#include "fitting/terms/ground_contact.hpp"
 #include "fitting/terms/linear_term.hpp"
 #include "fitting/terms/reprojection.hpp"
 #include "fitting/terms/standing_foot.hpp"
@@ -46,8 +49,12 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
       noise_(noise),
       first_(first),
       turns_(static_cast<int>(clip.parents.size())),
-      x_{from.turns.middleRows(first, frames), from.shift.middleRows(first, frames),
-         from.log_lengths} {
+      x_{from.turns.middleRows(first, frames),
+         from.shift.middleRows(first, frames),
+         from.log_lengths,
+         from.ground_m,
+         from.lean,
+         from.log_focal} {
   if (unknowns == Unknowns::all)
     used_.assign(clip_.parents.size(), true);
   else
@@ -56,14 +63,15 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
   add_turns();
   add_root();
   add_feet();
+  add_ground();
+  if (clip_.camera) add_camera();
   if (clip_.body_unknown) add_lengths(unknowns);
 }
 
-void WindowProblem::solve(bool lengths_too) {
+void WindowProblem::solve(bool shared_too) {
   check_interruption();
-  for (double& length : x_.log_lengths)
-    if (problem_.HasParameterBlock(&length) && !lengths_too)
-      problem_.SetParameterBlockConstant(&length);
+  if (!shared_too)
+    for (double* block : shared_blocks()) problem_.SetParameterBlockConstant(block);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
@@ -160,10 +168,11 @@ void WindowProblem::add_rays() {
       if (!(at.confidence > 0)) continue;
       std::vector<double*> blocks = moving_blocks(t, joint);
       append(blocks, length_blocks(joint));
+      if (clip_.camera) blocks.push_back(&x_.log_focal);
       problem_.AddResidualBlock(
           new Reprojection(place(t, joint), kNearest * clip_.root(first_ + t, 2), at.ray,
-                           std::sqrt((white + lasting) / at.confidence)),
-          scaled(new ceres::CauchyLoss(kCauchy), weight), blocks);
+                           std::sqrt((white + lasting) / at.confidence), clip_.camera.has_value()),
+          scaled(new ceres::CauchyLoss(settings_.outlier), weight), blocks);
     }
   }
 }
@@ -184,6 +193,10 @@ void WindowProblem::add_turns() {
       if (parent >= 0) {
         blocks.push_back(turn_at(t, parent));
         shares.push_back(-share);
+      }
+      if (clip_.camera) {
+        blocks.push_back(x_.lean.data());
+        shares.push_back(share - 1);
       }
       problem_.AddResidualBlock(new LinearTerm(shares, zero, deviation / std::sqrt(process.point)),
                                 nullptr, blocks);
@@ -228,6 +241,53 @@ void WindowProblem::add_feet() {
   }
 }
 
+/// Heights of standing feet, over a step or so, are one witness.
+void WindowProblem::add_ground() {
+  const double weight = std::min(1.0, clip_.frame_time_s / settings_.step_s);
+  for (std::size_t f = 0; f < clip_.feet.size(); ++f) {
+    const std::size_t foot = clip_.feet[f];
+    double* const height = &x_.ground_m[clip_.grounds[f]];
+    for (Eigen::Index t = 1; t < x_.turns.rows(); ++t) {
+      const double surely = clip_.planted(first_ + t, static_cast<Eigen::Index>(f));
+      if (surely < kHardlyStands) continue;
+      std::vector<double*> blocks = moving_blocks(t, foot);
+      append(blocks, length_blocks(foot));
+      blocks.push_back(height);
+      if (clip_.camera) blocks.push_back(x_.lean.data());
+      problem_.AddResidualBlock(
+          new GroundContact(place(t, foot), clip_.up, settings_.ground_m, clip_.camera.has_value()),
+          scaled(new ceres::CauchyLoss(kCauchy), surely * weight), blocks);
+    }
+  }
+}
+
+void WindowProblem::add_camera() {
+  const CameraDoubt& camera = *clip_.camera;
+  problem_.AddParameterBlock(x_.lean.data(), 3);
+  std::vector<int> known{1};
+  if (camera.pitch_known) known.push_back(0);
+  if (camera.roll_known) known.push_back(2);
+  if (known.size() == 3)
+    problem_.SetParameterBlockConstant(x_.lean.data());
+  else
+    problem_.SetManifold(x_.lean.data(), new ceres::SubsetManifold(3, known));
+  for (const ExpectedLean& expected : {camera.usual, camera.balanced})
+    problem_.AddResidualBlock(new CameraLean(expected), nullptr, x_.lean.data());
+  problem_.AddResidualBlock(new LinearTerm({1}, Eigen::VectorXd::Constant(1, camera.log_focal),
+                                           camera.log_focal_deviation),
+                            nullptr, &x_.log_focal);
+  if (camera.focal_known) problem_.SetParameterBlockConstant(&x_.log_focal);
+}
+
+std::vector<double*> WindowProblem::shared_blocks() {
+  std::vector<double*> blocks;
+  for (double& length : x_.log_lengths) blocks.push_back(&length);
+  for (double& height : x_.ground_m) blocks.push_back(&height);
+  append(blocks, {x_.lean.data(), &x_.log_focal});
+  std::erase_if(blocks, [&](double* block) { return !problem_.HasParameterBlock(block); });
+  return blocks;
+}
+
 void WindowProblem::add_lengths(Unknowns unknowns) {
   for (double& length : x_.log_lengths)
     if (unknowns == Unknowns::all || problem_.HasParameterBlock(&length))
@@ -241,8 +301,9 @@ void WindowProblem::turn_unused() {
       if (used_[static_cast<std::size_t>(turn)]) continue;
       const int parent = clip_.parents[static_cast<std::size_t>(turn)];
       if (parent < 0) continue;
+      const double share = share_of_parent(t, turn);
       x_.turns.row(t).segment<3>(3 * turn) =
-          share_of_parent(t, turn) * x_.turns.row(t).segment<3>(3 * parent);
+          share * x_.turns.row(t).segment<3>(3 * parent) + (1 - share) * x_.lean.transpose();
     }
 }
 

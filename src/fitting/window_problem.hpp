@@ -23,8 +23,8 @@ class WindowProblem {
                 const PosteriorPoint& from, Eigen::Index first, Eigen::Index frames,
                 Unknowns unknowns = Unknowns::seen);
 
-  /// @param lengths_too else the body stays as it is
-  void solve(bool lengths_too);
+  /// @param shared_too else what all frames share, body, ground and camera, stays as it is
+  void solve(bool shared_too);
 
   /// Derivatives of the residuals, as their losses weigh them, at the point where the problem is.
   /// @return [residuals x frames·(3·orientations + 3) + lengths]: frame by frame its turns and its
@@ -40,6 +40,8 @@ class WindowProblem {
   void add_turns();
   void add_root();
   void add_feet();
+  void add_ground();
+  void add_camera();
   void add_lengths(Unknowns unknowns);
   void turn_unused();
 
@@ -47,6 +49,8 @@ class WindowProblem {
   /// What a turn of its parent by one makes one expect of a turn; 0 without a parent.
   double share_of_parent(Eigen::Index t, int turn) const;
   double* turn_at(Eigen::Index t, int turn) { return x_.turns.row(t).data() + 3 * turn; }
+  /// The unknowns that all frames share, as far as the problem has them.
+  std::vector<double*> shared_blocks();
   double* shift_at(Eigen::Index t) { return x_.shift.row(t).data(); }
   JointPlace place(Eigen::Index t, std::size_t joint) const;
   std::vector<double*> moving_blocks(Eigen::Index t, std::size_t joint);

@@ -71,7 +71,7 @@ std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d&
     exchange_sides(sides, swaps);
   }
   SeenClip seen = see_clip(modalities, resample_track(sides, modalities.fps), placement, single);
-  placement.view = seen.view;
+  placement.found = seen.view;
   const auto as_track = [&](const Motion& motion) {
     return other.moved(with_frames(resample(motion, track.fps), track.frames()));
   };

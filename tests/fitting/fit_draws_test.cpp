@@ -68,9 +68,7 @@ TEST_CASE("without a fit draws are what the prior leaves open, bones turned with
   REQUIRE(clip.draws.size() == 400);
   // e of deviation s about every axis moves a bone b by e × b: 2 s² |b|² in all. Two bones, of
   // which the lower one's e is as the upper one's by the correlation k, add 4 k s s' b·b'.
-  TrackFitSettings as_told;
-  as_told.doubt = 1;
-  const MatrixD told = turn_deviations_rad(prior, scene.modalities, as_told);
+  const MatrixD told = turn_deviations_rad(prior, scene.modalities, TrackFitSettings{});
   const auto bone = [&](const char* upper, const char* lower) {
     const MatrixD places = joint_positions(clip.motion);
     const std::vector<int>& turning = scene.modalities.pose_features.joints();
@@ -97,13 +95,17 @@ TEST_CASE("without a fit draws are what the prior leaves open, bones turned with
   const FittedClip bodies =
       fit_to_track(prior, scene.modalities, scene.track, stranger, std::nullopt, kMany);
   double sum = 0;
-  const int leg = bodies.motion.skeleton.find("LeftLeg");
-  const double usual = bodies.motion.skeleton.joints[static_cast<std::size_t>(leg)].offset.norm();
-  for (const Motion& draw : bodies.draws) {
-    const double length = draw.skeleton.joints[static_cast<std::size_t>(leg)].offset.norm();
-    sum += std::pow(std::log(length / usual), 2);
-  }
-  CHECK(std::sqrt(sum / 400) == doctest::Approx(TrackFitSettings{}.proportions).epsilon(0.15));
+  // Each by a tenth, and the body as a whole no larger or smaller for it.
+  const auto thigh_to_shank = [](const Skeleton& body) {
+    const auto length = [&](const char* joint) {
+      return body.joints[static_cast<std::size_t>(body.find(joint))].offset.norm();
+    };
+    return length("LeftLeg") / length("LeftFoot");
+  };
+  for (const Motion& draw : bodies.draws)
+    sum += std::pow(
+        std::log(thigh_to_shank(draw.skeleton) / thigh_to_shank(bodies.motion.skeleton)), 2);
+  CHECK(std::sqrt(sum / 400) == doctest::Approx(std::sqrt(2) * 0.1).epsilon(0.15));
 }
 
 TEST_CASE("fit draws: they spread as the settings say, and less where the track shows") {
@@ -153,9 +155,11 @@ TEST_CASE("fit draws: an unknown body has one length of each bone a draw, and it
   CHECK(length(clip.draws[0], knee) != length(clip.motion, knee));
   CHECK(length(clip.draws[0], knee) != length(clip.draws[1], knee));
   CHECK(length(clip.draws[0], knee) == doctest::Approx(length(clip.draws[0], other)));
+  const TrackFitSettings settings;
+  const double five_deviations = std::exp(5 * settings.spread * settings.proportions);
   for (const Motion& draw : clip.draws)
     for (int joint = 1; joint < draw.skeleton.joint_count(); ++joint)
-      CHECK(length(draw, joint) <= 2 * length(clip.motion, joint));  // five deviations
+      CHECK(length(draw, joint) <= five_deviations * length(clip.motion, joint));
 }
 
 TEST_CASE("fit draws: without a camera they lie about the motion at the origin") {

@@ -152,6 +152,16 @@ TEST_CASE("known of a clip: a body that nobody knows gets the lengths that the t
   }
   CHECK(length(got, "LeftHand") / length(own, "LeftHand") ==
         doctest::Approx(length(got, "RightHand") / length(own, "RightHand")));
+  // A camera does not tell how large anybody is: the body stays one of 1.7 m, so that the camera's
+  // metres are its own, and is seen where the track shows it.
+  CHECK(body_height(got) == doctest::Approx(body_height(own)));
+  Camera camera = scene.camera;
+  camera.unit_m = 1 / file_units_per_metre(own);
+  const FittedClip clip = fit_to_track(scene.pose, scene.modalities, scene.track,
+                                       {camera, std::nullopt}, TrackFitSettings{});
+  const Track2d seen = project_motion(clip.motion, in_file_units(camera, clip.motion.skeleton));
+  CHECK(largest(seen.x_px - clip.shown.x_px) < 1e-6);
+  CHECK(largest(seen.x_px - scene.track.x_px) < 20);
   // Who is known stays who they are.
   const auto known = scene.placed({scene.camera, own}, TrackFitSettings{}).skeleton;
   CHECK(length(known, "LeftHand") == length(own, "LeftHand"));

@@ -30,17 +30,12 @@ double deviation_deg(double told_deg, const TrackFitSettings& settings) {
 
 }  // namespace
 
-TEST_CASE("prior deviations: up to the typical one as told, beyond it a power of that") {
+TEST_CASE("prior deviations: as told, a tenth of a degree at least") {
   TrackFitSettings settings;
   settings.turn_deg = 10;
-  settings.doubt = 0.5;
   CHECK(deviation_deg(0, settings) == doctest::Approx(0.1));
   CHECK(deviation_deg(5, settings) == doctest::Approx(5).epsilon(1e-5));
-  CHECK(deviation_deg(40, settings) == doctest::Approx(20).epsilon(1e-5));
-  settings.doubt = 1;
   CHECK(deviation_deg(40, settings) == doctest::Approx(40).epsilon(1e-5));
-  settings.doubt = 0;
-  CHECK(deviation_deg(40, settings) == doctest::Approx(10).epsilon(1e-5));
 }
 
 TEST_CASE("prior deviations: a prior that says none has the typical one") {

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "fitting/rotation.hpp"
+#include "fitting/terms/camera_lean.hpp"
+#include "fitting/terms/ground_contact.hpp"
 #include "fitting/terms/linear_term.hpp"
 #include "fitting/terms/reprojection.hpp"
 #include "fitting/terms/standing_foot.hpp"
@@ -106,6 +108,50 @@ TEST_CASE("terms: reprojection") {
   const Reprojection behind({kArm, {0, 0, -1}, false}, 0.4, {0.1, -0.05}, 0.003);
   CHECK(residuals(behind, {behind, 1, 0.1}).norm() == 0);
   check_jacobians(behind, {behind, 1, 0.1});
+}
+
+TEST_CASE("terms: reprojection through a camera of unknown focal length") {
+  for (const bool body_unknown : {false, true}) {
+    const Reprojection cost({kArm, kRoot, body_unknown}, 0.4, {0.1, -0.05}, 0.003, true);
+    Unknowns at(cost, 1, 0.3);
+    for (unsigned seed = 1; seed <= 3; ++seed) check_jacobians(cost, {cost, seed, 0.3});
+    // Twice the focal length: everything is seen twice as far from the middle.
+    at.blocks.back()[0] = 0;
+    const Eigen::Vector2d ray(0.1, -0.05), once = residuals(cost, at) * 0.003 + ray;
+    at.blocks.back()[0] = std::log(2);
+    CHECK((residuals(cost, at) * 0.003 + ray - 2 * once).norm() < 1e-12);
+  }
+  const Reprojection behind({kArm, {0, 0, -1}, false}, 0.4, {0.1, -0.05}, 0.003, true);
+  CHECK(residuals(behind, {behind, 1, 0.1}).norm() == 0);
+  check_jacobians(behind, {behind, 1, 0.1});
+}
+
+TEST_CASE("terms: a foot on the ground") {
+  const Eigen::Vector3d up = Eigen::Vector3d(0.1, -0.9, -0.3).normalized();
+  for (const bool body_unknown : {false, true})
+    for (const bool camera_unknown : {false, true}) {
+      CAPTURE(body_unknown);
+      CAPTURE(camera_unknown);
+      const GroundContact cost({kArm, kRoot, body_unknown}, up, 0.05, camera_unknown);
+      for (unsigned seed = 1; seed <= 3; ++seed) check_jacobians(cost, {cost, seed, 0.3});
+      Unknowns at(cost, 1, 0);
+      at.blocks[static_cast<std::size_t>(body_unknown ? 7 : 4)] = {-1.1};
+      const Eigen::Vector3d x = kRoot + kArm[0].bone + kArm[1].bone + kArm[2].bone;
+      CHECK(residuals(cost, at)[0] == doctest::Approx((up.dot(x) + 1.1) / 0.05));
+      if (!camera_unknown) continue;
+      // The ground leans as the camera does.
+      at.blocks.back() = {0.2, 0, -0.1};
+      const Eigen::Vector3d leaning = rotation_of({0.2, 0, -0.1}) * up;
+      CHECK(residuals(cost, at)[0] == doctest::Approx((leaning.dot(x) + 1.1) / 0.05));
+    }
+}
+
+TEST_CASE("terms: how a camera leans") {
+  const CameraLean cost({0.1, -0.2, 0.05, 0.02});
+  const Unknowns at(cost, 3, 0.3);
+  check_jacobians(cost, at);
+  CHECK(residuals(cost, at)[0] == doctest::Approx((at.blocks[0][0] - 0.1) / 0.05));
+  CHECK(residuals(cost, at)[1] == doctest::Approx((-at.blocks[0][2] + 0.2) / 0.02));
 }
 
 TEST_CASE("terms: a standing foot") {

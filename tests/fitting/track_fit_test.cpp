@@ -74,6 +74,8 @@ struct Scene {
       squares += (got - from).col(column).segment(first, frames).squaredNorm();
     return std::sqrt(squares / static_cast<float>(frames * columns.size()));
   }
+  /// By which the prior's mean is.
+  float wrong(const char* joint) const { return off(truth, prior.mean, joint); }
 };
 
 }  // namespace
@@ -105,7 +107,7 @@ TEST_CASE("fit to track: the surer the prior, the nearer the answer to its mean"
     const Motion got = scene.fit().motion;
     const float moved = scene.off(got, scene.prior.mean, "LeftForeArm");
     if (deviation == 0.0F)
-      CHECK(moved < 1e-3F);
+      CHECK(moved < 0.01F * scene.wrong("LeftForeArm"));
     else
       CHECK(moved > 1.1F * before);
     before = moved;
@@ -118,7 +120,7 @@ TEST_CASE("fit to track: each joint moves as far as its own features' deviation 
   for (const Eigen::Index column : scene.columns_of("LeftForeArm"))
     scene.prior.deviation.col(column).setZero();
   const Motion got = scene.fit().motion;
-  CHECK(scene.off(got, scene.prior.mean, "LeftForeArm") < 1e-3F);
+  CHECK(scene.off(got, scene.prior.mean, "LeftForeArm") < 0.01F * scene.wrong("LeftForeArm"));
   CHECK(scene.off(got, scene.prior.mean, "RightForeArm") > 0.2F);
 }
 

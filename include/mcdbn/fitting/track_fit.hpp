@@ -37,30 +37,46 @@ struct KnownOfClip {
   std::optional<Camera> camera;  ///< unset: the assumed one, the clip put at the origin
   /// The person's own; unset: the model's, and the fit allows for other proportions.
   std::optional<Skeleton> skeleton;
-  AssumedView view = {};  ///< what is known of the camera that is assumed
+  AssumedView view = {};   ///< what is known of the camera that is assumed
+  AssumedView found = {};  ///< what was found out of it besides; `view` holds
 
   /// The camera, or the one that is assumed for that track.
   Camera camera_of(const Track2d& track, const Modalities& modalities) const {
-    return camera ? *camera : modalities.assumed_camera(view, track.width_px, track.height_px);
+    return camera ? *camera : modalities.assumed_camera(assumed(), track.width_px, track.height_px);
+  }
+  /// What was said of the view, and what was found where nothing was.
+  AssumedView assumed() const {
+    AssumedView all = view;
+    if (!all.pitch_deg) all.pitch_deg = found.pitch_deg;
+    if (!all.roll_deg) all.roll_deg = found.roll_deg;
+    if (!all.field_of_view_deg) all.field_of_view_deg = found.field_of_view_deg;
+    return all;
   }
 };
 
-/// What the fit takes for likely: of the prior, of the track, and of a body that moves. Chosen on
-/// six CMU walks of six people who were trained on, with other bodies and detector-like tracks,
-/// of a model of walks and of a general one, and on the exact projections of the same; `doubt` on
-/// these and seven training clips of other actions, of the general model; `spread` on eleven of
-/// them, detector-like, exact, with noise of 5 px and with joints missing.
+/// What the fit takes for likely: of the prior, of the track, of a camera, and of a body that
+/// moves. Chosen on clips of training people with other bodies and detector-like tracks, and on the
+/// exact projections of the same: six CMU walks, of a model of walks and of a general one;
+/// `outlier`, `proportions`, `roll` and `focal` on seven CMU clips and twelve of Bandai's training
+/// halves, of the general model, which never saw Bandai's; `spread` on eleven of CMU's,
+/// detector-like, exact, with noise of 5 px and with joints missing.
 struct TrackFitSettings {
   double turn_deg = 9;
-  double doubt = 0.4;
   double likeness = 0.75;
   double lasting_s = 0.17;
   double root_m_s2 = 3;
   double detector = 0.009;
   double noise_lasts_s = 0.35;
   double caution = 2;
-  double proportions = 0.1;
+  double outlier = 4;
+  double proportions = 0.3;
   double footing_m_s = 0.5;
+  double ground_m = 0.05;
+  double step_s = 0.5;
+  double pitch_deg = 10;
+  double roll_deg = 8;
+  double balance_deg = 5;
+  double focal = 0.1;
   std::size_t solutions = 5;
   double spread = 1.3;
 
@@ -70,11 +86,6 @@ struct TrackFitSettings {
     visit(Setting{"turn", above(0), "degrees",
                   "standard deviation of an orientation about each axis where the prior says none"},
           self.turn_deg);
-    visit(
-        Setting{"doubt", within(0, 1), "",
-                "how many times larger than that, as a power, an orientation's deviation is taken "
-                "to be where the prior says a larger one: 0 not at all, 1 as it says"},
-        self.doubt);
     // At 1 a joint would turn with its parent and no other way.
     visit(Setting{"likeness", share_below_one(), "",
                   "correlation of what is wrong with an orientation with its parent's"},
@@ -94,10 +105,16 @@ struct TrackFitSettings {
     visit(Setting{"caution", above(0), "",
                   "how many times the noise that is new in each frame it is taken to be"},
           self.caution);
-    visit(Setting{"proportions", above(0), "",
-                  "deviation of the logarithm of a bone's length from the model's, for a skeleton "
-                  "that is not the person's own"},
-          self.proportions);
+    visit(Setting{"outlier", above(0), "",
+                  "from so many deviations on a ray counts less and less (Cauchy): it shows "
+                  "something else"},
+          self.outlier);
+    visit(
+        Setting{
+            "proportions", above(0), "",
+            "deviation of the logarithm of a bone's length from the model's, where the person's "
+            "own is not known: people, and where a detector sees the joints between them"},
+        self.proportions);
     visit(Setting{"footing", above(0), "m/s", "how fast a foot that stands slips"},
           self.footing_m_s);
     visit(Setting{"solutions", at_least(1), "",
@@ -106,6 +123,27 @@ struct TrackFitSettings {
     visit(Setting{"spread", above(0), "",
                   "how many times wider the posterior is drawn than its equations make it"},
           self.spread);
+    visit(Setting{"ground", above(0), "m",
+                  "deviation of a standing foot's height above the clip's ground"},
+          self.ground_m);
+    visit(Setting{"step", above(0), "seconds", "of which all heights of a foot are one witness"},
+          self.step_s);
+    visit(Setting{"pitch", above(0), "degrees",
+                  "deviation of a camera's pitch where nobody says it: by hand, from a stand, a "
+                  "ceiling"},
+          self.pitch_deg);
+    visit(Setting{"roll", above(0), "degrees",
+                  "of its roll: held by hand, or a tripod that is not level"},
+          self.roll_deg);
+    visit(Setting{"balance", above(0), "degrees",
+                  "deviation of the body's middle from straight above the feet, on average"},
+          self.balance_deg);
+    visit(
+        Setting{
+            "focal", above(0), "",
+            "deviation of the logarithm of a camera's focal length where nobody says it; cameras "
+            "differ by more, but one that gives way further follows the pose's errors"},
+        self.focal);
   }
 };
 
@@ -121,6 +159,7 @@ struct FittedClip {
                   ///< found, if none was known
   Track2d shown;  ///< all its joints as the camera sees them; image size as the track's
   Camera camera;  ///< that sees `motion` so, in the skeleton's file units
+  AssumedView view = {};  ///< of it, where none was known
   std::vector<Motion> draws =
       {};  ///< as `motion`, of bodies of their own if the skeleton is not known
 };

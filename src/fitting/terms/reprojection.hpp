@@ -7,12 +7,15 @@
 namespace mcdbn {
 
 /// A joint lies on the ray that the camera saw it along:
-///   r = ((x/z, y/z) − ray) / deviation       two numbers of variance 1
-/// A joint nearer to the camera than a tenth of the root's first depth says nothing.
+///   r = (exp(focal) · (x/z, y/z) − ray) / deviation       two numbers of variance 1
+/// where focal is, if the camera is unknown, one more block (1): the logarithm of the camera's
+/// focal length over the one that ray and deviation were made with; else 0. A joint nearer to the
+/// camera than a tenth of the root's first depth says nothing.
 class Reprojection : public ceres::CostFunction {
  public:
   /// @param ray x/z and y/z, lens taken out  @param deviation of each of both, in the same unit
-  Reprojection(JointPlace place, double nearest_m, Eigen::Vector2d ray, double deviation);
+  Reprojection(JointPlace place, double nearest_m, Eigen::Vector2d ray, double deviation,
+               bool camera_unknown = false);
   bool Evaluate(double const* const* unknowns, double* residuals,
                 double** jacobians) const override;
 
@@ -21,6 +24,7 @@ class Reprojection : public ceres::CostFunction {
   double nearest_m_;
   Eigen::Vector2d ray_;
   double deviation_;
+  bool camera_unknown_;
 };
 
 }  // namespace mcdbn

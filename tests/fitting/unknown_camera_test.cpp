@@ -1,0 +1,144 @@
+// Pitch, roll and focal length of a camera that nobody calibrated, told by the fit.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "camera/track_noise.hpp"
+#include "features/clip_modalities.hpp"
+#include "mcdbn/fitting/track_fit.hpp"
+#include "mcdbn/synthesis/synthesize.hpp"
+#include "motion/foot_joints.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+/// A walk before a camera that looks down and is turned, and what a network says that knows how
+/// people walk, upright, and not how this camera stands.
+struct Scene {
+  CameraPlacement view{60, 0, std::nullopt, 40, 1920, 1080};
+  Motion truth;
+  Modalities modalities;
+  Camera camera;
+  Track2d track;
+  MatrixF pose;
+
+  Scene(double pitch_deg, double roll_deg, SynthesisAction action = SynthesisAction::walk,
+        double seconds = 4)
+      : truth(synthesize({.action = action, .seconds = seconds})),
+        modalities(modalities_of({truth}, view)) {
+    modalities.level_view = true;
+    CameraPlacement placement = view;
+    placement.elevation_deg = pitch_deg;
+    camera = place_camera(truth, placement);
+    const Eigen::Matrix3d roll =
+        Eigen::AngleAxisd(-roll_deg * EIGEN_PI / 180, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    camera.camera_from_world = roll * camera.camera_from_world;
+    camera.translation = roll * camera.translation;
+    track = project_motion(truth, camera);
+    pose = modalities.encode_pose(truth, camera.camera_from_world);
+  }
+
+  FittedClip fit(const AssumedView& said, const TrackFitSettings& settings = {}) const {
+    return fit_to_track(pose, modalities, track, {std::nullopt, truth.skeleton, said}, settings);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("unknown camera: pitch and roll are those that make an upright walker") {
+  for (const double pitch_deg : {-8.0, 0.0, 12.0, 25.0})
+    for (const double roll_deg : {0.0, 5.0, -4.0}) {
+      CAPTURE(pitch_deg);
+      CAPTURE(roll_deg);
+      const Scene scene(pitch_deg, roll_deg);
+      const AssumedView view = scene.fit({{}, {}, scene.view.field_of_view_deg}).view;
+      CHECK(std::abs(*view.pitch_deg - pitch_deg) < 2 + 0.15 * std::abs(pitch_deg));
+      CHECK(std::abs(*view.roll_deg - roll_deg) < 1.5);
+      CHECK(*view.field_of_view_deg == doctest::Approx(40));
+    }
+}
+
+TEST_CASE("unknown camera: what was said stays") {
+  const Scene scene(12, 3);
+  AssumedView said;
+  said.pitch_deg = 12;
+  CHECK(*scene.fit(said).view.pitch_deg == doctest::Approx(12));
+  CHECK(std::abs(*scene.fit(said).view.roll_deg - 3) < 1.5);
+  said.pitch_deg = 3;  // however wrong
+  said.roll_deg = -2;
+  said.field_of_view_deg = 50;
+  const AssumedView view = scene.fit(said).view;
+  CHECK(*view.pitch_deg == doctest::Approx(3));
+  CHECK(*view.roll_deg == doctest::Approx(-2));
+  CHECK(*view.field_of_view_deg == doctest::Approx(50));
+}
+
+TEST_CASE("unknown camera: what was found before is where the search starts, and no more") {
+  const Scene scene(12, 0);
+  KnownOfClip known{std::nullopt, scene.truth.skeleton};
+  known.view.field_of_view_deg = 40;
+  const auto pitch_deg = [&] {
+    return *fit_to_track(scene.pose, scene.modalities, scene.track, known, TrackFitSettings{})
+                .view.pitch_deg;
+  };
+  const double from_level = pitch_deg();
+  // The answer is taken to be upright in the view that was found: from the right one nothing moves.
+  known.found = {12, 0, {}};
+  CHECK(std::abs(pitch_deg() - 12) < std::abs(from_level - 12) + 0.5);
+  known.found.pitch_deg = 30;  // of which nobody was sure
+  CHECK(pitch_deg() < 25);
+}
+
+TEST_CASE("unknown camera: the focal length gives way to what the track shows") {
+  // Seen by a longer lens than the 60 degrees across that are assumed: walking away, people shrink
+  // less.
+  const Scene scene(5, 0);
+  TrackFitSettings stiff;
+  stiff.focal = 1e-3;
+  const auto off = [&](const AssumedView& view) {
+    return std::abs(std::log(std::tan(*view.field_of_view_deg * EIGEN_PI / 360) /
+                             std::tan(40 * EIGEN_PI / 360)));
+  };
+  CHECK(*scene.fit({}, stiff).view.field_of_view_deg ==
+        doctest::Approx(usual_field_of_view_deg(1920, 1080)).epsilon(0.01));
+  CHECK(off(scene.fit({}).view) < off(scene.fit({}, stiff).view));
+}
+
+TEST_CASE("unknown camera: the answer is seen where the track shows it, through that camera") {
+  const Scene scene(12, 4);
+  const FittedClip clip = scene.fit({});
+  const Track2d seen = project_motion(clip.motion, clip.camera);
+  const double miss = ((seen.x_px - scene.track.x_px).cwiseAbs().mean() +
+                       (seen.y_px - scene.track.y_px).cwiseAbs().mean());
+  CHECK(miss < 6);
+  CHECK((seen.x_px - clip.shown.x_px).cwiseAbs().maxCoeff() < 1e-6);
+  CHECK((seen.y_px - clip.shown.y_px).cwiseAbs().maxCoeff() < 1e-6);
+}
+
+TEST_CASE("unknown camera: standing feet are on one level") {
+  Scene scene(12, 0);
+  add_pixel_noise(scene.track, 8, 3);
+  const MatrixD truth = joint_positions(scene.truth);
+  const auto spread = [&](double ground_m) {
+    TrackFitSettings settings;
+    settings.ground_m = ground_m;
+    settings.step_s = 1 / scene.track.fps;  // each frame a witness
+    const Motion motion = fit_to_track(scene.pose, scene.modalities, scene.track,
+                                       {scene.camera, scene.truth.skeleton}, settings)
+                              .motion;
+    const MatrixD positions = joint_positions(motion);
+    std::vector<double> heights;
+    for (const int foot : foot_joints(scene.truth.skeleton)) {
+      const Eigen::VectorXd real = truth.col(3 * foot + 1), got = positions.col(3 * foot + 1);
+      for (Eigen::Index t = 0; t < real.size(); ++t)
+        if (real[t] < real.minCoeff() + 1) heights.push_back(got[t] - real[t]);  // cm
+    }
+    const Eigen::Map<const Eigen::ArrayXd> all(heights.data(), std::ssize(heights));
+    return std::sqrt((all - all.mean()).square().mean());
+  };
+  CHECK(spread(0.01) < 0.5 * spread(100));
+}
