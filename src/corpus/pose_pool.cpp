@@ -36,7 +36,7 @@ PosePool::PosePool(ClipStore clips, double fps) : clips_(std::move(clips)), fps_
   constexpr double kMostFrames = 20'000;
   double frames = 0;
   for (const ClipRecord& record : clips_.records()) frames += record.frames;
-  std::array<std::vector<Eigen::Matrix3d>, std::tuple_size_v<decltype(limits_)>> seen;
+  std::array<std::vector<Eigen::Matrix3d>, kJointRoleCount> seen;
   for (std::size_t i = 0; i < clips_.count(); ++i) {
     check_interruption();
     const double share = std::min(1.0, kMostFrames / frames);

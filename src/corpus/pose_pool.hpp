@@ -28,7 +28,7 @@ class PosePool {
  private:
   ClipStore clips_;
   double fps_;
-  std::array<JointLimits, static_cast<std::size_t>(JointRole::right_toe) + 1> limits_;
+  std::array<JointLimits, kJointRoleCount> limits_;
 };
 
 /// What views of those clips need for new poses; null where the settings ask for none.

@@ -36,8 +36,7 @@ class HumanoidPoses {
 
   Skeleton skeleton_;
   double frame_time_s_;
-  std::vector<std::array<Eigen::Matrix3d, static_cast<std::size_t>(JointRole::right_toe) + 1>>
-      local_;
+  std::vector<std::array<Eigen::Matrix3d, kJointRoleCount>> local_;
 };
 
 /// The role of the joint above in the humanoid; the pelvis's own of the pelvis.

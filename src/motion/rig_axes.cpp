@@ -16,8 +16,6 @@ using enum JointRole;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kRoleCount = static_cast<std::size_t>(right_toe) + 1;
-
 /// Where the bone of a role leads; none of those of the trunk's ends.
 std::optional<JointRole> aim_of(JointRole role) {
   switch (role) {
@@ -142,7 +140,7 @@ bool stands_as_a_body(const Places& rest, const Matrix3d& body) {
 
 RigAxes axes_from_rest(const Places& rest, const SkeletonRoles& roles, const Matrix3d& body) {
   RigAxes axes;
-  for (std::size_t j = 0; j < kRoleCount; ++j) {
+  for (std::size_t j = 0; j < kJointRoleCount; ++j) {
     const JointRole role = role_at(j);
     Matrix3d& own = axes.by_role[static_cast<std::size_t>(role)];
     // A foot of legs that rest apart leans as its leg does; a hand of no fingers goes on straight.
@@ -159,7 +157,7 @@ RigAxes axes_from_rest(const Places& rest, const SkeletonRoles& roles, const Mat
 class TurnsOfPlaces {
  public:
   explicit TurnsOfPlaces(const Places& places) : places_(places) {
-    for (std::size_t j = 0; j < kRoleCount; ++j) set(role_at(j));
+    for (std::size_t j = 0; j < kJointRoleCount; ++j) set(role_at(j));
   }
 
   const Matrix3d& of(JointRole role) const { return turn_[static_cast<std::size_t>(role)]; }
@@ -238,8 +236,8 @@ class TurnsOfPlaces {
   }
 
   const Places& places_;
-  std::array<Matrix3d, kRoleCount> turn_;
-  std::array<double, kRoleCount> weight_{};
+  std::array<Matrix3d, kJointRoleCount> turn_;
+  std::array<double, kJointRoleCount> weight_{};
 };
 
 /// One of the joint's own axes, either way, within 35 degrees of a direction across `along`.
@@ -284,9 +282,9 @@ bool goes_on(JointRole role, const Matrix3d& above, const Vector3d& humanoid_bon
 
 RigAxes axes_from_motion(const Motion& motion, const SkeletonRoles& roles) {
   constexpr int kMostFrames = 400;
-  std::array<Matrix3d, kRoleCount> sums;
+  std::array<Matrix3d, kJointRoleCount> sums;
   sums.fill(Matrix3d::Zero());
-  std::array<Vector3d, kRoleCount> bones;
+  std::array<Vector3d, kJointRoleCount> bones;
   bones.fill(Vector3d::Zero());
   for (const int t : spread_frames(motion, kMostFrames)) {
     const WorldPose pose = forward_kinematics(motion.skeleton, motion.channels.row(t));
@@ -303,7 +301,7 @@ RigAxes axes_from_motion(const Motion& motion, const SkeletonRoles& roles) {
   }
   RigAxes axes;
   axes.from_rest = false;
-  for (std::size_t j = 0; j < kRoleCount; ++j) {
+  for (std::size_t j = 0; j < kJointRoleCount; ++j) {
     const JointRole role = role_at(j);
     const auto r = static_cast<std::size_t>(role);
     axes.by_role[r] = roles.has(role) ? nearest_rotation(sums[r]) : axes.of(above(role));

@@ -13,7 +13,7 @@ namespace mcdbn {
 struct RigAxes {
   /// By role, joint_from_humanoid: world_from_joint times it is the orientation of the humanoid's
   /// joint. Identity where the skeleton has no such joint.
-  std::array<Eigen::Matrix3d, static_cast<std::size_t>(JointRole::right_toe) + 1> by_role;
+  std::array<Eigen::Matrix3d, kJointRoleCount> by_role;
   /// Whether the rest pose told: it stands as a body does, however its arms are held.
   bool from_rest = true;
 

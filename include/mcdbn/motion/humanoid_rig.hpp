@@ -59,7 +59,7 @@ class HumanoidRig {
   Skeleton skeleton_, body_;
   SkeletonRoles roles_;
   /// By role; see RigAxes.
-  std::array<Eigen::Matrix3d, static_cast<std::size_t>(JointRole::right_toe) + 1> axes_;
+  std::array<Eigen::Matrix3d, kJointRoleCount> axes_;
   std::vector<Chain> chains_;
   // Of joints without a role, and where each joint is on its parent: at rest, or on average.
   std::vector<Eigen::Matrix3d> parent_from_joint_;

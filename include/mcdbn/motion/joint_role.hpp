@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -33,6 +34,8 @@ enum class JointRole {
   right_ankle,
   right_toe,
 };
+
+inline constexpr std::size_t kJointRoleCount = static_cast<std::size_t>(JointRole::right_toe) + 1;
 
 /// All roles, in the order of the enumeration.
 std::span<const JointRole> joint_roles();

@@ -30,7 +30,7 @@ class SkeletonRoles {
   void set(JointRole role, int joint) { joints_[static_cast<std::size_t>(role)] = joint; }
 
  private:
-  std::array<int, static_cast<std::size_t>(JointRole::right_toe) + 1> joints_;
+  std::array<int, kJointRoleCount> joints_;
 };
 
 /// The roles of a skeleton's joints: those of `given`; then by names, as CMU's files (`LeftUpLeg`,
