@@ -239,29 +239,6 @@ fine-tuning.from-greedy = false
         self.assertEqual(
             self.run_program(SCRIPTS / "reproduce_paper", out / "walking/run").returncode, 3)
 
-    def test_worth_table(self):
-        out = self.folder / "worth.csv"
-
-        def table(rows):
-            result = self.run_program(
-                SCRIPTS / "worth_table", "augmentations", out, "--train", self.folder / "clap",
-                "--test", f"walks={self.folder / 'walk/walk_s02_01.bvh'}", "--steps", 2, "--rows",
-                rows, "--program", self.cli, "--more", *TINY.replace("steps 30", "steps 2").split(),
-                "--order", 2)
-            self.assertEqual(result.returncode, 0, result.stderr)
-            with out.open() as file:
-                return list(csv.DictReader(file))
-
-        rows = table("none") + table("without bone")[1:]
-        self.assertEqual([row["row"] for row in rows],
-                         [f"{name}; 2 mini-batches; seed 1" for name in ("none", "without bone")])
-        self.assertNotEqual(rows[0]["walks_limb_mpjpe_mm"], rows[1]["walks_limb_mpjpe_mm"])
-        for row in rows:
-            self.assertGreater(float(row["walks_limb_pa_mpjpe_mm"]), 0)
-        before = out.read_text()
-        table("none")
-        self.assertEqual(out.read_text(), before, "a row that is there is not made again")
-
     def test_leave_one_out(self):
         def leave_one_out(*options):
             return self.run_program(SCRIPTS / "leave_one_out", self.folder / "walk", "-o",
