@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json_place.hpp"
+#include "base/parsed_json.hpp"
 #include "base/shown.hpp"
 #include "base/text_file.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -95,8 +96,7 @@ Safetensors parse(std::string_view bytes, const std::string& file) {
   std::memcpy(&header_length, bytes.data(), kLengthBytes);
   if (header_length > bytes.size() - kLengthBytes)
     throw InputError(file + ": not a readable safetensors file: it is shorter than its header");
-  const auto header =
-      nlohmann::json::parse(bytes.substr(kLengthBytes, header_length), nullptr, false);
+  const auto header = parsed_json(bytes.substr(kLengthBytes, header_length));
   if (!header.is_object())
     throw InputError(file + ": not a readable safetensors file: its header is no JSON object");
   const std::string_view data = bytes.substr(kLengthBytes + header_length);

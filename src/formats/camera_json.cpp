@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parsed_json.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -21,7 +22,7 @@ void add_numbers(const nlohmann::json& entry, const std::string& where,
 }  // namespace
 
 nlohmann::json camera_json(const CameraSource& source) {
-  nlohmann::json parsed = nlohmann::json::parse(source.text, nullptr, false);
+  nlohmann::json parsed = parsed_json(source.text);
   return parsed.is_discarded() ? nlohmann::json() : parsed;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/toml_keys.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -98,6 +99,9 @@ bool is_toml(const CameraSource& source) {
 }
 
 toml::table parse_toml(const CameraSource& source) {
+  if (const auto line = line_of_long_key(source.text))
+    throw InputError(fmt::format("{}:{}: a key of more parts than any camera file's",
+                                 source.path.string(), *line));
   try {
     return toml::parse(source.text);
   } catch (const toml::parse_error& error) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/parsed_json.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -39,6 +40,8 @@ std::string without_nan(std::string_view text) {
 
 /// @param lines_before of the file, for messages
 json parse_value(std::string_view text, const std::string& file, long lines_before) {
+  if (nests_deeper(text, kDeepestJson))
+    throw InputError(fmt::format("{}: nested deeper than any track", file));
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {

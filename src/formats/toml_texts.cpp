@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/text_file.hpp"
+#include "base/toml_keys.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -13,8 +14,12 @@ void fail_at(const std::filesystem::path& path, const toml::source_region& sourc
 }
 
 toml::table read_toml(const std::filesystem::path& path, std::string_view example) {
+  const std::string text = read_text_file(path);
+  if (const auto line = line_of_long_key(text))
+    throw InputError(
+        fmt::format("{}:{}: a key of too many parts; {}", path.string(), *line, example));
   try {
-    return toml::parse(read_text_file(path), path.string());
+    return toml::parse(text, path.string());
   } catch (const toml::parse_error& error) {
     fail_at(path, error.source(), fmt::format("not TOML; {}", example));
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parsed_json.hpp"
 #include "base/shown.hpp"
 #include "mcdbn/machines/size_limits.hpp"
 
@@ -164,7 +165,7 @@ json description_in(const TensorFile& file, const std::string& key, const std::s
   const auto text = file.content.metadata.find(key);
   if (text == file.content.metadata.end())
     throw InputError(fmt::format("{}: not {}", file.path, what));
-  json about = json::parse(text->second, nullptr, false);
+  json about = parsed_json(text->second);
   if (about.is_discarded())
     throw InputError(fmt::format("{}: damaged: its description is no JSON", file.path));
   const json version = JsonPlace(about, file.path)["format_version"].value();

@@ -5,6 +5,8 @@
 #include <sstream>
 
 #include "base/shown.hpp"
+#include "base/text_file.hpp"
+#include "base/toml_keys.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 
@@ -38,8 +40,12 @@ void add_table(std::vector<SaidSetting>& said, const std::filesystem::path& file
 toml::table read_toml_file(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
     throw ConfigError(fmt::format("{}: no such file; a TOML file is wanted", file.string()));
+  const std::string text = read_text_file(file);
+  if (const auto line = line_of_long_key(text))
+    throw ConfigError(
+        fmt::format("{}:{}: a key of more parts than any setting", file.string(), *line));
   try {
-    return toml::parse_file(file.string());
+    return toml::parse(text, file.string());
   } catch (const toml::parse_error& error) {
     throw ConfigError(
         fmt::format("{}: no readable TOML from here on", location(file, error.source())));

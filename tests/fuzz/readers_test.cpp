@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <nlohmann/json.hpp>
 
 #include "base/text_file.hpp"
 #include "fuzz/mutated.hpp"
@@ -74,5 +75,33 @@ TEST_CASE("readers: damaged copies of the seeds are read or refused in words of 
       }
     }
     CHECK(refused > 0);
+  }
+}
+
+TEST_CASE("readers: what nests without end is refused, not followed") {
+  constexpr std::size_t kDeep = 300'000;
+  const auto repeated = [](const std::string& text) {
+    std::string all;
+    for (std::size_t i = 0; i < kDeep; ++i) all += text;
+    return all;
+  };
+  const std::string lists = std::string(kDeep, '[') + std::string(kDeep, ']'),
+                    objects = repeated("{\"a\":") + "1" + std::string(kDeep, '}'),
+                    key = repeated("a.") + "b";
+  const auto safetensors = [](const char* entry, const std::string& description) {
+    const std::string header =
+        nlohmann::json{{"__metadata__", {{entry, description}}}}.dump() + "       ";
+    std::string bytes(8, '\0');
+    for (std::size_t i = 0; i < 4; ++i) bytes[i] = static_cast<char>(header.size() >> (8 * i));
+    return bytes + header;
+  };
+  for (const Reader& reader : readers()) {
+    CAPTURE(reader.name);
+    for (const std::string& text :
+         {lists, objects, "{\"people\": " + lists + "}", "[clip]\nmatrix = 1\n" + key + " = 1\n",
+          "[" + key + "]\nmatrix = 1\n", "matrix = {" + key + " = [1]}\n", "x = " + lists + "\n",
+          safetensors("mcdbn-checkpoint", "{\"format_version\": " + lists + "}"),
+          std::string("HIERARCHY\n") + repeated("JOINT a\n{\n")})
+      CHECK(finding(reader, text) == "");
   }
 }
