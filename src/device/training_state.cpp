@@ -22,9 +22,10 @@ void TrainingState::matrix(const std::string& name, Matrix& value) {
                                          static_cast<Eigen::Index>(value.columns())));
 }
 
-const nlohmann::json& TrainingState::at(const std::string& name) const {
+const nlohmann::json& TrainingState::at(const std::string& name,
+                                        bool (*holds_it)(const nlohmann::json&)) const {
   const auto found = content_.numbers.find(prefix_ + name);
-  if (found == content_.numbers.end() || !(found->is_number() || found->is_boolean()))
+  if (found == content_.numbers.end() || !holds_it(*found))
     throw InputError(fmt::format("the checkpoint is of another training: no {}", prefix_ + name));
   return *found;
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
 
 #include "base/safetensors.hpp"
 #include "mcdbn/device/parameters.hpp"
@@ -35,11 +37,12 @@ class TrainingState {
     return state;
   }
 
-  /// Finite numbers, and booleans. @throws InputError if there is none of that name
+  /// Finite numbers, whole ones from 0 on, and booleans.
+  /// @throws InputError if there is none of that name and kind
   template <typename Number>
   void number(const std::string& name, Number& value) {
     if (restores_)
-      value = at(name).get<Number>();
+      value = at(name, holds<Number>).template get<Number>();
     else
       content_.numbers[prefix_ + name] = value;
   }
@@ -62,7 +65,19 @@ class TrainingState {
 
  private:
   TrainingState(Content& content, bool restores) : content_(content), restores_(restores) {}
-  const nlohmann::json& at(const std::string& name) const;
+
+  /// Whether it can be such a number: what reads another kind as one may do anything.
+  template <typename Number>
+  static bool holds(const nlohmann::json& value) {
+    if constexpr (std::is_same_v<Number, bool>)
+      return value.is_boolean();
+    else if constexpr (std::is_integral_v<Number>)
+      return value.is_number_integer() && value.get<double>() >= 0 &&
+             value.get<double>() <= static_cast<double>(std::numeric_limits<Number>::max());
+    else
+      return value.is_number();
+  }
+  const nlohmann::json& at(const std::string& name, bool (*holds_it)(const nlohmann::json&)) const;
 
   Content& content_;
   bool restores_;

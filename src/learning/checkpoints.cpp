@@ -12,30 +12,10 @@ namespace mcdbn {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
-constexpr const char* kKey = "mcdbn-checkpoint";
-constexpr int kCheckpointVersion = 1;
 constexpr const char *kLast = "checkpoint.safetensors",
                      *kPrevious = "checkpoint.previous.safetensors",
                      *kNext = "checkpoint.next.safetensors";
-/// Between the name of a stage and that of a matrix.
-constexpr char kBetween = '/';
-
-void put(Safetensors& file, const std::string& stage, const TrainingState::Content& content) {
-  const std::string prefix = stage + kBetween;
-  for (const auto& [name, tensor] : content.matrices)
-    file.tensors[std::string(prefix).append(name)] = tensor;
-}
-
-TrainingState::Content get(const Safetensors& file, const std::string& stage, json numbers) {
-  TrainingState::Content content{std::move(numbers), {}};
-  const std::string prefix = stage + kBetween;
-  for (auto found = file.tensors.lower_bound(prefix);
-       found != file.tensors.end() && found->first.starts_with(prefix); ++found)
-    content.matrices[found->first.substr(prefix.size())] = found->second;
-  return content;
-}
 
 TrainingState::Content saved(const Checkpoints::Visit& visit) {
   TrainingState::Content content;
@@ -57,7 +37,7 @@ Checkpoints::Checkpoints(Options options) : options_(std::move(options)) {
     const fs::path path = options_.folder / name;
     if (found_ || !fs::exists(path)) continue;
     try {
-      found_ = read(path);
+      found_ = read_checkpoint(path);
     } catch (const InputError& error) {
       damage = error.what();
     }
@@ -65,28 +45,6 @@ Checkpoints::Checkpoints(Options options) : options_(std::move(options)) {
   if (!damage.empty() && !found_) throw InputError(damage);
   if (!damage.empty()) options_.warn(damage + "; gone on from the one before it");
   if (found_) restore(found_->more, options_.more);
-}
-
-Checkpoints::Stages Checkpoints::read(const fs::path& path) {
-  const Safetensors file = read_safetensors(path);
-  try {
-    const json about = json::parse(file.metadata.at(kKey));
-    if (about.at("format_version") != kCheckpointVersion)
-      throw InputError(fmt::format("{}: a checkpoint of another version of mcdbn-cl; train anew",
-                                   path.string()));
-    Stages stages;
-    for (const auto& [stage, numbers] : about.at("over").items())
-      stages.over[stage] = get(file, stage, numbers);
-    stages.running = about.at("stage");
-    stages.done = about.at("done");
-    stages.now = get(file, stages.running, about.at("now"));
-    stages.more.numbers = about.at("more");
-    return stages;
-  } catch (const json::exception&) {
-    throw InputError(fmt::format("{}: no checkpoint of mcdbn-cl", path.string()));
-  } catch (const std::out_of_range&) {
-    throw InputError(fmt::format("{}: no checkpoint of mcdbn-cl", path.string()));
-  }
 }
 
 std::optional<std::size_t> Checkpoints::begin(const std::string& stage, Visit result,
@@ -100,7 +58,7 @@ std::optional<std::size_t> Checkpoints::begin(const std::string& stage, Visit re
     over_[stage] = std::move(over->second);
     return {};
   }
-  const Stages stages = std::exchange(found_, {}).value();
+  const CheckpointContent stages = std::exchange(found_, {}).value();
   if (stages.running.empty()) return 0;
   if (stages.running != stage)
     throw InputError(fmt::format("the checkpoint is of another training: it stands in {}, not {}",
@@ -120,26 +78,13 @@ void Checkpoints::end() {
 
 void Checkpoints::write(std::size_t done) {
   last_ = Clock::now();
-  Safetensors file;
-  json about = {{"format_version", kCheckpointVersion},
-                {"over", json::object()},
-                {"stage", stage_},
-                {"done", done}};
-  for (const auto& [stage, content] : over_) {
-    about["over"][stage] = content.numbers;
-    put(file, stage, content);
-  }
   const TrainingState::Content now = saved([this](TrainingState& state) {
     result_(state);
     running_(state);
   });
-  about["now"] = now.numbers;
-  put(file, stage_, now);
-  about["more"] = saved(options_.more).numbers;
-  file.metadata[kKey] = about.dump();
   const fs::path last = options_.folder / kLast;
   const OutputsAtOnce at_once;
-  write_safetensors(options_.folder / kNext, file);
+  write_checkpoint(options_.folder / kNext, {over_, stage_, done, now, saved(options_.more)});
   std::error_code error;
   if (fs::exists(last)) fs::rename(last, options_.folder / kPrevious, error);
   fs::rename(options_.folder / kNext, last, error);

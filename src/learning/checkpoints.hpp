@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/interruption.hpp"
-#include "device/training_state.hpp"
+#include "learning/checkpoint_file.hpp"
 
 namespace mcdbn {
 
@@ -51,16 +51,8 @@ class Checkpoints {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct Stages {
-    std::map<std::string, TrainingState::Content> over;
-    std::string running;
-    std::size_t done = 0;
-    TrainingState::Content now, more;
-  };
-  static Stages read(const std::filesystem::path& path);
-
   Options options_;
-  std::optional<Stages> found_;
+  std::optional<CheckpointContent> found_;
   std::map<std::string, TrainingState::Content> over_;
   std::string stage_;  ///< the running one; empty between two
   Visit result_, running_;

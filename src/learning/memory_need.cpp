@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/counted.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/learning/greedy_schedule.hpp"
 #include "mcdbn/machines/mrbm.hpp"
@@ -92,9 +93,9 @@ void check_window(std::size_t longest, const LearningSettings& settings) {
   const std::size_t window = settings.layers * settings.order + settings.look_ahead + 1;
   if (window <= longest) return;
   throw ConfigError(fmt::format(
-      "a window of {} frames is learnt from (`order` {} in each of `layers` {}, `look-ahead` {}, "
+      "a window of {} is learnt from (`order` {} in each of `layers` {}, `look-ahead` {}, "
       "and its own), but the longest clip has {}; lower one of them, or give longer clips",
-      window, settings.order, settings.layers, settings.look_ahead, longest));
+      counted(window, "frame"), settings.order, settings.layers, settings.look_ahead, longest));
 }
 
 }  // namespace mcdbn

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/counted.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
@@ -39,10 +40,10 @@ std::vector<Motion> generate_clip(const Model& model, const Motion& seed,
   const Cdbn& cdbn = model.network.cdbns[kPose];
   const Motion at_rate = resample(seed, modalities.fps);
   if (at_rate.frames() < static_cast<int>(seed_frames(cdbn)))
-    throw InputError(fmt::format(
-        "the seed clip has {} frames at the model's {:g} fps, the network looks at {}; give a "
-        "longer one",
-        at_rate.frames(), modalities.fps, seed_frames(cdbn)));
+    throw InputError(
+        fmt::format("the seed clip has {} at the model's {:g} fps, the network looks at {}; give a "
+                    "longer one",
+                    counted(at_rate.frames(), "frame"), modalities.fps, seed_frames(cdbn)));
   const Eigen::Matrix3d camera_from_world = camera_at_origin(modalities.camera).camera_from_world,
                         axes_from_world = modalities.pose_axes(camera_from_world);
   const Skeleton& skeleton = at_rate.skeleton;

@@ -4,9 +4,8 @@
 #include <unistd.h>
 
 #include <array>
-#include <nlohmann/json.hpp>
+#include <cstdlib>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -17,12 +16,12 @@
 #include "learning/checkpoints.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
+#include "motion_model/run_record.hpp"
 
 namespace mcdbn {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr const char *kModelFile = "model.safetensors", *kMetricsFile = "metrics.jsonl",
                      *kRunFile = "run.json", *kUnfinished = "unfinished";
@@ -37,29 +36,18 @@ void check_names(const ListedClip& clip) {
   require_utf8(clip.action, file + ": its action");
 }
 
-[[noreturn]] void fail_record(const fs::path& record) {
-  throw InputError(fmt::format("{}: not what mcdbn-cl train wrote; train anew", record.string()));
-}
-
 bool holds_training(const fs::path& path) {
   for (const char* name : kResults)
     if (fs::exists(path / name)) return true;
   return fs::exists(path / kUnfinished);
 }
 
-void write_record(const fs::path& path, const TrainingConfig& config,
-                  const std::vector<ListedClip>& clips, const std::optional<StartedFrom>& start) {
-  json record = {{"settings", settings_json(config)},
-                 {"skeleton", static_cast<int>(config.skeleton)},
-                 {"clips", json::array()}};
-  for (const ListedClip& clip : clips)
-    record["clips"].push_back({{"file", fs::absolute(clip.file).lexically_normal().string()},
-                               {"person", clip.person},
-                               {"action", clip.action}});
-  for (const auto& [role, joint] : config.joint_map)
-    record["joint_map"][std::string(name_of(role))] = joint;
-  if (start) record["from"] = {{"model", start->model}, {"fingerprint", start->fingerprint}};
-  write_text_file(path, record.dump(1) + '\n');
+/// A new folder among temporary files: what stood there under a name that is known beforehand could
+/// be somebody's link. Empty if none can be made.
+fs::path folder_elsewhere() {
+  std::error_code error;
+  std::string pattern = (fs::temp_directory_path(error) / "mcdbn-cl-XXXXXX").string();
+  return !error && ::mkdtemp(pattern.data()) != nullptr ? fs::path(pattern) : fs::path();
 }
 
 }  // namespace
@@ -108,7 +96,7 @@ RunFolder RunFolder::begin(const fs::path& path, const TrainingConfig& config,
     run.started_from_ = {file.path, file.fingerprint};
     write_text_file(run.start_model(), read_text_file(start));
   }
-  write_record(run.unfinished() / kRunFile, config, clips, run.started_from_);
+  write_run_record(run.unfinished() / kRunFile, {config, clips, run.started_from_});
   return run;
 }
 
@@ -128,25 +116,10 @@ RunFolder RunFolder::resume(const fs::path& path) {
     run.complete_ = true;
     return run;
   }
-  try {
-    const json content = json::parse(read_text_file(record));
-    run.config_ = settings_from_json(content.at("settings"));
-    run.config_.skeleton = content.at("skeleton").get<SkeletonUse>();
-    if (content.contains("joint_map"))
-      for (const auto& [role, joint] : content["joint_map"].items())
-        run.config_.joint_map[joint_role_of(role).value()] = joint;
-    if (content.contains("from"))
-      run.started_from_ = {content["from"].at("model"), content["from"].at("fingerprint")};
-    for (const json& clip : content.at("clips"))
-      run.clips_.emplace_back(clip.at("file").get<std::string>(), clip.at("person"),
-                              clip.at("action"));
-  } catch (const json::exception&) {
-    fail_record(record);
-  } catch (const std::out_of_range&) {  // names that are none
-    fail_record(record);
-  } catch (const std::bad_optional_access&) {  // nor roles
-    fail_record(record);
-  }
+  RunRecord content = read_run_record(record);
+  run.config_ = content.config;
+  run.clips_ = std::move(content.clips);
+  run.started_from_ = std::move(content.from);
   return run;
 }
 
@@ -178,10 +151,8 @@ void RunFolder::complete(const Model& model) {
     failure = save(file);
   }
   if (failure) {
-    std::error_code error;
-    const fs::path elsewhere =
-        fs::temp_directory_path(error) / fmt::format("mcdbn-cl-{}.safetensors", ::getpid());
-    if (error || save(elsewhere))
+    const fs::path elsewhere = folder_elsewhere() / kModelFile;
+    if (!elsewhere.has_parent_path() || save(elsewhere))
       throw InputError(fmt::format(
           "{}; make room, then go on from the last checkpoint: mcdbn-cl train --resume {}",
           *failure, path_.string()));

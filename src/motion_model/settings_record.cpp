@@ -42,6 +42,7 @@ TrainingConfig settings_from_json(const nlohmann::json& record) {
   config.fine_tuning.steps = 0;
   const nlohmann::json flat = record.flatten();
   for (const auto& [pointer, value] : flat.items()) {
+    if (pointer.empty()) continue;  // of an object without any
     std::string name = pointer.substr(1);
     std::replace(name.begin(), name.end(), '/', '.');
     if (name == kGone) continue;

@@ -8,11 +8,13 @@
 #include <regex>
 #include <stdexcept>
 
+#include "base/parsed_json.hpp"
 #include "base/safetensors.hpp"
 #include "base/shown.hpp"
 #include "base/text_file.hpp"
 #include "comparison/sweep.hpp"
 #include "formats/asf_amc.hpp"
+#include "learning/checkpoint_file.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/base/matrix_file.hpp"
 #include "mcdbn/corpus/clip_list.hpp"
@@ -23,6 +25,7 @@
 #include "mcdbn/motion/frame_rate.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "motion_model/modalities_json.hpp"
+#include "motion_model/run_record.hpp"
 
 namespace mcdbn::test {
 namespace {
@@ -85,10 +88,23 @@ void read_settings(const fs::path& path) {
 }
 
 void read_model_modalities(const fs::path& path) {
-  const auto parsed = nlohmann::json::parse(read_text_file(path), nullptr, false);
+  const auto parsed = parsed_json(read_text_file(path));
   const Modalities modalities = modalities_from({parsed, path.string()});
   require(modalities.pose_features.skeleton().find(modalities.track_features.root_name()) >= 0,
           "a root that no skeleton has");
+}
+
+/// It can be written, and reads as the same again.
+void read_all_of_checkpoint(const fs::path& path) {
+  const CheckpointContent content = read_checkpoint(path);
+  const fs::path again = path.string() + ".again";
+  write_checkpoint(again, content);
+  const CheckpointContent same = read_checkpoint(again);
+  require(same.over.size() == content.over.size() && same.running == content.running &&
+              same.done == content.done && same.now.numbers == content.now.numbers &&
+              same.now.matrices.size() == content.now.matrices.size() &&
+              same.more.numbers == content.more.numbers,
+          "a checkpoint that reads otherwise once it is written");
 }
 
 std::vector<Reader> all_readers() {
@@ -104,6 +120,8 @@ std::vector<Reader> all_readers() {
       {"matrix-csv", ".csv", [](const fs::path& path) { read_matrix(path); }},
       {"safetensors", ".safetensors", [](const fs::path& path) { read_safetensors(path); }},
       {"model", ".json", read_model_modalities},
+      {"checkpoint", ".safetensors", read_all_of_checkpoint},
+      {"run", ".json", [](const fs::path& path) { read_run_record(path); }},
       {"track", "", [](const fs::path& path) { read_all_tracks(path, {}); }},
   };
   for (const TrackFormat& format : track_formats())

@@ -4,15 +4,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
+#include "device/scoped_variable.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
+#include "motion_model/example_model.hpp"
 
 using namespace mcdbn;
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 namespace {
 
@@ -124,8 +128,70 @@ TEST_CASE("what is no run folder is refused, and so is what is no text") {
     folder.write("unfinished/run.json", text);
     CHECK_THROWS_AS(RunFolder::resume(folder / ""), InputError);
   }
+  RunFolder::begin(folder / "begun", odd_config(), kClips, false);
+  const json begun = json::parse(read_text_file(folder / "begun/unfinished/run.json"));
+  struct Case {
+    const char* field;
+    json value;
+    const char* said;
+  };
+  for (const Case& one : std::vector<Case>{{"/skeleton", 3, ": skeleton: "},
+                                           {"/skeleton", -1, ": skeleton: "},
+                                           {"/settings", "x", ": settings: "},
+                                           {"/settings/hidden", 1000000000, ": settings: "},
+                                           {"/settings/unknown", 1, ": settings: "},
+                                           {"/clips", {{"a", 1}}, ": clips: "},
+                                           {"/clips/1/person", 7, ": clips[1].person: "}}) {
+    CAPTURE(one.field);
+    json record = begun;
+    record[json::json_pointer(one.field)] = one.value;
+    folder.write("unfinished/run.json", record.dump());
+    std::string message;
+    try {
+      RunFolder::resume(folder / "");
+    } catch (const InputError& error) {
+      message = error.what();
+    }
+    CHECK(message.starts_with((folder / "unfinished/run.json").string() + one.said));
+  }
   for (const ListedClip& clip :
        {ListedClip{"/a\xFF.bvh"}, ListedClip{"/a.bvh", "\xFF"}, ListedClip{"/a.bvh", "", "\xFF"}})
     CHECK_THROWS_AS(RunFolder::begin(folder / "other", odd_config(), {clip}, false), InputError);
   CHECK(!fs::exists(folder / "other"));
+}
+
+TEST_CASE(
+    "a model that cannot be written where it belongs is not lost, and it is said where it is") {
+  test::on_every_device([](Device& device) {
+    const Model model = test::ExampleModel(false).on(device);
+    const test::ScratchFolder folder, temporary;
+    const auto failure = [&](const std::string& temporary_files) {
+      const test::ScopedVariable variable("TMPDIR", temporary_files);
+      RunFolder run = RunFolder::begin(folder / "run", odd_config(), kClips, true);
+      // As on a full disk: no file of that name can be written.
+      fs::create_directory(folder / "run/unfinished/model.safetensors");
+      folder.write("run/unfinished/model.safetensors/x", "x");
+      folder.write("run/unfinished/checkpoint.safetensors", "last");
+      folder.write("run/unfinished/checkpoint.previous.safetensors", "room for more");
+      try {
+        run.complete(model);
+      } catch (const InputError& error) {
+        return std::string(error.what());
+      }
+      return std::string();
+    };
+    const std::string said = failure((temporary / "").string()), lies = "the model lies in ";
+    const auto at = said.find(lies);
+    REQUIRE(at != std::string::npos);
+    const auto begin = at + lies.size();
+    const fs::path model_file = said.substr(begin, said.find(": make room", begin) - begin);
+    CHECK(model_file.parent_path().parent_path() == (temporary / "").parent_path());
+    CHECK(load_model(device, model_file).training_clips.size() == model.training_clips.size());
+    CHECK(test::entries_of(folder / "run/unfinished") ==
+          std::set<std::string>{"config.toml", "run.json", "model.safetensors",
+                                "checkpoint.safetensors"});
+    const std::string nowhere = failure((folder / "absent").string());
+    CHECK(nowhere.find("go on from the last checkpoint: mcdbn-cl train --resume " +
+                       (folder / "run").string()) != std::string::npos);
+  });
 }

@@ -51,6 +51,7 @@ TEST_CASE("settings record: models from before there was fine-tuning had none") 
   CHECK(changed_by(config) ==
         Values{{"hidden", "12"}, {"fine-tuning.rate", "0.5"}, {"fine-tuning.steps", "0"}});
   CHECK_THROWS_AS(settings_from_json({{"hiden", 12}}), ConfigError);
+  CHECK_NOTHROW(settings_from_json(nlohmann::json::object()));
   CHECK_THROWS_AS(settings_from_json({{"hidden", -12}}), ConfigError);
 }
 
