@@ -22,6 +22,7 @@
 #include "mcdbn/base/errors.hpp"
 #include "setting_flags.hpp"
 #include "signals.hpp"
+#include "standard_streams.hpp"
 
 namespace mcdbn::cli {
 namespace {
@@ -147,6 +148,7 @@ int parse_and_run(CLI::App& app, CommandContext& context, int argc, char** argv)
 
 int run_program(int argc, char** argv) {
   try {
+    occupy_standard_streams();
     heed_signals(kInterrupted);
     set_up_messages();
     CLI::App app{kDescription, "mcdbn-cl"};
@@ -165,6 +167,10 @@ int run_program(int argc, char** argv) {
     return report(error, kUsage);
   } catch (const DeviceError& error) {
     return report(error, kNoDevice);
+  } catch (const std::filesystem::filesystem_error& error) {
+    // A name that is too long, links in a circle, a folder that may not be read.
+    return report(InputError(fmt::format("{}: {}", error.path1().string(), error.code().message())),
+                  kBadInput);
   } catch (const std::bad_alloc&) {
     return report(Error("out of memory; give fewer or shorter clips, or smaller settings"),
                   kFailure);

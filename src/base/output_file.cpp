@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <system_error>
 #include <utility>
 
@@ -34,25 +35,13 @@ fs::path temporary_beside(const fs::path& place) {
          fmt::format(".mcdbn-{}-{}{}", ::getpid(), ++count, place.extension().string());
 }
 
-const char* kind_of(fs::file_type type) {
-  switch (type) {
-    case fs::file_type::block:
-    case fs::file_type::character:
-      return "a device";
-    case fs::file_type::fifo:
-      return "a pipe";
-    case fs::file_type::socket:
-      return "a socket";
-    default:
-      return "no file";
-  }
-}
-
 /// @throws InputError if what is there is not to be replaced
 void check_place(const fs::path& path, const std::vector<fs::path>& inputs) {
   std::error_code error;
   const fs::file_type type = fs::status(path, error).type();
-  if (type == fs::file_type::not_found || type == fs::file_type::none) return;
+  if (type == fs::file_type::not_found) return;
+  if (type == fs::file_type::none)
+    throw InputError(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
   if (type == fs::file_type::directory) {
     if (!fs::is_empty(path, error))
       throw InputError(
@@ -67,6 +56,16 @@ void check_place(const fs::path& path, const std::vector<fs::path>& inputs) {
           fmt::format("{}: is read, so it cannot be written; give another name", path.string()));
 }
 
+/// What it is called in full, whether it exists or not.
+fs::path place_of(const fs::path& path) {
+  std::error_code error;
+  return fs::weakly_canonical(fs::absolute(path, error), error);
+}
+
+[[noreturn]] void fail_twice(const fs::path& path) {
+  throw InputError(fmt::format("{}: would be written twice; give another name", path.string()));
+}
+
 void move(const fs::path& temporary, const fs::path& place) {
   std::error_code error;
   fs::rename(temporary, place, error);
@@ -75,6 +74,20 @@ void move(const fs::path& temporary, const fs::path& place) {
 }
 
 }  // namespace
+
+std::string_view kind_of(fs::file_type type) {
+  switch (type) {
+    case fs::file_type::block:
+    case fs::file_type::character:
+      return "a device";
+    case fs::file_type::fifo:
+      return "a pipe";
+    case fs::file_type::socket:
+      return "a socket";
+    default:
+      return "no file";
+  }
+}
 
 thread_local OutputBatch* OutputBatch::current = nullptr;
 
@@ -91,10 +104,12 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::put_in_place() {
-  if (OutputBatch::current)
-    OutputBatch::current->waiting_.push_back({temporary_, path_});
-  else
+  if (OutputBatch* batch = OutputBatch::current) {
+    if (!batch->places_.insert(place_of(path_)).second) fail_twice(path_);
+    batch->waiting_.push_back({temporary_, path_});
+  } else {
     move(temporary_, path_);
+  }
   temporary_.clear();
 }
 
@@ -123,11 +138,20 @@ void OutputBatch::put_in_place() {
 
 void check_output(const fs::path& path) {
   check_place(path, OutputBatch::current ? OutputBatch::current->inputs_ : std::vector<fs::path>{});
-  const fs::path folder = followed(path).parent_path();
+  if (path.empty()) throw InputError("an output without a name; name a file");
+  if (path == "-")
+    throw InputError("-: standard output is not written to; a file of that name is ./-");
+  const fs::path parent = followed(path).parent_path(), folder = parent.empty() ? "." : parent;
   std::error_code error;
-  if (!folder.empty() && !fs::is_directory(folder, error))
+  if (!fs::is_directory(folder, error))
     throw InputError(fmt::format("{}: cannot be written: there is no folder {}", path.string(),
                                  folder.string()));
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw InputError(fmt::format("{}: cannot be written: its folder: {}", path.string(),
+                                 std::generic_category().message(errno)));
+  OutputBatch* batch = OutputBatch::current;
+  if (batch != nullptr && !batch->checked_.insert(place_of(followed(path))).second)
+    fail_twice(path);
 }
 
 void make_folder(const fs::path& folder) {

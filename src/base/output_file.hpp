@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,7 +24,8 @@ class OutputFile {
 
   /// Where to write: of the same extension and in the same folder as the place.
   const std::filesystem::path& temporary() const { return temporary_; }
-  /// At once, or with all others of the OutputBatch if there is one. @throws InputError
+  /// At once, or with all others of the OutputBatch if there is one.
+  /// @throws InputError, also if another of the batch has the same place
   void put_in_place();
 
  private:
@@ -56,6 +59,7 @@ class OutputBatch {
   static thread_local OutputBatch* current;
 
   std::vector<std::filesystem::path> inputs_, made_folders_;
+  std::set<std::filesystem::path> checked_, places_;
   std::vector<Waiting> waiting_;
 };
 
@@ -73,8 +77,13 @@ class OutputsAtOnce {
   OutputBatch* held_back_;
 };
 
+/// What there is that is no regular file, in words: "a pipe".
+std::string_view kind_of(std::filesystem::file_type type);
+
 /// What can be said of an output before the work is done.
-/// @throws InputError as OutputFile does, and where the folder that it goes to does not exist
+/// @throws InputError as OutputFile does, for a name that no file can have or that was looked at
+/// before in this OutputBatch, and where the folder that it goes to does not exist or cannot be
+/// written to
 void check_output(const std::filesystem::path& path);
 
 /// The folder, and those that it lies in, unless they exist. @throws InputError

@@ -15,11 +15,13 @@ namespace fs = std::filesystem;
 
 std::string read_text_file(const fs::path& path) {
   // A folder opens like a file on Linux and then reads as empty.
-  if (fs::is_directory(path)) {
+  std::error_code error;
+  const fs::file_type type = fs::status(path, error).type();
+  if (type == fs::file_type::directory)
     throw InputError(fmt::format("{}: is a folder, name a file in it", path.string()));
-  }
-  if (fs::is_character_file(path) || fs::is_block_file(path))
-    throw InputError(fmt::format("{}: is a device, not a file", path.string()));
+  // A pipe would keep us until somebody writes, and can be read but once.
+  if (fs::exists(fs::file_status(type)) && type != fs::file_type::regular)
+    throw InputError(fmt::format("{}: is {}, name a file", path.string(), kind_of(type)));
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
     throw InputError(fmt::format("{}: cannot be opened, check its name and rights", path.string()));

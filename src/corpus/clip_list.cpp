@@ -9,6 +9,7 @@
 
 #include "base/shown.hpp"
 #include "base/text_file.hpp"
+#include "base/utf8.hpp"
 #include "formats/toml_texts.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
@@ -89,6 +90,7 @@ void write_clip_list(const fs::path& path, const std::vector<ListedClip>& clips)
   const fs::path folder = fs::absolute(path).parent_path();
   for (const ListedClip& clip : clips) {
     const fs::path file = fs::absolute(clip.file).lexically_normal();
+    require_utf8(file.string(), clip.file.string() + ": its name");
     fmt::format_to(std::back_inserter(text), "\n[[clip]]\nfile = {}\n",
                    quoted(file.lexically_proximate(folder.lexically_normal()).generic_string()));
     if (!clip.person.empty())

@@ -21,7 +21,7 @@ class Film {
  public:
   Film(const std::filesystem::path& path, int from) : path_(path) {
     cv::Mat skipped;
-    if (!std::filesystem::exists(path) || !capture_.open(path.string()))
+    if (!std::filesystem::is_regular_file(path) || !capture_.open(path.string()))
       throw InputError(fmt::format("{}: is not a film that can be read", path.string()));
     for (int frame = 0; frame < from; ++frame) {
       check_interruption();

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <set>
@@ -123,4 +125,52 @@ TEST_CASE("a batch does not replace what is read, whatever it is called") {
   }
   CHECK_NOTHROW(check_output(folder / "output.txt"));
   CHECK_NOTHROW(check_output(folder / "absent"));
+}
+
+TEST_CASE("an output that no file can be is refused before the work") {
+  const test::ScratchFolder folder;
+  for (const fs::path& path : {fs::path(), fs::path("-"), folder / std::string(300, 'a')}) {
+    CAPTURE(path);
+    CHECK_THROWS_AS(check_output(path), InputError);
+  }
+  CHECK_NOTHROW(check_output(folder / "-"));
+}
+
+TEST_CASE("an output in a folder that may not be written to is refused before the work") {
+  const test::ScratchFolder folder;
+  fs::create_directory(folder / "of another");
+  fs::permissions(folder / "", fs::perms::owner_all | fs::perms::others_exec);
+  fs::permissions(folder / "of another", fs::perms::owner_read | fs::perms::owner_exec |
+                                             fs::perms::others_read | fs::perms::others_exec);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    // root may write everywhere
+    constexpr uid_t kNobody = 65534;
+    if (::geteuid() == 0 && ::setuid(kNobody) != 0) ::_exit(2);
+    try {
+      check_output(folder / "of another/a.txt");
+    } catch (const InputError&) {
+      ::_exit(0);
+    }
+    ::_exit(1);
+  }
+  int status = -1;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  CHECK(WEXITSTATUS(status) == 0);
+}
+
+TEST_CASE("two outputs of a command in one place are refused, whatever they are called") {
+  const test::ScratchFolder folder;
+  fs::create_symlink("a.txt", folder / "link");
+  fs::create_directory(folder / "sub");
+  for (const char* other : {"a.txt", "./a.txt", "sub/../a.txt", "link"}) {
+    CAPTURE(other);
+    OutputBatch batch;
+    check_output(folder / "a.txt");
+    check_output(folder / "b.txt");
+    CHECK_THROWS_AS(check_output(folder / other), InputError);
+    write_text_file(folder / "a.txt", "1");
+    CHECK_THROWS_AS(write_text_file(folder / other, "2"), InputError);
+  }
+  CHECK(test::entries_of(folder / "") == std::set<std::string>{"link", "sub"});
 }

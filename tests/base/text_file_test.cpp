@@ -1,6 +1,7 @@
 #include "base/text_file.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include "base/scratch_folder.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -39,4 +40,10 @@ TEST_CASE("read_text_file gives every byte, and refuses what is no file") {
   CHECK(read_text_file(folder.write("empty.txt", "")).empty());
   CHECK_THROWS_AS(read_text_file(folder / "absent.txt"), InputError);
   CHECK_THROWS_AS(read_text_file(folder / ""), InputError);
+  // Nobody writes to the pipe: opening it would wait for ever.
+  REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  for (const auto& path : {folder / "pipe", std::filesystem::path("/dev/zero")}) {
+    CAPTURE(path);
+    CHECK_THROWS_AS(read_text_file(path), InputError);
+  }
 }
