@@ -12,6 +12,7 @@
 #include <sstream>
 #include <vector>
 
+#include "base/interruption.hpp"
 #include "base/npy.hpp"
 #include "base/safetensors.hpp"
 #include "base/shown.hpp"
@@ -60,6 +61,7 @@ class CsvReader {
   MatrixF read(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     for (std::size_t line = 1; !text.empty(); ++line) {
+      check_interruption();
       const auto end = std::min(text.find('\n'), text.size());
       add_line(trimmed(text.substr(0, end)), line);
       text.remove_prefix(std::min(end + 1, text.size()));
@@ -155,6 +157,7 @@ MatrixF read_matrix(const fs::path& path, const std::string& tensor) {
 void write_csv(std::ostream& stream, const MatrixF& values) {
   std::string line;
   for (Eigen::Index r = 0; r < values.rows(); ++r) {
+    check_interruption();
     line.clear();
     for (Eigen::Index c = 0; c < values.cols(); ++c)
       fmt::format_to(std::back_inserter(line), "{}{}", c == 0 ? "" : ",", values(r, c));

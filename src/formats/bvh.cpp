@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/interruption.hpp"
 #include "base/text_file.hpp"
 #include "formats/bvh_parser.hpp"
 #include "mcdbn/motion/frame_rate.hpp"
@@ -52,7 +53,10 @@ class FrameReader {
   MatrixD read() {
     // A false `Frames:` must not make us ask for memory that its values could never fill.
     values_.reserve(std::min(wanted_, cursor_.bytes_left() / 2 + 1));
-    while (values_.size() < wanted_ && !cursor_.at_end()) read_line();
+    while (values_.size() < wanted_ && !cursor_.at_end()) {
+      check_interruption();
+      read_line();
+    }
     if (values_.size() < wanted_ && odd_line_ == 0) {
       cursor_.fail(
           fmt::format("only {} of the {} frames that Frames: says, correct it or restore the rest",

@@ -2,6 +2,7 @@
 
 #include <iterator>
 
+#include "base/interruption.hpp"
 #include "base/text_file.hpp"
 #include "formats/bvh_parser.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -83,6 +84,7 @@ std::string bvh_text(const Motion& motion) {
   auto out = std::back_inserter(text);
   fmt::format_to(out, "MOTION\nFrames: {}\nFrame Time: {}\n", motion.frames(), motion.frame_time_s);
   for (int frame = 0; frame < motion.frames(); ++frame) {
+    check_interruption();
     for (Eigen::Index column = 0; column < motion.channels.cols(); ++column) {
       fmt::format_to(out, "{}{:.6f}", column > 0 ? " " : "", motion.channels(frame, column));
     }

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <limits>
 
+#include "base/interruption.hpp"
 #include "base/shown.hpp"
 #include "formats/csv_text.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -34,6 +35,7 @@ CsvTable::CsvTable(std::string_view text, std::string file, std::size_t most)
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   char separator = '\0';
   for (int number = 1; !text.empty() && lines_.size() < most; ++number) {
+    check_interruption();
     const auto end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));

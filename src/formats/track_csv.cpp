@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "base/interruption.hpp"
 #include "base/shown.hpp"
 #include "base/text_file.hpp"
 #include "formats/csv_text.hpp"
@@ -38,6 +39,7 @@ class TrackReader {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     for (const std::string_view line : split(text, '\n')) {
       ++line_;
+      check_interruption();
       if (line.empty()) continue;
       if (line.front() == '#') {
         read_comment(line.substr(1));
@@ -290,6 +292,7 @@ void write_track_csv(const std::filesystem::path& path, const Track2d& track) {
   }
   text += '\n';
   for (int frame = 0; frame < track.frames(); ++frame) {
+    check_interruption();
     for (int joint = 0; joint < track.joint_count(); ++joint) {
       text += fmt::format("{}{},{},{}", joint == 0 ? "" : ",", cell(track.x_px(frame, joint)),
                           cell(track.y_px(frame, joint)), cell(track.confidence(frame, joint)));

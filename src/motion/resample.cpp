@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/counted.hpp"
+#include "base/interruption.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -193,9 +195,9 @@ int frames_at_rate(int frames, double rate_hz, double target_hz, double phase, d
   const double last = std::floor((frames - 1) / (rate_hz / target_hz) - phase + slack);
   if (last >= kMostFrames)
     throw InputError(fmt::format(
-        "{} frames at {:g} Hz would become {:.0f} at {:g} Hz, at most {:.0f} are made; is the rate "
+        "{} at {:g} Hz would become {:.0f} at {:g} Hz, at most {:.0f} are made; is the rate "
         "right?",
-        frames, rate_hz, last + 1, target_hz, kMostFrames));
+        counted(frames, "frame"), rate_hz, last + 1, target_hz, kMostFrames));
   return std::max(1, static_cast<int>(last) + 1);
 }
 
@@ -214,6 +216,7 @@ Motion resample(const Motion& motion, double target_hz, double phase) {
   const double last_frame = motion.frames() - 1;
   Motion result{motion.skeleton, 1.0 / target_hz, MatrixD(frames, motion.channels.cols())};
   for (int frame = 0; frame < frames; ++frame) {
+    check_interruption();
     const double source_frame = std::min((frame + phase) * step, last_frame);
     // The first frame takes the branch of angles that the file itself uses there.
     const double* previous = frame > 0 ? result.channels.row(frame - 1).data()

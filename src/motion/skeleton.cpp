@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/interruption.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -144,6 +145,7 @@ MatrixD joint_positions(const Motion& motion) {
   const int joints = motion.skeleton.joint_count();
   MatrixD positions(motion.frames(), 3 * joints);
   for (int frame = 0; frame < motion.frames(); ++frame) {
+    check_interruption();
     const WorldPose pose = forward_kinematics(motion.skeleton, motion.channels.row(frame));
     for (int joint = 0; joint < joints; ++joint) {
       positions.block<1, 3>(frame, 3 * joint) = pose.position[joint].transpose();

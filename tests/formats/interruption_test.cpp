@@ -1,0 +1,62 @@
+// Files may be of any length: whoever waits for one can say that it is enough.
+#include "base/interruption.hpp"
+
+#include <doctest/doctest.h>
+
+#include <functional>
+
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/base/matrix_file.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/formats/track_file.hpp"
+#include "motion/resample.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+const std::string kBvh =
+    "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n"
+    "End Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 3\nFrame Time: 0.03\n1 2 3\n4 5 6\n7 8 9\n";
+
+}  // namespace
+
+TEST_CASE("reading, working on and writing many frames stops when it is asked to") {
+  const ScratchFolder folder;
+  const auto csv = folder.write("t.csv", "a_x_px,a_y_px,b_x_px,b_y_px\n1,2,3,4\n5,6,7,8\n"),
+             rows = folder.write("rows.csv", "1,2\n3,4\n"),
+             people = folder.write("tracks.csv",
+                                   "scorer,m,m,m\nbodyparts,nose,nose,nose\n"
+                                   "coords,x,y,likelihood\n0,1,2,0.5\n1,1,2,0.5\n");
+  const Motion motion = parse_bvh(kBvh, "a.bvh");
+  const Track2d track = read_track_csv(csv);
+  const std::vector<std::function<void()>> all{
+      [&] { parse_bvh(kBvh, "a.bvh"); },
+      [&] { bvh_text(motion); },
+      [&] { resample(motion, 60); },
+      [&] { joint_positions(motion); },
+      [&] { read_track_csv(csv); },
+      [&] { write_track_csv(folder / "out.csv", track); },
+      [&] { read_tracks(people, {.format = "deeplabcut"}); },
+      [&] { read_matrix(rows); },
+  };
+  for (const auto& work : all) CHECK_NOTHROW(work());
+  std::filesystem::remove(folder / "out.csv");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CAPTURE(i);
+    request_interruption();
+    bool stopped = false;
+    try {
+      all[i]();
+    } catch (const Interrupted&) {
+      stopped = true;
+    }
+    clear_interruption();
+    CHECK(stopped);
+  }
+  CHECK(!std::filesystem::exists(folder / "out.csv"));
+}
