@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/counted.hpp"
+#include "base/shown.hpp"
 #include "commands.hpp"
 #include "corpus/corpus_survey.hpp"
 #include "mcdbn/formats/joint_map.hpp"
@@ -71,8 +73,8 @@ json survey_json(const std::vector<SurveyedClip>& clips, const Amount& usable) {
 }
 
 void print_row(const std::string& name, const Amount& amount) {
-  fmt::print("{:<28}{:>8}{:>8}{:>11}{:>10.1f}\n", name, amount.clips, amount.people.size(),
-             amount.skeletons.size(), amount.seconds / 60);
+  fmt::print("{:<28}{:>8}{:>8}{:>11}{:>10.1f}\n", printable(name), amount.clips,
+             amount.people.size(), amount.skeletons.size(), amount.seconds / 60);
 }
 
 void print_table(const std::vector<SurveyedClip>& clips, const Amount& usable) {
@@ -81,7 +83,7 @@ void print_table(const std::vector<SurveyedClip>& clips, const Amount& usable) {
     if (clip.usable()) actions[clip.clip.action].add(clip);
   fmt::print("{:<28}{:>8}{:>8}{:>11}{:>10}\n", "action", "clips", "people", "skeletons", "minutes");
   for (const auto& [action, amount] : actions) print_row(action, amount);
-  print_row(fmt::format("all {} actions", actions.size()), usable);
+  print_row(counted(actions.size(), "action"), usable);
   double deg = 0, mm = 0;
   for (const SurveyedClip& clip : clips)
     if (clip.error) {
@@ -97,9 +99,10 @@ void print_table(const std::vector<SurveyedClip>& clips, const Amount& usable) {
       if (problem.kind == ClipProblem::Kind::first_frame)
         ++posed;
       else
-        fmt::print("{}: {}\n", clip.clip.file.string(), problem.text);
+        fmt::print("{}\n", printable(fmt::format("{}: {}", clip.clip.file.string(), problem.text)));
   if (posed > 0)
-    fmt::print("{} clips begin with a calibration pose, which training leaves out\n", posed);
+    fmt::print("{} with a calibration pose first, which training leaves out\n",
+               counted(posed, "clip"));
 }
 
 void run_corpus(const CommandContext& context, const CorpusOptions& options) {
@@ -119,7 +122,7 @@ void run_corpus(const CommandContext& context, const CorpusOptions& options) {
     print_table(clips, usable);
   if (options.list.empty()) return;
   write_clip_list(options.list, listed);
-  spdlog::info("{}: {} clips, {} left out", options.list.string(), listed.size(),
+  spdlog::info("{}: {}, {} left out", options.list.string(), counted(listed.size(), "clip"),
                clips.size() - listed.size());
 }
 

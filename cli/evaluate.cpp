@@ -6,7 +6,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/counted.hpp"
 #include "base/interruption.hpp"
+#include "base/shown.hpp"
 #include "camera_options.hpp"
 #include "commands.hpp"
 #include "comparison/training_views.hpp"
@@ -89,8 +91,9 @@ void print_coverage(const EvaluationReport& report) {
 void print_table(const EvaluationReport& report) {
   int frames = 0;
   for (const ReportClip& clip : report.clips) frames += clip.frames();
-  fmt::print("{} clips, {} frames\n{:<22}{:>10}{:>12}{:>11}{:>14}{:>10}\n", report.clips.size(),
-             frames, "", "PCC flat", "PCC channel", "MPJPE mm", "PA-MPJPE mm", "root mm");
+  fmt::print("{}, {}\n{:<22}{:>10}{:>12}{:>11}{:>14}{:>10}\n", counted(report.clips.size(), "clip"),
+             counted(frames, "frame"), "", "PCC flat", "PCC channel", "MPJPE mm", "PA-MPJPE mm",
+             "root mm");
   for (const MethodReport& method : overall_methods(report))
     fmt::print("{:<22}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n", method.name,
                method.mean.pcc_flat, method.mean.pcc_channel, method.mean.error.mpjpe_mm,
@@ -106,7 +109,7 @@ void print_table(const EvaluationReport& report) {
                verdict.kind == Verdict::Kind::good  ? "+"
                : verdict.kind == Verdict::Kind::bad ? "-"
                                                     : " ",
-               verdict.text);
+               printable(verdict.text));
 }
 
 void run_evaluate(const CommandContext& context, EvaluateOptions options) {

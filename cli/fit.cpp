@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/counted.hpp"
 #include "base/output_file.hpp"
 #include "base/utf8.hpp"
 #include "commands.hpp"
@@ -174,7 +175,7 @@ void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
     data.reserve(inputs.size());
     for (const ModalityData& input : inputs)
       data.push_back(Sequences::from_host(device, input.data));
-    spdlog::info("{} modalities, {} rows on {}", data.size(), data.front().values.rows(),
+    spdlog::info("{} modalities, {} on {}", data.size(), counted(data.front().values.rows(), "row"),
                  device.info().name);
     return SavedMachine{fit_mrbm(device, modalities, data, options.settings, observer), scales};
   });
@@ -213,8 +214,9 @@ void run_fit(const CommandContext& context, const FitOptions& options) {
   check_lengths(data, history, options.data.files.front());
   fit_and_save(context, options, [&](Device& device, const EpochObserver& observer) {
     const Sequences sequences = Sequences::from_host(device, data);
-    spdlog::info("{} files, {} rows of {} values on {}", data.size(), sequences.values.rows(),
-                 sequences.values.columns(), device.info().name);
+    spdlog::info("{}, {} of {} on {}", counted(data.size(), "file"),
+                 counted(sequences.values.rows(), "row"),
+                 counted(sequences.values.columns(), "value"), device.info().name);
     const Cdbn stack =
         fit_stack(device, sequences, kind.visible, layers, options.settings, observer);
     SavedMachine saved{stack};

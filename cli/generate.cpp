@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/counted.hpp"
 #include "commands.hpp"
 #include "default_model.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -42,7 +43,7 @@ void report(const GenerationHealth& health) {
   spdlog::info(
       "its channels deviate {:.2f} to {:.2f} times as far as in training (median {:.2f}); {}",
       deviation.front(), deviation.back(), deviation[deviation.size() / 2],
-      cycle > 0 ? fmt::format("the shortest cycle has {} frames", cycle) : "no cycle");
+      cycle > 0 ? fmt::format("the shortest cycle has {}", counted(cycle, "frame")) : "no cycle");
 }
 
 void run_generate(const CommandContext& context, const GenerateOptions& options) {
@@ -55,7 +56,7 @@ void run_generate(const CommandContext& context, const GenerateOptions& options)
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const auto path = sample_path(options.output, i, motions.size());
     write_bvh(path, motions[i]);
-    spdlog::info("{}: {} frames at {:.4g} fps", path.string(), motions[i].frames(),
+    spdlog::info("{}: {} at {:.4g} fps", path.string(), counted(motions[i].frames(), "frame"),
                  motions[i].fps());
   }
   report(health);

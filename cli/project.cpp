@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/counted.hpp"
 #include "camera/detector_track.hpp"
 #include "camera/track_noise.hpp"
 #include "camera_options.hpp"
@@ -44,8 +45,8 @@ void run_project(const CommandContext& context, const ProjectOptions& options) {
   add_pixel_noise(track, options.noise_px, context.seed);
   track_format(options.format).write(options.output, track);
   if (!options.camera_output.empty()) write_camera(options.camera_output, camera);
-  spdlog::info("{}: {} frames of {} joints at {:.4g} fps", options.output.string(), track.frames(),
-               track.joint_count(), track.fps);
+  spdlog::info("{}: {} of {} at {:.4g} fps", options.output.string(),
+               counted(track.frames(), "frame"), counted(track.joint_count(), "joint"), track.fps);
 }
 
 }  // namespace

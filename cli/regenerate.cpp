@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/counted.hpp"
 #include "camera_options.hpp"
 #include "clip_options.hpp"
 #include "commands.hpp"
@@ -69,7 +70,7 @@ void check_uncertainty(const RegenerateOptions& options) {
 }
 
 void report(const std::filesystem::path& path, int frames, double fps) {
-  spdlog::info("{}: {} frames at {:.4g} fps", path.string(), frames, fps);
+  spdlog::info("{}: {} at {:.4g} fps", path.string(), counted(frames, "frame"), fps);
 }
 
 /// What is taken for granted of a camera that nobody calibrated, pitch and roll as its clip told

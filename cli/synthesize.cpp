@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/counted.hpp"
 #include "base/interruption.hpp"
 #include "base/text_file.hpp"
 #include "commands.hpp"
@@ -42,9 +43,10 @@ void run_synthesize(const CommandContext& context, const SynthesizeOptions& opti
     if (i == 0) make_folder(options.output);
     write_bvh(options.output / synthesis_file_name(clip), motion);
   }
-  spdlog::info("{}: {} clips of {} by {} subjects, {:.4g} s each at {:.4g} fps",
-               options.output.string(), options.clips, options.action,
-               std::min(options.clips, options.subjects), options.seconds, options.fps);
+  spdlog::info("{}: {} of {} by {}, {:.4g} s each at {:.4g} fps", options.output.string(),
+               counted(options.clips, "clip"), options.action,
+               counted(std::min(options.clips, options.subjects), "subject"), options.seconds,
+               options.fps);
 }
 
 std::vector<std::string> action_names() {

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "base/counted.hpp"
+#include "base/shown.hpp"
 #include "commands.hpp"
 #include "comparison/sweep.hpp"
 #include "default_model.hpp"
@@ -68,9 +71,9 @@ void train_run(const CommandContext& context, Device& device, const TrainOptions
   const ClipStore clips = read_clips(run);
   const TrainingSet data = start ? make_training_set(clips, start->modalities, config)
                                  : make_training_set(clips, config);
-  spdlog::info("{} clips, {:.0f} frames at {:g} fps on {}; 3D {} values a frame, 2D {}",
-               clips.count(), clips.frames_at(config.fps), config.fps, device.info().name,
-               data.modalities.pose_scale.output_dimension(),
+  spdlog::info("{}, {:.0f} frames at {:g} fps on {}; 3D {} values a frame, 2D {}",
+               counted(clips.count(), "clip"), clips.frames_at(config.fps), config.fps,
+               device.info().name, data.modalities.pose_scale.output_dimension(),
                data.modalities.track_scale.output_dimension());
   ProgressLine progress(context.quiet);
   const TrainedRun trained = train_to_folder(
@@ -111,13 +114,17 @@ void resume(const CommandContext& context, const TrainOptions& options) {
 }
 
 void print_record(const nlohmann::ordered_json& record) {
-  const std::string name = record["name"].get<std::string>();
+  const auto name = printable(record["name"].get<std::string>());
+  // null in a line of before: what is no number, as the correlation of what never moves.
+  const auto figure = [&](const char* what) {
+    const auto found = record.find(what);
+    return found != record.end() && found->is_number() ? found->get<double>() : std::nan("");
+  };
   if (record["status"] == "ok")
-    fmt::print("{:<44}{:>10.1f}{:>14.3f}{:>12.3f}{:>10.1f}\n", name,
-               record["training_s"].get<double>(), record["inference_ms_per_frame"].get<double>(),
-               record["pcc_channel"].get<double>(), record["mpjpe_mm"].get<double>());
+    fmt::print("{:<44}{:>10.1f}{:>14.3f}{:>12.3f}{:>10.1f}\n", name, figure("training_s"),
+               figure("inference_ms_per_frame"), figure("pcc_channel"), figure("mpjpe_mm"));
   else
-    fmt::print("{:<44}  failed: {}\n", name, record["error"].get<std::string>());
+    fmt::print("{:<44}  failed: {}\n", name, printable(record.value("error", "")));
 }
 
 void train_sweep(const CommandContext& context, Device& device, const TrainOptions& options,

@@ -5,7 +5,8 @@
 
 namespace mcdbn {
 
-/// The text with control bytes but line ends escaped as \x1b, and what is no UTF-8 replaced.
+/// The text with control characters but line ends escaped as \x1b, those that turn the direction of
+/// writing too, and what is no UTF-8 replaced.
 std::string printable(std::string_view text);
 
 /// A piece of input in quotes, for messages: not more than its beginning, and printable.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/counted.hpp"
 #include "camera/detector_noise.hpp"
 #include "camera/track_columns.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -108,8 +109,8 @@ double person_height_px(const Track2d& track) {
 DetectorNoise measured_noise(const Track2d& track, double height_px) {
   constexpr int kLeast = 10;
   if (track.frames() < kLeast)
-    throw InputError(fmt::format("a track of {} frames says too little of its noise; {} are needed",
-                                 track.frames(), kLeast));
+    throw InputError(fmt::format("a track of {} says too little of its noise; {} are needed",
+                                 counted(track.frames(), "frame"), kLeast));
   DetectorNoise noise;
   if (const double ratio = noise_ratio(track, height_px, noise); std::isfinite(ratio))
     for (double* part :

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <sstream>
 
+#include "base/parsed_json.hpp"
 #include "base/text_file.hpp"
 #include "comparison/comparison_run.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -78,8 +79,10 @@ Sweep::Log::Log(fs::path path) : path_(std::move(path)) {
   if (!fs::exists(path_)) return;
   std::istringstream lines(read_text_file(path_));
   for (std::string line; std::getline(lines, line);) {
-    ordered_json record = ordered_json::parse(line, nullptr, false);
-    if (record.is_object() && record.contains("settings")) records_.push_back(std::move(record));
+    ordered_json record = parsed_json(line);
+    if (record.is_object() && record.contains("settings") && record["name"].is_string() &&
+        record["status"].is_string())
+      records_.push_back(std::move(record));
   }
 }
 
@@ -92,7 +95,8 @@ const ordered_json* Sweep::Log::find(const ordered_json& settings) const {
 void Sweep::Log::add(ordered_json record) {
   records_.push_back(std::move(record));
   std::string text;
-  for (const ordered_json& entry : records_) text += entry.dump() + '\n';
+  for (const ordered_json& entry : records_)
+    text += entry.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
   const OutputsAtOnce after_each;
   write_text_file(path_, text);
 }

@@ -35,7 +35,8 @@ std::string kernel_file_text(const std::string& file) {
 }
 
 std::string options_of(const Defines& defines) {
-  std::string options = "-cl-std=CL1.2";
+  // -w: what compilers in drivers warn of they write on standard error, among our messages.
+  std::string options = "-cl-std=CL1.2 -w";
   for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value.text);
   // For the tests that must also pass unoptimised.
   if (const char* extra = std::getenv("MCDBN_BUILD_OPTIONS")) options += fmt::format(" {}", extra);

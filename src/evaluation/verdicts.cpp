@@ -39,10 +39,14 @@ Verdict against(const EvaluationReport& report, const ClipScore& answer,
                 const MethodReport& baseline) {
   const ClipScore& other = baseline.mean;
   const bool nearer = answer.error.mpjpe_mm < other.error.mpjpe_mm;
-  const bool follows = answer.pcc_channel > other.pcc_channel;
-  const std::string figures = fmt::format(
-      "{:.1f} mm against {:.1f} mm, per-channel PCC {:.3f} against {:.3f}", answer.error.mpjpe_mm,
-      other.error.mpjpe_mm, answer.pcc_channel, other.pcc_channel);
+  // Where nothing moves there is nothing to follow.
+  const bool correlates = std::isfinite(answer.pcc_channel) && std::isfinite(other.pcc_channel);
+  const bool follows = correlates ? answer.pcc_channel > other.pcc_channel : nearer;
+  const std::string figures =
+      fmt::format("{:.1f} mm against {:.1f} mm, {}", answer.error.mpjpe_mm, other.error.mpjpe_mm,
+                  correlates ? fmt::format("per-channel PCC {:.3f} against {:.3f}",
+                                           answer.pcc_channel, other.pcc_channel)
+                             : "no per-channel PCC, for nothing moves");
   const std::string count =
       fmt::format("nearer on {} of {} clips", clips_nearer_than(report.clips, baseline.name),
                   report.clips.size());
@@ -71,7 +75,7 @@ void add_flat_warning(std::vector<Verdict>& list, const ClipScore& answer,
         {Kind::bad, fmt::format("By the flattened PCC that the paper reports, {} ({:.4f}) is as "
                                 "good as the model ({:.4f}).",
                                 pose, constant, answer.pcc_flat)});
-  else if (constant > 0.8)
+  else if (constant > 0.8 && std::isfinite(mean_pose->mean.pcc_channel))
     list.push_back(
         {Kind::note, fmt::format("Even {} reaches a flattened PCC of {:.4f} (the model: {:.4f}): "
                                  "judge by the per-channel PCC, where it gets {:.3g}.",

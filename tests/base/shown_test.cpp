@@ -25,3 +25,14 @@ TEST_CASE("shown: control bytes are escaped, what is no UTF-8 replaced") {
   CHECK(shown("\xFFz") == "'\xEF\xBF\xBDz'");
   CHECK(printable("first\nsecond \x07") == "first\nsecond \\x07");
 }
+
+TEST_CASE("shown: what terminals obey beyond ASCII is escaped, other letters are not") {
+  CHECK(printable("a\xC2\x9B"
+                  "31mb") == "a\\xc2\\x9b31mb");  // a control sequence in one character
+  CHECK(printable("\xC2\x80") == "\\xc2\\x80");
+  CHECK(printable("\xC2\xA0\xC2\xB5") == "\xC2\xA0\xC2\xB5");
+  CHECK(printable("x\xE2\x80\xAEvhb.y") == "x\\xe2\\x80\\xaevhb.y");  // right to left
+  CHECK(printable("\xE2\x81\xA6\xE2\x81\xA9") == "\\xe2\\x81\\xa6\\xe2\\x81\\xa9");
+  CHECK(printable("\xE2\x80\xA8") == "\\xe2\\x80\\xa8");
+  CHECK(printable("\xE2\x80\xA6 \xE2\x81\xAA") == "\xE2\x80\xA6 \xE2\x81\xAA");
+}

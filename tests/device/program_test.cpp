@@ -1,6 +1,8 @@
 #include "device/program.hpp"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <functional>
@@ -155,6 +157,27 @@ TEST_CASE("small: kernels are read from MCDBN_KERNEL_DIR, with what they include
     CHECK(error_text([&] {
             device.programs().kernel("probe.cl", "wrong_name", {{"EXTRA", 3}});
           }).find("wrong_name") != std::string::npos);
+  });
+}
+
+TEST_CASE("what the driver's compiler warns of is not written among our messages") {
+  on_every_device([](Device& open) {
+    const ScratchFolder folder;
+    // Named after the process, so that no driver has it in its cache.
+    folder.write("noisy.cl",
+                 "int forgotten(int x) { if (x > 0) return 1; }\n"
+                 "kernel void noisy(global int* out) { out[0] = forgotten(SALT); }\n");
+    const ScopedVariable kernels("MCDBN_KERNEL_DIR", (folder / "").string());
+    const ScopedVariable cache("XDG_CACHE_HOME", (folder / "cache").string());
+    Device device(open.info());
+    const int before = ::dup(STDERR_FILENO);
+    const int file = ::open((folder / "stderr").c_str(), O_CREAT | O_WRONLY, 0600);
+    REQUIRE(::dup2(file, STDERR_FILENO) == STDERR_FILENO);
+    device.programs().kernel("noisy.cl", "noisy", {{"SALT", static_cast<int>(::getpid())}});
+    ::dup2(before, STDERR_FILENO);
+    ::close(before);
+    ::close(file);
+    CHECK(read_text_file(folder / "stderr") == "");
   });
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "numbered_report.hpp"
 
@@ -147,6 +148,18 @@ TEST_CASE("verdicts: where a baseline is nearer on an action of several") {
              "mm."));
   for (const Verdict& verdict : verdicts(report))
     CHECK(verdict.text.find("On walk") == std::string::npos);
+}
+
+TEST_CASE("verdicts: where nothing moves no correlation is spoken of") {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  CHECK(says(duel({20, none}, {25, none}, "ridge_window"), Kind::good,
+             "The model beats ridge regression: 22.0 mm against 23.0 mm, no per-channel PCC, for "
+             "nothing moves; nearer on 1 of 2 clips."));
+  CHECK(says(duel({25, none}, {20, 0.5}, "ridge_window"), Kind::bad,
+             "The model loses to ridge regression: 27.0 mm against 18.0 mm, no per-channel PCC, "
+             "for nothing moves; nearer on 0 of 2 clips."));
+  for (const Verdict& verdict : verdicts(duel({20, none, 0.9}, {25, none, 0.9}, "mean_pose")))
+    CHECK(verdict.text.find("nan") == std::string::npos);
 }
 
 }  // namespace mcdbn
