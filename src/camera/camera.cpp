@@ -5,9 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
+#include "base/numbers.hpp"
 #include "camera/lens.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
@@ -16,8 +15,6 @@ namespace mcdbn {
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRadians = std::numbers::pi / 180.0;
 /// How much of the image's half width and height the body may fill.
 constexpr double kFill = 0.92;
 
@@ -58,7 +55,8 @@ double fitting_distance(const Camera& camera, const MatrixD& points,
 }  // namespace
 
 Eigen::Matrix3d camera_rotation(double azimuth_deg, double elevation_deg) {
-  const double azimuth = azimuth_deg * kRadians, elevation = elevation_deg * kRadians;
+  const double azimuth = azimuth_deg * kRadiansPerDegree,
+               elevation = elevation_deg * kRadiansPerDegree;
   const Eigen::Vector3d to_camera(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
                                   std::cos(azimuth) * std::cos(elevation));
   const Eigen::Vector3d right(std::cos(azimuth), 0, -std::sin(azimuth));
@@ -88,7 +86,7 @@ Camera camera_at_origin(const CameraPlacement& placement) {
   camera.cx_px = placement.width_px / 2.0;
   camera.cy_px = placement.height_px / 2.0;
   camera.fx_px = camera.fy_px =
-      placement.height_px / 2.0 / std::tan(placement.field_of_view_deg * kRadians / 2);
+      placement.height_px / 2.0 / std::tan(placement.field_of_view_deg * kRadiansPerDegree / 2);
   return camera;
 }
 

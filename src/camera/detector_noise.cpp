@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
+#include "base/numbers.hpp"
 #include "base/random_sequence.hpp"
 #include "base/random_streams.hpp"
 #include "camera/keypoint_pairs.hpp"
@@ -17,8 +17,6 @@
 
 namespace mcdbn {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Normal numbers of deviation 1 that forget themselves within `time_s` (first-order
 /// autoregression).

@@ -1,7 +1,6 @@
 #include "camera/detector_track.hpp"
 
-#include <limits>
-
+#include "base/numbers.hpp"
 #include "camera/keypoint_places.hpp"
 #include "motion/body_size.hpp"
 
@@ -10,7 +9,6 @@ namespace {
 
 Track2d seen_places(const MatrixD& places, const std::vector<Keypoint>& keypoints,
                     const Camera& camera, double fps) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto joints = static_cast<Eigen::Index>(keypoints.size());
   const MatrixD pixels = project_points(camera, places);
   Track2d track;

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "camera/keypoint_places.hpp"
 #include "camera/track_columns.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -18,7 +18,6 @@ namespace {
 
 using enum JointRole;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewestJoints = 3;
 /// Joints that lie between two others, by the left one of them.
 constexpr std::array kBetween{std::pair{pelvis, left_hip}, std::pair{neck, left_shoulder}};

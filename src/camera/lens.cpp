@@ -1,14 +1,14 @@
 #include "camera/lens.hpp"
 
 #include <cmath>
-#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
+
+#include "base/numbers.hpp"
 
 namespace mcdbn {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Of a ray that is 84 degrees aside: as x/z and y/z those further out grow without bound.
 constexpr double kSteepest = 10;
 

@@ -1,8 +1,8 @@
 #include "mcdbn/camera/level_view.hpp"
 
 #include <Eigen/Geometry>
-#include <limits>
 
+#include "base/numbers.hpp"
 #include "camera/track_rays.hpp"
 
 namespace mcdbn {
@@ -10,7 +10,6 @@ namespace {
 
 /// Of the angle between a ray and the viewing direction: 84 degrees.
 constexpr double kLeastCosine = 0.1;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// @param rays [frames x 2·joints] x/z and y/z  @return [frames x 3·joints] along other axes, NaN
 /// where those do not see them

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "base/upper_median.hpp"
 #include "camera/keypoint_pairs.hpp"
 #include "camera/track_columns.hpp"
@@ -16,7 +17,6 @@
 namespace mcdbn {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Swapped = std::vector<int>;  ///< 1 where swapped, one a frame

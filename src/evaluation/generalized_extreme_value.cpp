@@ -8,11 +8,12 @@
 #include <opencv2/core/optim.hpp>
 #include <type_traits>
 
+#include "base/numbers.hpp"
+
 namespace mcdbn {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGumbelBelow = 1e-12;  ///< shapes that are zero for all purposes
 
 /// Shape, logarithm of the scale, location: free of constraints but for the shape.
@@ -94,11 +95,11 @@ Eigen::Matrix3d observed_information(const Eigen::VectorXd& samples,
 
 Eigen::Vector3d standard_errors(const Eigen::VectorXd& samples,
                                 const GeneralizedExtremeValue& fit) {
-  if (fit.shape <= -0.5) return Eigen::Vector3d::Constant(kNaN);
+  if (fit.shape <= -0.5) return Eigen::Vector3d::Constant(kNan);
   const Eigen::Matrix3d information = observed_information(samples, fit);
   const Eigen::LLT<Eigen::Matrix3d> factor(information);
   if (!information.allFinite() || factor.info() != Eigen::Success)
-    return Eigen::Vector3d::Constant(kNaN);
+    return Eigen::Vector3d::Constant(kNan);
   return factor.solve(Eigen::Matrix3d::Identity()).diagonal().cwiseSqrt();
 }
 

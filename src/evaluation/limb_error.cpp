@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "base/numbers.hpp"
 #include "evaluation/procrustes.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/evaluation/joint_error.hpp"
@@ -54,7 +55,6 @@ LimbError limb_error(const MatrixD& truth, const MatrixD& regenerated) {
     throw ShapeError(fmt::format("cannot compare limbs of {}x{} and {}x{}: frames x {} are needed",
                                  truth.rows(), truth.cols(), regenerated.rows(), regenerated.cols(),
                                  columns));
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   if (truth.hasNaN() || regenerated.hasNaN()) return {kNan, kNan, kNan};
   const MatrixD target = relative_to_hips(truth);
   MatrixD source = relative_to_hips(regenerated);

@@ -3,14 +3,13 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <limits>
 
+#include "base/numbers.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
 
-constexpr double kNoCorrelation = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRounding = 1e-9;
 
 template <typename Derived>
@@ -43,9 +42,8 @@ double pearson(const Eigen::Ref<const Eigen::VectorXd>& x,
                const Eigen::Ref<const Eigen::VectorXd>& y) {
   if (x.size() != y.size() || x.size() == 0)
     throw ShapeError(fmt::format("cannot correlate {} with {} values", x.size(), y.size()));
-  if (!std::isfinite(x.sum()) || !std::isfinite(y.sum())) return kNoCorrelation;
-  if (!changes(x, x.cwiseAbs().maxCoeff()) || !changes(y, y.cwiseAbs().maxCoeff()))
-    return kNoCorrelation;
+  if (!std::isfinite(x.sum()) || !std::isfinite(y.sum())) return kNan;
+  if (!changes(x, x.cwiseAbs().maxCoeff()) || !changes(y, y.cwiseAbs().maxCoeff())) return kNan;
   return correlation(x, y);
 }
 
@@ -56,7 +54,7 @@ double pearson_flat(const MatrixD& truth, const MatrixD& regenerated) {
 
 double pearson_per_channel(const MatrixD& truth, const MatrixD& regenerated) {
   check_same_shape(truth, regenerated);
-  if (!truth.allFinite() || !regenerated.allFinite()) return kNoCorrelation;
+  if (!truth.allFinite() || !regenerated.allFinite()) return kNan;
   const double truth_magnitude = truth.cwiseAbs().maxCoeff();
   const double regenerated_magnitude = regenerated.cwiseAbs().maxCoeff();
   double sum = 0;
@@ -67,7 +65,7 @@ double pearson_per_channel(const MatrixD& truth, const MatrixD& regenerated) {
     if (changes(regenerated.col(column), regenerated_magnitude))
       sum += correlation(truth.col(column), regenerated.col(column));
   }
-  return counted ? sum / counted : kNoCorrelation;
+  return counted ? sum / counted : kNan;
 }
 
 }  // namespace mcdbn

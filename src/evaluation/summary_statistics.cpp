@@ -7,14 +7,12 @@
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
+#include "base/numbers.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
-
-constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 double mode_of(const Histogram& histogram) {
   const auto fullest = std::max_element(histogram.counts.begin(), histogram.counts.end());
@@ -52,15 +50,14 @@ SummaryStatistics summarize(const std::vector<double>& values, int bins) {
   summary.count = static_cast<int>(sorted.size());
   summary.left_out = static_cast<int>(values.size() - sorted.size());
   if (sorted.empty()) {
-    summary.mean = summary.standard_deviation = summary.mode = kNoNumber;
-    summary.median = summary.minimum = summary.maximum = kNoNumber;
+    summary.mean = summary.standard_deviation = summary.mode = kNan;
+    summary.median = summary.minimum = summary.maximum = kNan;
     return summary;
   }
   const Eigen::Map<const Eigen::ArrayXd> x(sorted.data(), summary.count);
   summary.mean = x.mean();
   summary.standard_deviation =
-      summary.count > 1 ? std::sqrt((x - summary.mean).square().sum() / (summary.count - 1))
-                        : kNoNumber;
+      summary.count > 1 ? std::sqrt((x - summary.mean).square().sum() / (summary.count - 1)) : kNan;
   summary.minimum = sorted.front();
   summary.maximum = sorted.back();
   summary.histogram = histogram_of(sorted, summary.minimum, summary.maximum, bins);

@@ -5,17 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/json_place.hpp"
+#include "base/numbers.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kRootFeatures = 3;  ///< x and y of the root, log size
 
 /// Pixels of the joints in use, the root last; NaN where missing. Each [frames x joints + 1].

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "base/numbers.hpp"
 
 namespace mcdbn {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kLeastTurn_rad = 0.1 * kDegree;
+constexpr double kLeastTurn_rad = 0.1 * kRadiansPerDegree;
 constexpr double kLeastAcceleration_m_s2 = 1e-3;
 
 /// Variance of each feature before standardizing, summed over some of them.
@@ -31,7 +31,8 @@ Eigen::VectorXd variance_of(const PosePrior& prior, const Standardizer& scale, i
 MatrixD turn_deviations_rad(const PosePrior& prior, const Modalities& features,
                             const TrackFitSettings& settings) {
   const auto turns = static_cast<Eigen::Index>(features.pose_features.joints().size());
-  MatrixD result = MatrixD::Constant(prior.mean.rows(), turns, settings.turn_deg * kDegree);
+  MatrixD result =
+      MatrixD::Constant(prior.mean.rows(), turns, settings.turn_deg * kRadiansPerDegree);
   if (!prior.has_deviation()) return result;
   for (Eigen::Index turn = 0; turn < turns; ++turn)
     result.col(turn) =

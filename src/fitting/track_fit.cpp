@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/numbers.hpp"
 #include "camera/track_rays.hpp"
 #include "fitting/camera_angles.hpp"
 #include "fitting/clip_evidence.hpp"
@@ -60,8 +61,6 @@ void check(const PosePrior& prior, const Modalities& features, const Track2d& tr
   }
 }
 
-constexpr double kDegree = EIGEN_PI / 180;
-
 /// What is not known of the camera, where the network sees and answers in a level view: nothing
 /// tells pitch and roll where it does not.
 std::optional<CameraDoubt> doubt_of(const KnownOfClip& known, const Modalities& modalities,
@@ -73,7 +72,7 @@ std::optional<CameraDoubt> doubt_of(const KnownOfClip& known, const Modalities& 
                         up_now = assumed.camera_from_world.col(1);
   CameraDoubt doubt;
   doubt.usual = {pitch_rad(up) - pitch_rad(up_now), roll_rad(up) - roll_rad(up_now),
-                 settings.pitch_deg * kDegree, settings.roll_deg * kDegree};
+                 settings.pitch_deg * kRadiansPerDegree, settings.roll_deg * kRadiansPerDegree};
   doubt.pitch_known = known.view.pitch_deg.has_value();
   doubt.roll_known = known.view.roll_deg.has_value();
   doubt.focal_known = known.view.field_of_view_deg.has_value();
@@ -124,7 +123,8 @@ class ClipFit {
       evidence_->find_planted(motion());
       point_.ground_m = evidence_->ground(point_);
       if (clip.camera)
-        clip.camera->balanced = evidence_->balanced(upright(), settings.balance_deg * kDegree);
+        clip.camera->balanced =
+            evidence_->balanced(upright(), settings.balance_deg * kRadiansPerDegree);
       rays_ = noise.rays();
       point_ = most_likely(clip, rays_, settings, std::move(point_));
       take(point_);
@@ -198,8 +198,8 @@ class ClipFit {
   /// How it looks, as it was found, where it was not known.
   AssumedView view() const {
     const Eigen::Vector3d up = camera_.camera_from_world.col(1);
-    return {pitch_rad(up) / kDegree, roll_rad(up) / kDegree,
-            2 * std::atan(camera_.height_px / (2 * camera_.fy_px)) / kDegree};
+    return {pitch_rad(up) / kRadiansPerDegree, roll_rad(up) / kRadiansPerDegree,
+            2 * std::atan(camera_.height_px / (2 * camera_.fy_px)) / kRadiansPerDegree};
   }
 
  private:

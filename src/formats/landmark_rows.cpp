@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
+#include "base/numbers.hpp"
 #include "base/shown.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/csv_text.hpp"
@@ -135,7 +135,6 @@ class RowsReader {
     const long long person = header_.person ? whole(line, *header_.person) : 0;
     SeenPerson& body = frames_[whole(line, *header_.frame)][person];
     const std::size_t joints = numbered_ ? joints_ : names_.size();
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     if (body.x_px.empty()) {
       body.x_px.assign(joints, kNan);
       body.y_px.assign(joints, kNan);

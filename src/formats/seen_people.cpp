@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "base/numbers.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
 
 namespace mcdbn {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 SeenPeople people_of_set(std::string_view set) {
   SeenPeople people;

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string_view>
 
 #include "base/interruption.hpp"
+#include "base/numbers.hpp"
 #include "base/shown.hpp"
 #include "base/text_file.hpp"
 #include "formats/csv_text.hpp"
@@ -23,7 +23,6 @@ namespace mcdbn {
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Where a column's numbers go.
 enum class Quantity { time, x, y, confidence };
 struct Column {

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <set>
 
+#include "base/numbers.hpp"
 #include "base/shown.hpp"
 #include "base/text_file.hpp"
 #include "formats/csv_table.hpp"
@@ -116,7 +116,6 @@ class DeepLabCutReader {
   }
 
   void read_frame(const CsvTable::Line& line, long long number) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     const std::vector<double> missing(parts_.size(), kNan), ones(parts_.size(), 1.0);
     std::vector<SeenPerson> frame;
     for (std::size_t i = 0; i < individuals_.size(); ++i)

@@ -4,12 +4,13 @@
 #include <limits>
 #include <numbers>
 
+#include "base/numbers.hpp"
+
 #include "mcdbn/motion/skeleton.hpp"
 
 namespace mcdbn {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 /// Below this cosine of the middle angle only the sum or difference of the outer two is known.
 constexpr double kGimbalCosine = 1e-6;
 
@@ -140,7 +141,7 @@ Eigen::Matrix3d local_rotation(const Joint& joint, const double* joint_channels)
   for (std::size_t i = 0; i < joint.channels.size(); ++i) {
     const Channel channel = joint.channels[i];
     if (is_rotation(channel)) {
-      rotation *= axis_rotation(axis_of(channel), joint_channels[i] * kDegree);
+      rotation *= axis_rotation(axis_of(channel), joint_channels[i] * kRadiansPerDegree);
     }
   }
   return rotation;
@@ -152,7 +153,7 @@ void set_local_rotation(const Joint& joint, const Eigen::Matrix3d& parent_from_j
   if (rotations.axes.empty()) return;
   std::vector<double> angles_rad(rotations.axes.size(), 0.0);
   for (std::size_t n = 0; previous && n < angles_rad.size(); ++n) {
-    angles_rad[n] = previous[rotations.channel_indices[n]] * kDegree;
+    angles_rad[n] = previous[rotations.channel_indices[n]] * kRadiansPerDegree;
   }
   if (has_three_distinct(rotations.axes)) {
     const Triple before = {angles_rad[0], angles_rad[1], angles_rad[2]};
@@ -163,7 +164,7 @@ void set_local_rotation(const Joint& joint, const Eigen::Matrix3d& parent_from_j
     angles_rad = nearest_angles(parent_from_joint, rotations.axes, angles_rad);
   }
   for (std::size_t n = 0; n < angles_rad.size(); ++n) {
-    joint_channels[rotations.channel_indices[n]] = angles_rad[n] / kDegree;
+    joint_channels[rotations.channel_indices[n]] = angles_rad[n] / kRadiansPerDegree;
   }
 }
 
