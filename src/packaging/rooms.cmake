@@ -1,10 +1,19 @@
-# mcdbn_room(NAME [SEPARATE] [USES ROOM…] [LIBRARIES TARGET…]): the sources of src/NAME as the library
-# mcdbn_NAME. SEPARATE: several of them define the same names for themselves (each reader its `read`), so
-# that scripts/build does not join them (CMAKE_UNITY_BUILD).
+# mcdbn_separate(FILES…): sources, as patterns below this folder, that define the same names for themselves as
+# others do (each reader its `read`), so that scripts/build does not join them (CMAKE_UNITY_BUILD).
+function(mcdbn_separate)
+  if(ARGN)
+    list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+    file(GLOB separate ${ARGN})
+    set_source_files_properties(${separate} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
+endfunction()
+
+# mcdbn_room(NAME [SEPARATE FILES…] [USES ROOM…] [LIBRARIES TARGET…]): the sources of src/NAME as the library
+# mcdbn_NAME. SEPARATE: as mcdbn_separate.
 # A room may include the headers of the rooms that it uses and of all behind those, and links them;
 # `scripts/lint rooms` reads these declarations and fails on any other include.
 function(mcdbn_room name)
-  cmake_parse_arguments(ROOM "SEPARATE" "" "USES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "SEPARATE;USES;LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS src/${name}/*.cpp src/${name}/*/*.cpp)
   list(TRANSFORM ROOM_USES PREPEND mcdbn_)
   add_library(mcdbn_${name} STATIC ${sources})
@@ -14,9 +23,8 @@ function(mcdbn_room name)
                                              nlohmann_json::nlohmann_json fmt::fmt spdlog::spdlog
                                       PRIVATE mcdbn_warnings)
   set_target_properties(mcdbn_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  if(ROOM_SEPARATE)
-    set_target_properties(mcdbn_${name} PROPERTIES UNITY_BUILD OFF)
-  endif()
+  list(TRANSFORM ROOM_SEPARATE PREPEND src/${name}/)
+  mcdbn_separate(${ROOM_SEPARATE})
   mcdbn_precompile(mcdbn_${name} mcdbn_base)
   set(MCDBN_ROOMS ${MCDBN_ROOMS} ${name} PARENT_SCOPE)
 endfunction()

@@ -7,6 +7,8 @@
 #include "camera/keypoint_pairs.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace detector_noise_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -320,3 +322,5 @@ TEST_CASE("a track's own noise is measured again: its size, its gaps and its con
   CHECK(found.confidence_spread == doctest::Approx(0.05).epsilon(0.1));
   CHECK_THROWS_AS(measured_noise(standing(5), kHeight_px), InputError);
 }
+
+}  // namespace detector_noise_test

@@ -8,6 +8,8 @@
 #include "camera/role_body.hpp"
 #include "motion/body_size.hpp"
 
+namespace detector_track_test {
+
 using namespace mcdbn;
 using enum JointRole;
 
@@ -146,3 +148,5 @@ TEST_CASE("a detector loses more of what the body hides from this camera") {
   CHECK(same(track.confidence, again.confidence));
   CHECK(!same(track.x_px, other.x_px));
 }
+
+}  // namespace detector_track_test

@@ -8,6 +8,8 @@
 #include "camera/track_rays.hpp"
 #include "mcdbn/camera/level_view.hpp"
 
+namespace fisheye_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -134,3 +136,5 @@ TEST_CASE("fisheye: a level pinhole sees what the fisheye saw") {
     CHECK(turned.y_px(0, i) == doctest::Approx(expected(0, 2 * i + 1)).epsilon(1e-7));
   }
 }
+
+}  // namespace fisheye_test

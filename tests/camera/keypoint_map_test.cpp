@@ -10,6 +10,8 @@
 #include "camera/role_body.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace keypoint_map_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -164,3 +166,5 @@ TEST_CASE("keypoint map: too little of a body is said to be too little") {
                                 shorter, scene.camera),
                   ShapeError);
 }
+
+}  // namespace keypoint_map_test

@@ -9,6 +9,8 @@
 #include "camera/odd_camera.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace level_view_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -153,3 +155,5 @@ TEST_CASE("a camera in metres meets a body in file units, one without a unit is 
         doctest::Approx(2 * converted.translation.z()));
   CHECK(per_metre == doctest::Approx(10).epsilon(0.2));
 }
+
+}  // namespace level_view_test

@@ -4,6 +4,8 @@
 
 #include <limits>
 
+namespace occlusion_test {
+
 using namespace mcdbn;
 using enum JointRole;
 
@@ -96,3 +98,5 @@ TEST_CASE("a limb that is not there hides nothing") {
       .setConstant(std::numeric_limits<double>::quiet_NaN());
   CHECK_FALSE(hides(body, right_knee, 90));
 }
+
+}  // namespace occlusion_test

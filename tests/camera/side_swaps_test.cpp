@@ -13,6 +13,8 @@
 #include "motion/resample.hpp"
 #include "shared_data.hpp"
 
+namespace side_swaps_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -151,3 +153,5 @@ TEST_CASE("side swaps: in recorded walks and runs, seen from all around by a noi
   CHECK(wrong <= 0.03 * planted);
   CHECK(views == 8);
 }
+
+}  // namespace side_swaps_test

@@ -9,6 +9,8 @@
 #include "mcdbn/camera/camera.hpp"
 #include "motion/synthetic_motion.hpp"
 
+namespace track_noise_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -119,3 +121,5 @@ TEST_CASE("damage follows the seed, and none changes nothing") {
   const Track2d noise = damaged({2, 0, 0}, 1), both = damaged({2, 0.1, 0}, 1);
   CHECK((both.x_px.array().isNaN() || both.x_px.array() == noise.x_px.array()).all());
 }
+
+}  // namespace track_noise_test

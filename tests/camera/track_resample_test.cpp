@@ -7,6 +7,8 @@
 
 #include "mcdbn/base/errors.hpp"
 
+namespace track_resample_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -152,3 +154,5 @@ TEST_CASE("the same rate, no frames, and rates that are none") {
     CHECK_THROWS_AS(resample_track(track, 30), ConfigError);
   }
 }
+
+}  // namespace track_resample_test

@@ -7,6 +7,8 @@
 
 #include "camera/track_noise.hpp"
 
+namespace track_summary_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -67,3 +69,5 @@ TEST_CASE("track summary: a track in which nobody is seen") {
   CHECK(summary.longest_gap_frames == 0);
   CHECK(summary.height_px == 0);
 }
+
+}  // namespace track_summary_test

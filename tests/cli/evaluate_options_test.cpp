@@ -12,6 +12,8 @@
 #include "option_table.hpp"
 #include "tiny_pipeline.hpp"
 
+namespace evaluate_options_test {
+
 using namespace mcdbn::test;
 using nlohmann::json;
 namespace fs = std::filesystem;
@@ -352,3 +354,5 @@ TEST_CASE("evaluate: without fine-tuning there were no views, and the MLP learns
   CHECK(by_program(call, "--fit none").at("baselines") ==
         by_library(call, Views{}).at("baselines"));
 }
+
+}  // namespace evaluate_options_test

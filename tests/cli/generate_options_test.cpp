@@ -12,6 +12,8 @@
 #include "option_table.hpp"
 #include "tiny_pipeline.hpp"
 
+namespace generate_options_test {
+
 using namespace mcdbn::test;
 namespace fs = std::filesystem;
 
@@ -154,3 +156,5 @@ TEST_CASE("generate: a seed clip that is too short is named") {
   CHECK(result.standard_error.find("give a longer one") != std::string::npos);
   CHECK(!fs::exists(folder / "out.bvh"));
 }
+
+}  // namespace generate_options_test

@@ -22,8 +22,8 @@ struct Stopped {
 Stopped stopped(const std::string& arguments, double after_s, const std::string& signals = "INT") {
   const ScratchFolder folder;
   // A shell that is no terminal's starts programs deaf to Ctrl-C until they listen by themselves.
-  const fs::path script = folder.write(
-      "stop.py", fmt::format(R"py(
+  const fs::path script =
+      folder.write("stop.py", fmt::format(R"py(
 import os, shlex, signal, subprocess, sys, time
 process = subprocess.Popen(['{0}'] + shlex.split("""{1}"""), stdout=subprocess.DEVNULL,
                            stderr=subprocess.DEVNULL)
@@ -46,7 +46,7 @@ used = os.wait4(process.pid, 0)
 print(used[2].ru_utime + used[2].ru_stime - before_s)
 sys.exit(os.waitstatus_to_exitcode(used[1]) % 256)
 )py",
-                             MCDBN_CLI, arguments, after_s, signals));
+                                          MCDBN_CLI, arguments, after_s, signals));
   const CliResult result = run_program("/usr/bin/python3", fmt::format("'{}'", script.string()));
   CAPTURE(result.standard_error);
   REQUIRE(!result.standard_output.empty());

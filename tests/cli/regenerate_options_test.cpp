@@ -22,6 +22,8 @@
 #include "option_table.hpp"
 #include "tiny_pipeline.hpp"
 
+namespace regenerate_options_test {
+
 using namespace mcdbn::test;
 namespace fs = std::filesystem;
 
@@ -403,3 +405,5 @@ TEST_CASE("regenerate --to track: 2D from a clip, as the library makes it") {
   CHECK(no_clip.exit_code == 3);
   CHECK(no_clip.standard_error.find("seen.csv") != std::string::npos);
 }
+
+}  // namespace regenerate_options_test

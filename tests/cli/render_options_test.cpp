@@ -13,6 +13,8 @@
 #include "option_table.hpp"
 #include "run_cli.hpp"
 
+namespace render_options_test {
+
 using namespace mcdbn::test;
 namespace fs = std::filesystem;
 
@@ -144,3 +146,5 @@ TEST_CASE("render: every option changes what its help says") {
           CHECK(run_cli(call + " --quiet").standard_error.find("2 clips") == std::string::npos);
         }}});
 }
+
+}  // namespace render_options_test

@@ -7,6 +7,8 @@
 #include "comparison/multimodal_dbm.hpp"
 #include "comparison/twin_gaussian_processes.hpp"
 
+namespace baseline_settings_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -103,3 +105,5 @@ TEST_CASE("baselines' settings: what is out of range is refused by its name") {
     check_refused<TwinGaussianProcessSettings>(name, 0, "above 0");
   check_accepted<TwinGaussianProcessSettings>("steps", 0);
 }
+
+}  // namespace baseline_settings_test

@@ -17,6 +17,8 @@
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace bimodal_autoencoder_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -257,3 +259,5 @@ TEST_CASE("bimodal_autoencoder tells the pose of another clip, far better than t
     CHECK(same.predict(other.tracks[0]) == baseline.predict(other.tracks[0]));
   });
 }
+
+}  // namespace bimodal_autoencoder_test

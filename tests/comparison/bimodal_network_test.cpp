@@ -8,6 +8,8 @@
 #include "comparison/clips.hpp"
 #include "device/every_device.hpp"
 
+namespace bimodal_network_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -85,3 +87,5 @@ TEST_CASE("bimodal network: the reference's gradient is that of finite differenc
       check(reference.layers[i].b.data()[k], gradient[i].b.data()[k]);
   }
 }
+
+}  // namespace bimodal_network_test

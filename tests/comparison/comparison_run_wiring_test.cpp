@@ -14,6 +14,8 @@
 #include "mcdbn/formats/bvh.hpp"
 #include "motion_model/clip_scene.hpp"
 
+namespace comparison_run_wiring_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -387,3 +389,5 @@ TEST_CASE("training clips that are gone matter to the baselines alone; a run say
     }
   });
 }
+
+}  // namespace comparison_run_wiring_test

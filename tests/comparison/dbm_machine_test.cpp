@@ -10,6 +10,8 @@
 #include "comparison/clips.hpp"
 #include "device/every_device.hpp"
 
+namespace dbm_machine_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -309,3 +311,5 @@ TEST_CASE("multimodal DBM: chains reach the distribution that enumeration gives"
     CHECK(std::abs(together_got - together / all) < 4 * 0.5 / std::sqrt(8000));
   });
 }
+
+}  // namespace dbm_machine_test

@@ -10,6 +10,8 @@
 #include "mcdbn/camera/side_swaps.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 
+namespace detector_run_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -135,3 +137,5 @@ TEST_CASE(
     }
   });
 }
+
+}  // namespace detector_run_test

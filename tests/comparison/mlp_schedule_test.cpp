@@ -11,6 +11,8 @@
 #include "device/every_device.hpp"
 #include "mcdbn/base/random.hpp"
 
+namespace mlp_schedule_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -208,3 +210,5 @@ TEST_CASE("mlp_window: what its settings are unless they are given, and for many
   CHECK(views.weight_decay == 1.0);
   CHECK(views.seed == 1);
 }
+
+}  // namespace mlp_schedule_test

@@ -8,6 +8,8 @@
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace mlp_window_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -115,3 +117,5 @@ TEST_CASE("mlp_window: missing joints, short clips and misuse") {
     CHECK(mlp.predict(MatrixF(0, 3)).rows() == 0);
   });
 }
+
+}  // namespace mlp_window_test

@@ -13,6 +13,8 @@
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace multimodal_dbm_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -265,3 +267,5 @@ TEST_CASE("multimodal_dbm tells the pose of another clip, far better than the me
     CHECK_THROWS_AS(wild.fit(tracks, poses), Error);
   });
 }
+
+}  // namespace multimodal_dbm_test

@@ -9,6 +9,8 @@
 #include "motion/body_size.hpp"
 #include "motion_model/clip_scene.hpp"
 
+namespace report_clips_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -235,3 +237,5 @@ TEST_CASE("clips are put under actions by their folders, or all together; names 
     }
   });
 }
+
+}  // namespace report_clips_test

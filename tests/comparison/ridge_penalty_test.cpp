@@ -11,6 +11,8 @@
 #include "comparison/clips.hpp"
 #include "comparison/ridge_window.hpp"
 
+namespace ridge_penalty_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -128,3 +130,5 @@ TEST_CASE("ridge_window's penalty: fewer than five clips are cut into five piece
     CHECK(baseline.penalty() == penalty_by_hand(folds));
   }
 }
+
+}  // namespace ridge_penalty_test

@@ -10,6 +10,8 @@
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace sweep_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using nlohmann::ordered_json;
@@ -166,3 +168,5 @@ TEST_CASE("sweep: who watches may stop it, and no line says that a configuration
     CHECK(!std::filesystem::exists(folder / "stopped/sweep.jsonl"));
   });
 }
+
+}  // namespace sweep_test

@@ -7,6 +7,8 @@
 #include "comparison/clips.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace track_window_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -38,3 +40,5 @@ TEST_CASE("window_pairs: all frames of all clips, windows within each") {
   CHECK(pairs.poses.bottomRows(7) == poses[2]);
   CHECK_THROWS_AS(window_pairs(tracks, {poses[0]}), ShapeError);
 }
+
+}  // namespace track_window_test

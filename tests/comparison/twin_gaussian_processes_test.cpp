@@ -11,6 +11,8 @@
 #include "comparison/track_window.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace twin_gaussian_processes_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using Eigen::VectorXd;
@@ -195,3 +197,5 @@ TEST_CASE("twin_gaussian_process: fewer frames than neighbours, missing joints a
   bad.pose_noise = 0;
   CHECK_THROWS_AS(TwinGaussianProcesses{bad}, ConfigError);
 }
+
+}  // namespace twin_gaussian_processes_test

@@ -7,6 +7,8 @@
 #include "motion/body_size.hpp"
 #include "motion/resample.hpp"
 
+namespace augmentation_test {
+
 using namespace mcdbn;
 using test::nothing;
 
@@ -111,3 +113,5 @@ TEST_CASE("bones of both sides change alike") {
   CHECK(largest_difference(view.motion.channels.leftCols(3),
                            size * unchanged.channels.leftCols(3)) < 1e-9);
 }
+
+}  // namespace augmentation_test

@@ -13,6 +13,8 @@
 #include "motion/mirror.hpp"
 #include "motion/resample.hpp"
 
+namespace augmented_view_settings_test {
+
 using namespace mcdbn;
 using test::nothing;
 
@@ -254,3 +256,5 @@ TEST_CASE("each joint of a view is held otherwise by one small turn throughout t
   }
   CHECK(turned > 10);
 }
+
+}  // namespace augmented_view_settings_test

@@ -7,6 +7,8 @@
 #include "corpus/training_files.hpp"
 #include "mcdbn/corpus/clip.hpp"
 
+namespace augmented_views_contents_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -154,3 +156,5 @@ TEST_CASE("people are one person within a thousandth of every bone, and others b
   CHECK(people.number_of(longer) == 3);
   CHECK(people.number_of(body) == 0);
 }
+
+}  // namespace augmented_views_contents_test

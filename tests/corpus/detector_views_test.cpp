@@ -10,6 +10,8 @@
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"
 
+namespace detector_views_test {
+
 using namespace mcdbn;
 using test::nothing;
 
@@ -136,3 +138,5 @@ TEST_CASE("detector views: no limb is hidden where all is to be in sight, errors
     CHECK(distances_px(scaling).back() > 1);
   }
 }
+
+}  // namespace detector_views_test

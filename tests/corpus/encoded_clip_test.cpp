@@ -7,6 +7,8 @@
 #include "mcdbn/formats/bvh.hpp"
 #include "motion/synthetic_motion.hpp"
 
+namespace encoded_clip_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -101,3 +103,5 @@ TEST_CASE("a clip's leading calibration pose is dropped unless it is to be kept"
   CHECK(encode_clip(file, modalities, {}).motion.frames() == 39);
   CHECK_THROWS_AS(encode_clip(folder / "missing.bvh", modalities, {}), InputError);
 }
+
+}  // namespace encoded_clip_test

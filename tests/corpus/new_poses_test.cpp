@@ -10,6 +10,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "motion/synthetic_motion.hpp"
 
+namespace new_poses_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -258,3 +260,5 @@ TEST_CASE("new poses are of the humanoid alone; a piece goes back where its clip
   CHECK(piece.local(18, chest).isApprox(piece.local(0, chest)));
   CHECK(piece.local(9, chest).isApprox(HumanoidPoses(clips[0].motion).local(9, chest)));
 }
+
+}  // namespace new_poses_test

@@ -7,6 +7,8 @@
 #include "corpus/no_augmentation.hpp"
 #include "mcdbn/corpus/training_set.hpp"
 
+namespace new_poses_wiring_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -91,3 +93,5 @@ TEST_CASE("gravity's error: the image and the heights stay, what is taken for le
   }
   CHECK(std::sqrt(sum) == doctest::Approx(1.5).epsilon(0.15));
 }
+
+}  // namespace new_poses_wiring_test

@@ -12,6 +12,8 @@
 #include "mcdbn/corpus/clip.hpp"
 #include "motion/resample.hpp"
 
+namespace training_set_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -218,3 +220,5 @@ TEST_CASE("another seed, another scaling; no clips, no training set") {
   CHECK(mean != make_training_set(walks.files(), config, nullptr).modalities.pose_scale.mean());
   CHECK_THROWS_AS(make_training_set({}, config, nullptr), InputError);
 }
+
+}  // namespace training_set_test

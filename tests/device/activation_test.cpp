@@ -9,6 +9,8 @@
 #include "device/probe.hpp"
 #include "reference/units_reference.hpp"
 
+namespace activation_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -136,3 +138,5 @@ TEST_CASE("small: NaN stays NaN in exp and sigmoid, so that the divergence guard
       }
   });
 }
+
+}  // namespace activation_test

@@ -8,6 +8,8 @@
 #include "reference/product_reference.hpp"
 #include "reference/units_reference.hpp"
 
+namespace gemm_epilogue_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -301,3 +303,5 @@ TEST_CASE("small: bits equal the reference's unless |p - u| is within 8 ulp") {
     CHECK(bits.sum() < 0.6F * static_cast<float>(bits.size()));
   });
 }
+
+}  // namespace gemm_epilogue_test

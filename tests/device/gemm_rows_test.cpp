@@ -7,6 +7,8 @@
 #include "reference/error_bounds.hpp"
 #include "reference/product_reference.hpp"
 
+namespace gemm_rows_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::misfit;
@@ -195,3 +197,5 @@ TEST_CASE("small: rows past the end of a matrix or an index are refused") {
     CHECK_NOTHROW(Rows::strided(frames, 0, 3, 4, 2));
   });
 }
+
+}  // namespace gemm_rows_test

@@ -7,6 +7,8 @@
 #include "reference/error_bounds.hpp"
 #include "reference/product_reference.hpp"
 
+namespace gemm_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::misfit;
@@ -161,3 +163,5 @@ TEST_CASE("small: gemm counts A's columns exactly, whatever their padding") {
     CHECK_THROWS_AS(gemm(a, b, c), ShapeError);
   });
 }
+
+}  // namespace gemm_test

@@ -8,6 +8,8 @@
 #include "device/peak.hpp"
 #include "device/pointwise.hpp"
 
+namespace kernel_rates_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -100,3 +102,5 @@ TEST_CASE("peak: no product is far above it, however busy the machine is") {
     CHECK(2 * 2e-9 * kSize * kSize * kSize / times.kernels[0].seconds < 4 * gflops);
   });
 }
+
+}  // namespace kernel_rates_test

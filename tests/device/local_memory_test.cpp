@@ -7,6 +7,8 @@
 #include "device/launch.hpp"
 #include "device/probe.hpp"
 
+namespace local_memory_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -100,3 +102,5 @@ TEST_CASE(
     if (!is_pocl) CHECK(right);
   });
 }
+
+}  // namespace local_memory_test

@@ -10,6 +10,8 @@
 #include "reference/error_bounds.hpp"
 #include "reference/loss_error_bound.hpp"
 
+namespace losses_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -98,3 +100,5 @@ TEST_CASE("small: losses refuse other shapes, slots and batches than they were m
     CHECK_THROWS_AS(losses.add_squared_error(0, x, x, 1.0F), ShapeError);
   });
 }
+
+}  // namespace losses_test

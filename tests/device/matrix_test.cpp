@@ -5,6 +5,8 @@
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace matrix_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -49,3 +51,5 @@ TEST_CASE("small: a matrix takes only values of its shape, and refuses to pass 3
     CHECK_THROWS_AS(index.upload(device, {1, 2}), ShapeError);
   });
 }
+
+}  // namespace matrix_test

@@ -8,6 +8,8 @@
 #include "reference/update_error_bound.hpp"
 #include "reference/update_reference.hpp"
 
+namespace optimizer_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -321,3 +323,5 @@ TEST_CASE("small: a moving average refuses shapes that differ") {
     CHECK_THROWS_AS(average_update(x, Matrix(device, 5, 3), 0.5F), ShapeError);
   });
 }
+
+}  // namespace optimizer_test

@@ -5,6 +5,8 @@
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace parameters_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -109,3 +111,5 @@ TEST_CASE("small: parameters refuse what does not fit") {
     CHECK_THROWS_AS(parameters.all().part(parameters.all().columns(), 1, 16), ShapeError);
   });
 }
+
+}  // namespace parameters_test

@@ -9,6 +9,8 @@
 #include "device/probe.hpp"
 #include "mcdbn/base/random.hpp"
 
+namespace philox_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -204,3 +206,5 @@ TEST_CASE("normal numbers are Box-Muller's and have the moments of a normal dist
   CHECK(std::abs(squares / kCount - 1.0) < 5.0 * std::sqrt(2.0 / kCount));
   CHECK(std::abs(fourth / kCount - 3.0) < 5.0 * std::sqrt(96.0 / kCount));
 }
+
+}  // namespace philox_test

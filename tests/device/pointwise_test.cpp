@@ -7,6 +7,8 @@
 #include "reference/error_bounds.hpp"
 #include "reference/running_error.hpp"
 
+namespace pointwise_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -212,3 +214,5 @@ TEST_CASE("small: shapes that differ are refused") {
     CHECK_THROWS_AS(block_sum(Matrix(device, 7, 5), x), ShapeError);
   });
 }
+
+}  // namespace pointwise_test

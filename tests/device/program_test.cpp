@@ -17,6 +17,8 @@
 #include "device/scoped_variable.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace program_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -197,3 +199,5 @@ TEST_CASE("small: the embedded kernels are those of the source folder") {
   CHECK(compared >= 4);
   CHECK_THROWS_AS(kernel_source("absent.cl"), DeviceError);
 }
+
+}  // namespace program_test

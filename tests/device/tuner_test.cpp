@@ -11,6 +11,8 @@
 #include "device/median_time.hpp"
 #include "device/scoped_variable.hpp"
 
+namespace tuner_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -120,3 +122,5 @@ TEST_CASE("median time: that of a run, however long its samples are") {
     CHECK(runs_in(0) == 2);
   });
 }
+
+}  // namespace tuner_test

@@ -12,6 +12,8 @@
 #include "device/row_tile.hpp"
 #include "device/scoped_variable.hpp"
 
+namespace tuning_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 namespace fs = std::filesystem;
@@ -132,3 +134,5 @@ TEST_CASE("tuning: every candidate's products are the same bits as the default's
     device.set_tuning(usual);
   });
 }
+
+}  // namespace tuning_test

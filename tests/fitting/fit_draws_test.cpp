@@ -9,6 +9,8 @@
 #include "fitting/walk_scene.hpp"
 #include "motion/joint_uncertainty.hpp"
 
+namespace fit_draws_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -178,3 +180,5 @@ TEST_CASE("fit draws: without a camera they lie about the motion at the origin")
   // The mean of 20 draws, in each of 60 numbers that hang together.
   CHECK((off.array() / widths.array()).abs().maxCoeff() < 1);
 }
+
+}  // namespace fit_draws_test

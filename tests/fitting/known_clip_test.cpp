@@ -12,6 +12,8 @@
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"
 
+namespace known_clip_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -190,3 +192,5 @@ TEST_CASE("known of a clip: motion goes onto the skeleton that is given") {
     CHECK(std::abs(path_of(got, scene.root()).col(1).mean() - 1.25 * height) < 0.1);
   }
 }
+
+}  // namespace known_clip_test

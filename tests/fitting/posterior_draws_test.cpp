@@ -11,6 +11,8 @@
 #include "fitting/clip_windows.hpp"
 #include "fitting/slow_process.hpp"
 
+namespace posterior_draws_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -221,3 +223,5 @@ TEST_CASE("posterior draws: in a long clip frames of two windows deviate as othe
   CHECK(with_length(100) < -0.15);
   CHECK(with_length(370) < -0.15);
 }
+
+}  // namespace posterior_draws_test

@@ -12,6 +12,8 @@
 #include "motion/synthetic_motion.hpp"
 #include "shared_data.hpp"
 
+namespace root_trajectory_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -193,3 +195,5 @@ TEST_CASE("root trajectory: a real walk with 2 px of noise") {
   CHECK(rms(solve(scene, true) - scene.root) < 8 * millimetre);
   CHECK(rms(solve(scene, false) - scene.root) < 12 * millimetre);
 }
+
+}  // namespace root_trajectory_test

@@ -6,6 +6,8 @@
 #include "fitting/root_trajectory.hpp"
 #include "motion/synthetic_motion.hpp"
 
+namespace root_trajectory_weights_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -83,3 +85,5 @@ TEST_CASE("root trajectory: neither the file's unit nor the frame rate's changes
   // Only the bound on speed differs, which hardly counts.
   CHECK((fast.solve(4) - slow).cwiseAbs().maxCoeff() < 1e-2);
 }
+
+}  // namespace root_trajectory_weights_test

@@ -12,6 +12,8 @@
 #include "fitting/two_second_walk.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace track_fit_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -195,3 +197,5 @@ TEST_CASE("fit to track: a prior of another shape or with an impossible deviatio
   }
   CHECK_NOTHROW(fit(mean, {}));
 }
+
+}  // namespace track_fit_test

@@ -7,6 +7,8 @@
 
 #include "camera/track_noise.hpp"
 
+namespace track_smoothing_wiring_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -85,3 +87,5 @@ TEST_CASE("smoothing: what is missing stays missing and takes no part") {
   CHECK(a.y_px.col(1).tail(39) == b.y_px.col(1).tail(39));
   CHECK(a.x_px.col(0) == b.x_px.col(0));
 }
+
+}  // namespace track_smoothing_wiring_test

@@ -10,6 +10,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "shared_data.hpp"
 
+namespace bvh_test {
+
 using namespace mcdbn;
 namespace fs = std::filesystem;
 
@@ -278,3 +280,5 @@ TEST_CASE("randomly damaged files are read or refused, nothing else") {
   CHECK(accepted > 100);
   CHECK(refused > 1000);
 }
+
+}  // namespace bvh_test

@@ -16,6 +16,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/track_file.hpp"
 
+namespace track_mutation_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -85,3 +87,5 @@ TEST_CASE("damaged tracks: layouts that others write") {
     check_mutations(path, path, sample.format);
   }
 }
+
+}  // namespace track_mutation_test

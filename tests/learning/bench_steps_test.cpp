@@ -6,6 +6,8 @@
 
 #include "device/every_device.hpp"
 
+namespace bench_steps_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -45,3 +47,5 @@ TEST_CASE("bench steps: what a tuner looks at is a mini-batch of each kind of CR
     CHECK(layers == std::set<std::string>{"gaussian_crbm", "binary_crbm"});
   });
 }
+
+}  // namespace bench_steps_test

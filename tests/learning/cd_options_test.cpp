@@ -13,6 +13,8 @@
 #include "mcdbn/learning/greedy_schedule.hpp"
 #include "reference/cd_options_reference.hpp"
 
+namespace cd_options_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -335,3 +337,5 @@ TEST_CASE("the derivative of log p(v) by a deviation is the difference quotient"
           doctest::Approx((likelihood(up) - likelihood(down)) / 2e-5).epsilon(1e-7));
   }
 }
+
+}  // namespace cd_options_test

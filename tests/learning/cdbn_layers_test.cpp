@@ -5,6 +5,8 @@
 #include "learning/greedy_scene.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace cdbn_layers_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -97,3 +99,5 @@ TEST_CASE("the settings make every layer of a CDBN as wide and with as long a hi
                                                             {9, 9, 3, VisibleKind::binary},
                                                             {9, 9, 3, VisibleKind::binary}});
 }
+
+}  // namespace cdbn_layers_test

@@ -12,6 +12,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/learning/fine_tuning.hpp"
 
+namespace checkpoints_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -304,3 +306,5 @@ TEST_CASE("a checkpoint that cannot be written is a warning, and the training go
     CHECK(nowhere.warnings[0].find("No such file or directory") != std::string::npos);
   });
 }
+
+}  // namespace checkpoints_test

@@ -6,6 +6,8 @@
 #include "learning/within_bounds.hpp"
 #include "mcdbn/machines/sequences.hpp"
 
+namespace contrastive_divergence_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -220,3 +222,5 @@ TEST_CASE("small: momentum carries a CD step into the next one") {
     CHECK((without.W.cast<double>() - want.W.value).cwiseAbs().maxCoeff() > 1e-3);
   });
 }
+
+}  // namespace contrastive_divergence_test

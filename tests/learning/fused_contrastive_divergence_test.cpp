@@ -11,6 +11,8 @@
 #include "learning/within_bounds.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace fused_contrastive_divergence_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -301,3 +303,5 @@ TEST_CASE("CD refuses what it cannot do") {
     CHECK_THROWS_AS(step(Rows(frames, 5, 5), 1), ShapeError);
   });
 }
+
+}  // namespace fused_contrastive_divergence_test

@@ -8,6 +8,8 @@
 #include "learning/small_network.hpp"
 #include "reference/error_bounds.hpp"
 
+namespace fused_down_pass_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::kRoundoff;
@@ -197,3 +199,5 @@ TEST_CASE("small: every tile of the fused down-pass gives the same bits") {
     }
   });
 }
+
+}  // namespace fused_down_pass_test

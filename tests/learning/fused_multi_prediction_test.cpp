@@ -8,6 +8,8 @@
 #include "learning/within_bounds.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace fused_multi_prediction_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -189,3 +191,5 @@ TEST_CASE("multi-prediction refuses what it cannot do") {
     CHECK_THROWS_AS(step(Rows(track, 0, 5), Rows(pose, 0, 5)), ShapeError);
   });
 }
+
+}  // namespace fused_multi_prediction_test

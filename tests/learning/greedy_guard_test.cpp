@@ -10,6 +10,8 @@
 #include "learning/greedy_scene.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace greedy_guard_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -185,3 +187,5 @@ TEST_CASE("an MRBM whose loss grows is stopped and says what to lower") {
                    "; lower `mrbm.rate` (now 40) or `mrbm.initial-deviation` (now 0.4)"));
   });
 }
+
+}  // namespace greedy_guard_test

@@ -6,6 +6,8 @@
 
 #include "learning/greedy_scene.hpp"
 
+namespace greedy_report_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -235,3 +237,5 @@ TEST_CASE("greedy reports: an observer that throws ends the training there") {
                                            "pose.1 1", "pose.1 2"});
   });
 }
+
+}  // namespace greedy_report_test

@@ -7,6 +7,8 @@
 #include "learning/greedy_scene.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace greedy_schedule_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -217,3 +219,5 @@ TEST_CASE("greedy training refuses settings out of range and clips that are all 
     CHECK_NOTHROW(train_on_device(device, scene));
   });
 }
+
+}  // namespace greedy_schedule_test

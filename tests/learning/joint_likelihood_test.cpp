@@ -8,6 +8,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "reference/crbm_enumeration.hpp"
 
+namespace joint_likelihood_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -243,3 +245,5 @@ TEST_CASE("the joint likelihood's long chains follow the exact gradient of the w
     CHECK(exact.weights.cwiseAbs().maxCoeff() > 0.1);
   });
 }
+
+}  // namespace joint_likelihood_test

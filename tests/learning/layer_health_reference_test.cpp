@@ -6,6 +6,8 @@
 #include "learning/within_bounds.hpp"
 #include "mcdbn/learning/layer_health.hpp"
 
+namespace layer_health_reference_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -168,3 +170,5 @@ TEST_CASE("health windows: all there are where there are few, none where no clip
     CHECK(health_windows(sequences, 7).empty());
   });
 }
+
+}  // namespace layer_health_reference_test

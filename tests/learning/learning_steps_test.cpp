@@ -14,6 +14,8 @@
 #include "reference/units_reference.hpp"
 #include "reference/update_reference.hpp"
 
+namespace learning_steps_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -273,3 +275,5 @@ TEST_CASE("steps of multi-prediction, each by its own rule, are the double refer
     });
   }
 }
+
+}  // namespace learning_steps_test

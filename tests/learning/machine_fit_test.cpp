@@ -12,6 +12,8 @@
 #include "mcdbn/learning/greedy_schedule.hpp"
 #include "reference/crbm_enumeration.hpp"
 
+namespace machine_fit_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -152,3 +154,5 @@ TEST_CASE("fit: too short data and settings out of range are refused") {
     CHECK_THROWS_AS(fit_stack(device, data, kBinary, {{4, 0}}, settings), ConfigError);
   });
 }
+
+}  // namespace machine_fit_test

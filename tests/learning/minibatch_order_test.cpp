@@ -9,6 +9,8 @@
 #include "device/every_device.hpp"
 #include "learning/minibatch.hpp"
 
+namespace minibatch_order_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -162,3 +164,5 @@ TEST_CASE("mini-batches: whole ones only, and no more repetitions than it takes"
     }
   });
 }
+
+}  // namespace minibatch_order_test

@@ -8,6 +8,8 @@
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace minibatch_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -64,3 +66,5 @@ TEST_CASE("small: few windows come several times, each as often") {
     CHECK_THROWS_AS(MinibatchSchedule(device, {}, 100, 3), ShapeError);
   });
 }
+
+}  // namespace minibatch_test

@@ -19,6 +19,8 @@
 #include "mcdbn/machines/regeneration.hpp"
 #include "reference/finite_difference.hpp"
 
+namespace modalities_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -371,3 +373,5 @@ TEST_CASE("a lowest layer of binary units is learnt and fine-tuned: it predicts 
     CHECK(error_of(tuned) < 0.2F);  // a half everywhere has 0.25
   });
 }
+
+}  // namespace modalities_test

@@ -8,6 +8,8 @@
 #include "learning/perceptron_loss.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace mrbm_rules_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -82,3 +84,5 @@ TEST_CASE("the settings say which rule and which optimizer learn an MRBM") {
     }
   });
 }
+
+}  // namespace mrbm_rules_test

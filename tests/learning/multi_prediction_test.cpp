@@ -7,6 +7,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "reference/finite_difference.hpp"
 
+namespace multi_prediction_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -168,3 +170,5 @@ TEST_CASE("small: multi-prediction wants mini-batches of the size that it was ma
                     ShapeError);
   });
 }
+
+}  // namespace multi_prediction_test

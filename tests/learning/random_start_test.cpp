@@ -7,6 +7,8 @@
 #include "learning/small_network.hpp"
 #include "reference/unrolled_gradient.hpp"
 
+namespace random_start_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -108,3 +110,5 @@ TEST_CASE("another seed, another start") {
     CHECK(first.cdbns[0].layers[0].W.to_host() != second.cdbns[0].layers[0].W.to_host());
   });
 }
+
+}  // namespace random_start_test

@@ -8,6 +8,8 @@
 #include "learning/contrastive_divergence.hpp"
 #include "mcdbn/learning/settings.hpp"
 
+namespace settings_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -317,3 +319,5 @@ TEST_CASE("learning settings: a rule of contrastive divergence takes over every 
     CHECK(rule.fast_rate == 3);
   }
 }
+
+}  // namespace settings_test

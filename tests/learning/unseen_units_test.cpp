@@ -10,6 +10,8 @@
 #include "mcdbn/learning/fine_tuning.hpp"
 #include "mcdbn/learning/greedy_schedule.hpp"
 
+namespace unseen_units_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -363,3 +365,5 @@ TEST_CASE("what was seen has the clips' shape, and clips are zero elsewhere") {
   modalities[0].seen[0] = MatrixF::Ones(40, 3);
   CHECK_THROWS_AS(check(modalities), ShapeError);
 }
+
+}  // namespace unseen_units_test

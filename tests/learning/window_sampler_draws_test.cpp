@@ -7,6 +7,8 @@
 #include "learning/window_sampler.hpp"
 #include "reference/fine_tuning_reference.hpp"
 
+namespace window_sampler_draws_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -133,3 +135,5 @@ TEST_CASE("clips of one person are drawn as their frames, whatever the power") {
     CHECK(std::abs(first - 0.75 * both) < 5 * std::sqrt(both * 0.75 * 0.25));
   }
 }
+
+}  // namespace window_sampler_draws_test

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+namespace window_sampler_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -79,3 +81,5 @@ TEST_CASE("people of whom there is little are drawn as often as the power says")
     CHECK(std::abs(share_of_second(power) - want) < bound(want));
   }
 }
+
+}  // namespace window_sampler_test

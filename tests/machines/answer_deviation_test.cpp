@@ -6,6 +6,8 @@
 #include "mcdbn/base/random.hpp"
 #include "mcdbn/machines/answer_deviation.hpp"
 
+namespace answer_deviation_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -73,3 +75,5 @@ TEST_CASE("answer deviation: calibrated on others it is as large as their residu
   CHECK(ratios.square().mean() == doctest::Approx(1).epsilon(1e-3));
   CHECK_THROWS_AS(found.calibrate(theirs, MatrixF(1, 1)), ShapeError);
 }
+
+}  // namespace answer_deviation_test

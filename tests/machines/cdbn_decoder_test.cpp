@@ -9,6 +9,8 @@
 #include "reference/error_bounds.hpp"
 #include "reference/running_error.hpp"
 
+namespace cdbn_decoder_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -234,3 +236,5 @@ TEST_CASE("decoder: a temperature between 0 and 1 draws as the reference does") 
     }
   });
 }
+
+}  // namespace cdbn_decoder_test

@@ -10,6 +10,8 @@
 #include "reference/error_bounds.hpp"
 #include "reference/mrbm_chain_reference.hpp"
 
+namespace crbm_parameters_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -256,3 +258,5 @@ TEST_CASE("small: inference of the MRBM is so many steps from the modality that 
         }
   });
 }
+
+}  // namespace crbm_parameters_test

@@ -16,6 +16,8 @@
 #include "reference/running_error.hpp"
 #include "reference/units_reference.hpp"
 
+namespace energy_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -232,3 +234,5 @@ TEST_CASE("free energy: frames that do not fit are refused") {
                     ShapeError);
   });
 }
+
+}  // namespace energy_test

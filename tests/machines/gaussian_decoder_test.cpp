@@ -10,6 +10,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
 
+namespace gaussian_decoder_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -146,3 +148,5 @@ TEST_CASE("decoder: a code that does not fit, and a start without a history, are
     CHECK((all.row(kFrames - 1) - test.layers[0].visible_mean).cwiseAbs().maxCoeff() > 1e-3F);
   });
 }
+
+}  // namespace gaussian_decoder_test

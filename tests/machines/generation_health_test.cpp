@@ -6,6 +6,8 @@
 
 #include "base/random_matrix.hpp"
 
+namespace generation_health_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -62,3 +64,5 @@ TEST_CASE("generation health: deviations over all sequences, speed at the end of
   CHECK((health.deviation - centred / std::sqrt(1000.0)).cwiseAbs().maxCoeff() < 1e-12);
   CHECK(generation_health({}).deviation.size() == 0);
 }
+
+}  // namespace generation_health_test

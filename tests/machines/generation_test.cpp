@@ -11,6 +11,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
 
+namespace generation_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -251,3 +253,5 @@ TEST_CASE("generation: nothing asked for is nothing made, and what cannot be is 
     CHECK_THROWS_AS(run_freely(cdbn.layers[0], Matrix(device, 12, 4), 2, 2, options), ShapeError);
   });
 }
+
+}  // namespace generation_test

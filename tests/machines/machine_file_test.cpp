@@ -13,6 +13,8 @@
 #include "machines/random_crbm.hpp"
 #include "mcdbn/base/errors.hpp"
 
+namespace machine_file_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using nlohmann::json;
@@ -162,3 +164,5 @@ TEST_CASE("a machine's file that is not whole is refused, and the message says w
     CHECK_THROWS_AS(load_machine(device, folder / "absent.safetensors"), InputError);
   });
 }
+
+}  // namespace machine_file_test

@@ -7,6 +7,8 @@
 #include "machines/two_modalities.hpp"
 #include "reference/mrbm_chain_reference.hpp"
 
+namespace mrbm_chain_statistics_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -106,3 +108,5 @@ TEST_CASE("the sampled clamped chain's states are distributed as enumeration say
     });
   }
 }
+
+}  // namespace mrbm_chain_statistics_test

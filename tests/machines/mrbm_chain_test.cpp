@@ -14,6 +14,8 @@
 #include "reference/error_bounds.hpp"
 #include "reference/mrbm_chain_reference.hpp"
 
+namespace mrbm_chain_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -312,3 +314,5 @@ TEST_CASE("small: the clamped chain refuses what it cannot do") {
     CHECK(device.launch_count() == before);
   });
 }
+
+}  // namespace mrbm_chain_test

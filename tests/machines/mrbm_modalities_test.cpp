@@ -11,6 +11,8 @@
 #include "reference/mrbm_chain_reference.hpp"
 #include "reference/units_reference.hpp"
 
+namespace mrbm_modalities_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -218,3 +220,5 @@ TEST_CASE("an MRBM reconstructs by its means and draws what is not given as enum
     CHECK((back[1].to_host().cast<double>() - means).cwiseAbs().maxCoeff() < 1e-5);
   });
 }
+
+}  // namespace mrbm_modalities_test

@@ -11,6 +11,8 @@
 #include "mcdbn/machines/partition.hpp"
 #include "mcdbn/machines/sampling.hpp"
 
+namespace own_units_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -88,3 +90,5 @@ TEST_CASE("small: log Z is that of the machine's own units") {
           log_partition(machines.without.layers[0], settings, own).value);
   });
 }
+
+}  // namespace own_units_test

@@ -15,6 +15,8 @@
 #include "reference/finite_difference.hpp"
 #include "reference/running_error.hpp"
 
+namespace partition_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -233,3 +235,5 @@ TEST_CASE("log Z: settings and histories that do not fit are refused") {
     CHECK_THROWS_AS(log_partition(crbm, {.temperatures = 0}, RowVectorF::Zero(3)), ConfigError);
   });
 }
+
+}  // namespace partition_test

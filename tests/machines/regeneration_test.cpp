@@ -8,6 +8,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
 
+namespace regeneration_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::misfit;
@@ -254,3 +256,5 @@ TEST_CASE("a third modality whose weights are zero tells nothing; what nobody ha
     CHECK_THROWS_AS(regenerate(network, {{track, track}, {}, {third}}, 1), ShapeError);
   });
 }
+
+}  // namespace regeneration_test

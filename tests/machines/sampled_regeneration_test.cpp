@@ -9,6 +9,8 @@
 #include "mcdbn/machines/regeneration.hpp"
 #include "reference/error_bounds.hpp"
 
+namespace sampled_regeneration_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -186,3 +188,5 @@ TEST_CASE("regeneration: without a temperature the sampling rule says nothing") 
     CHECK(regenerate(machine, tracks(), options).empty());
   });
 }
+
+}  // namespace sampled_regeneration_test

@@ -18,6 +18,8 @@
 #include "reference/running_error.hpp"
 #include "reference/units_reference.hpp"
 
+namespace sampling_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -367,3 +369,5 @@ TEST_CASE("small: sampling refuses what does not fit") {
     CHECK_THROWS_AS(reconstruct(Cdbn{}, wide), ShapeError);
   });
 }
+
+}  // namespace sampling_test

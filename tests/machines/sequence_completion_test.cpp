@@ -10,6 +10,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "reference/units_reference.hpp"
 
+namespace sequence_completion_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -84,3 +86,5 @@ TEST_CASE("track completion is the mean field of the lowest layer, frame by fram
     }
   });
 }
+
+}  // namespace sequence_completion_test

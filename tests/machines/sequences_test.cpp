@@ -10,6 +10,8 @@
 #include "reference/error_bounds.hpp"
 #include "reference/running_error.hpp"
 
+namespace sequences_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
@@ -146,3 +148,5 @@ TEST_CASE("small: codes of codes count the frames that were valid before") {
     CHECK_THROWS_AS(Cdbn{}.up_pass(visible), ShapeError);
   });
 }
+
+}  // namespace sequences_test

@@ -8,6 +8,8 @@
 
 #include "mcdbn/base/errors.hpp"
 
+namespace joint_uncertainty_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -59,3 +61,5 @@ TEST_CASE("joint uncertainty: without draws nothing, and draws of the clip's sha
   shorter.channels.conservativeResize(1, Eigen::NoChange);
   CHECK_THROWS_AS(joint_uncertainty(bone(2, 5, 90), {shorter}), ShapeError);
 }
+
+}  // namespace joint_uncertainty_test

@@ -8,6 +8,8 @@
 #include "motion/body_size.hpp"
 #include "motion/synthetic_motion.hpp"
 
+namespace other_body_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -127,3 +129,5 @@ TEST_CASE("other body: the same seed makes the same person, no deviation the own
   CHECK(same.channels.isApprox(motion.channels, 1e-12));
   CHECK(same.skeleton.joints[3].offset.isApprox(motion.skeleton.joints[3].offset, 1e-12));
 }
+
+}  // namespace other_body_test

@@ -8,6 +8,8 @@
 #include "motion_model/clip_scene.hpp"
 #include "motion_model/sample_calibration.hpp"
 
+namespace calibration_reference_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -129,3 +131,5 @@ TEST_CASE("calibration looks at every so many clips once they are longer than te
     CHECK(scale_of(30, {0}) != scale_of(30, {0, 2}));
   });
 }
+
+}  // namespace calibration_reference_test

@@ -10,6 +10,8 @@
 #include "motion/resample.hpp"
 #include "motion_model/clip_scene.hpp"
 
+namespace clip_generation_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -138,3 +140,5 @@ TEST_CASE("generate_clip: every option comes to its use, and too short a seed is
     CHECK_THROWS_AS(generate_clip(model, stranger, options), InputError);
   });
 }
+
+}  // namespace clip_generation_test

@@ -9,6 +9,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 
+namespace clip_regeneration_test {
+
 using namespace mcdbn;
 
 namespace {
@@ -122,3 +124,5 @@ TEST_CASE("a joint that is never seen, without a camera and without a skeleton; 
       fill_gaps(scene.modalities, scene.features, scene.hidden, scene.placement(), truth),
       InputError);
 }
+
+}  // namespace clip_regeneration_test

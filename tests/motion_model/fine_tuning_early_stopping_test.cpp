@@ -5,6 +5,8 @@
 #include "mcdbn/motion_model/training_schedule.hpp"
 #include "motion_model/fine_tuning_case.hpp"
 
+namespace fine_tuning_early_stopping_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using namespace mcdbn::reference;
@@ -156,3 +158,5 @@ TEST_CASE("nobody is held out of fewer people than was asked for") {
     check_same_parameters(trained.network, want.averaged(), small.parameters);
   });
 }
+
+}  // namespace fine_tuning_early_stopping_test

@@ -4,6 +4,8 @@
 #include "mcdbn/motion_model/training_schedule.hpp"
 #include "motion_model/fine_tuning_case.hpp"
 
+namespace fine_tuning_schedule_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using namespace mcdbn::reference;
@@ -144,3 +146,5 @@ TEST_CASE("fine-tuning that blows up is stopped and says what to lower") {
     CHECK_THROWS_WITH(small.train(device), doctest::Contains("`fine-tuning.rate` (now 2)"));
   });
 }
+
+}  // namespace fine_tuning_schedule_test

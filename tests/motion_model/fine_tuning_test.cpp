@@ -18,6 +18,8 @@
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 
+namespace fine_tuning_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -197,3 +199,5 @@ TEST_CASE("greedy stages before fine-tuning go on from its own starting weights"
     CHECK(difference(start.cdbns[1].layers[0].W, alone.cdbns[1].layers[0].W) > 0.1);
   });
 }
+
+}  // namespace fine_tuning_test

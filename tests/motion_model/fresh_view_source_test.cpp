@@ -6,6 +6,8 @@
 #include "learning/small_network.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
 
+namespace fresh_view_source_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -107,3 +109,5 @@ TEST_CASE("of several people one is held out of them, and judges by the same vie
   CHECK(strangers.poses[3] == again.strangers()->poses[3]);
   CHECK(strangers.tracks[3] == again.strangers()->tracks[3]);
 }
+
+}  // namespace fresh_view_source_test

@@ -6,6 +6,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "motion/synthetic_motion.hpp"
 
+namespace modalities_json_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -50,3 +52,5 @@ TEST_CASE("modalities: JSON keeps the level view; a model that does not speak of
     CHECK_FALSE(modalities_from({json, "file"}).level_view);
   }
 }
+
+}  // namespace modalities_json_test

@@ -10,6 +10,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "motion_model/example_model.hpp"
 
+namespace model_damage_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using nlohmann::json;
@@ -298,3 +300,5 @@ TEST_CASE("a model's description of itself, every figure of it") {
   });
   CHECK_THROWS_AS(describe_model(folder / "missing"), InputError);
 }
+
+}  // namespace model_damage_test

@@ -7,6 +7,8 @@
 #include "features/small_figure.hpp"
 #include "machines/two_modalities.hpp"
 
+namespace model_file_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -65,3 +67,5 @@ TEST_CASE("a model comes back from its file as it was saved") {
     CHECK(model.early_stopping->loss == 0.25);
   });
 }
+
+}  // namespace model_file_test

@@ -9,6 +9,8 @@
 #include "mcdbn/formats/bvh.hpp"
 #include "motion_model/example_model.hpp"
 
+namespace model_round_trip_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -234,3 +236,5 @@ TEST_CASE("a training clip is known by its absolute path and by its bytes") {
   CHECK(identify_clip(std::filesystem::relative(one)).path == one.string());
   CHECK_THROWS_AS(identify_clip(folder / "missing.bvh"), InputError);
 }
+
+}  // namespace model_round_trip_test

@@ -16,6 +16,8 @@
 #include "motion/resample.hpp"
 #include "motion_model/clip_scene.hpp"
 
+namespace regenerate_clip_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -222,3 +224,5 @@ TEST_CASE("regenerate_clip: a level model answers alike to whatever tilt the cam
     CHECK(largest(joints(old, turned, tilted) - wanted) > 0.1 * height);
   });
 }
+
+}  // namespace regenerate_clip_test

@@ -9,6 +9,8 @@
 #include "motion/resample.hpp"
 #include "motion_model/clip_scene.hpp"
 
+namespace regenerate_track_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -83,3 +85,5 @@ TEST_CASE("regenerate_track: the network's answer to what training sees, in pixe
     CHECK_THROWS_AS(regenerate_track(model, lost, {}), InputError);
   });
 }
+
+}  // namespace regenerate_track_test

@@ -14,6 +14,8 @@
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "motion_model/example_model.hpp"
 
+namespace run_folder_test {
+
 using namespace mcdbn;
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -195,3 +197,5 @@ TEST_CASE(
                        (folder / "run").string()) != std::string::npos);
   });
 }
+
+}  // namespace run_folder_test

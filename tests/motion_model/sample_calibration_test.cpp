@@ -9,6 +9,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 
+namespace sample_calibration_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -114,3 +116,5 @@ TEST_CASE("calibration wants a pose for each track") {
         ShapeError);
   });
 }
+
+}  // namespace sample_calibration_test

@@ -13,6 +13,8 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 
+namespace seen_clip_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -165,3 +167,5 @@ TEST_CASE("seen clips: too little of a person is an error") {
   CHECK_THROWS_WITH_AS(scene.see(track), doctest::Contains("shows too little of the body"),
                        InputError);
 }
+
+}  // namespace seen_clip_test

@@ -5,6 +5,8 @@
 #include "base/scratch_folder.hpp"
 #include "base/settings_table.hpp"
 
+namespace settings_record_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 using nlohmann::json;
@@ -96,3 +98,5 @@ TEST_CASE("settings record: later settings override earlier ones, whole numbers 
   assign_settings(config, {{"fps", 25, ""}, {"hidden", 8, ""}, {"hidden", 9, ""}});
   CHECK(changed_by(config) == Values{{"fps", "25"}, {"hidden", "9"}});
 }
+
+}  // namespace settings_record_test

@@ -5,6 +5,8 @@
 
 #include "base/settings_table.hpp"
 
+namespace training_config_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -72,3 +74,5 @@ TEST_CASE("training config: fine-tuning's settings had other names") {
   CHECK(former_name("fine-tuning.positions") == "joint.places");
   CHECK(former_name("gaussian.rate").empty());
 }
+
+}  // namespace training_config_test

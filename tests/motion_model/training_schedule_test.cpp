@@ -14,6 +14,8 @@
 #include "mcdbn/learning/fine_tuning.hpp"
 #include "motion_model/pose_loss.hpp"
 
+namespace training_schedule_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -250,3 +252,5 @@ TEST_CASE("a run's seed reaches its views, its start, its greedy stages and its 
     CHECK_FALSE(same_network(trained.network, from(views, start, other, views, small.config)));
   });
 }
+
+}  // namespace training_schedule_test

@@ -4,6 +4,8 @@
 
 #include "features/small_figure.hpp"
 
+namespace training_sources_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -34,3 +36,5 @@ TEST_CASE(
   set.groups = {3, 4};
   CHECK(ClipSource(set).sequences().groups.back() == 4);
 }
+
+}  // namespace training_sources_test

@@ -14,6 +14,8 @@
 #include "mcdbn/motion_model/training_run.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
 
+namespace training_start_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -162,3 +164,5 @@ TEST_CASE("a run folder keeps the model that its training starts from, and the m
     CHECK_FALSE(start.started_from);
   });
 }
+
+}  // namespace training_start_test

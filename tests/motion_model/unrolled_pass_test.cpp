@@ -14,6 +14,8 @@
 #include "reference/finite_difference.hpp"
 #include "reference/unrolled_reference.hpp"
 
+namespace unrolled_pass_test {
+
 using namespace mcdbn;
 using namespace mcdbn::test;
 
@@ -343,3 +345,5 @@ TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
     });
   }
 }
+
+}  // namespace unrolled_pass_test
