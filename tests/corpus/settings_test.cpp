@@ -54,7 +54,7 @@ TEST_CASE("corpus settings: visit leaves no member out") {
   CHECK(!CameraPlacement{}.distance);
   CHECK(CameraPlacement{}.width_px == 1920);
   CHECK(CameraPlacement{}.height_px == 1080);
-  constexpr std::size_t kGroups = 3;  // and the choice of skeleton
+  constexpr std::size_t kGroups = 4;  // and the choice of skeleton and the joint map
   CHECK(member_count<CorpusSettings>() - kGroups == corpus_settings().size() -
                                                         listed_under<CorpusSettings>("augment.") -
                                                         listed_under<CorpusSettings>("camera."));
