@@ -81,34 +81,35 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_samples(
     });
     take_rows(h, H_LD, code, start, frame);
     SYNC();
-    for (int k = 0; k < gibbs_steps; ++k) {
+    // The means of the last round are kept. It is part of the loop, which so runs at least once: where it
+    // may not run at all, PoCL 3.1 makes other bits of it for groups of more than one work-item.
+    for (int k = 0; k <= gibbs_steps; ++k) {
       FOR_TILES(V_LD, {
         load_tile(sum, count, bias_v, V_LD, column);
         add_products(sum, count, h, H_LD, HIDDEN, w_transposed, V_LD, column);
         apply_sigmoid(sum, count, column, VISIBLE);
-        keep_tile(sum, count, v, V_LD, column);
-        for (int c = 0; c < count; ++c)
-          draw_rows(v, V_LD, column + c * VEC, row0, temperature,
-                    (uint4)(random.xyz, random.w + (uint)(2 * k)));
+        if (k == gibbs_steps) {
+          store_frame(sum, count, state, start, sequences - row0, frame, column);
+        } else {
+          keep_tile(sum, count, v, V_LD, column);
+          for (int c = 0; c < count; ++c)
+            draw_rows(v, V_LD, column + c * VEC, row0, temperature,
+                      (uint4)(random.xyz, random.w + (uint)(2 * k)));
+        }
       });
       SYNC();
-      FOR_TILES(H_LD, {
-        load_tile(sum, count, bias_h, H_LD, column);
-        add_products(sum, count, v, V_LD, VISIBLE, w, H_LD, column);
-        apply_sigmoid(sum, count, column, HIDDEN);
-        keep_tile(sum, count, h, H_LD, column);
-        for (int c = 0; c < count; ++c)
-          draw_rows(h, H_LD, column + c * VEC, row0, temperature,
-                    (uint4)(random.xyz, random.w + (uint)(2 * k + 1)));
-      });
+      if (k < gibbs_steps)
+        FOR_TILES(H_LD, {
+          load_tile(sum, count, bias_h, H_LD, column);
+          add_products(sum, count, v, V_LD, VISIBLE, w, H_LD, column);
+          apply_sigmoid(sum, count, column, HIDDEN);
+          keep_tile(sum, count, h, H_LD, column);
+          for (int c = 0; c < count; ++c)
+            draw_rows(h, H_LD, column + c * VEC, row0, temperature,
+                      (uint4)(random.xyz, random.w + (uint)(2 * k + 1)));
+        });
       SYNC();
     }
-    FOR_TILES(V_LD, {
-      load_tile(sum, count, bias_v, V_LD, column);
-      add_products(sum, count, h, H_LD, HIDDEN, w_transposed, V_LD, column);
-      apply_sigmoid(sum, count, column, VISIBLE);
-      store_frame(sum, count, state, start, sequences - row0, frame, column);
-    });
     remember_frame(ring, state, start, frame);
   }
 }

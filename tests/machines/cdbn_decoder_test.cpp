@@ -194,13 +194,13 @@ TEST_CASE("decoder: sampled frames are the reference's with the same draws") {
   });
 }
 
-TEST_CASE("small: work-items that share a block of sequences decode the same bits") {
+TEST_CASE("small: work-items that share a block of sequences decode the same bits, drawn or not") {
   on_every_device([](Device& device) {
     const CrbmParameters p = parameters_of({7, 5, 3, kBinary}, 3);
     constexpr std::size_t kSequences = 4;
     const MatrixF code = random_code(kSequences * kFrames, 5);
     const Tuning usual = device.tuning();
-    for (const double temperature : {0.0}) {
+    for (const double temperature : {0.0, 1.0}) {
       CAPTURE(temperature);
       RegenerationOptions options;
       options.temperature = temperature;

@@ -8,8 +8,6 @@ import pathlib
 import re
 import sys
 
-# Drawn in groups of four it gave other bits than in single work-items on PoCL 3.1: not yet understood.
-NOT_YET = {"decode_samples in groups"}
 KERNEL = re.compile(r"^kernel (__attribute__\(\(reqd_work_group_size\(GROUP, 1, 1\)\)\) )?void (\w+)\(", re.M)
 
 
@@ -19,7 +17,7 @@ def wanted_runs(folder):
     for path in sorted(folder.glob("*.cl")):
         for for_groups, name in KERNEL.findall(path.read_text()):
             wanted.setdefault(path.name, []).append(name)
-            if for_groups and f"{name} in groups" not in NOT_YET:
+            if for_groups:
                 wanted[path.name].append(f"{name} in groups")
     return wanted
 
