@@ -19,9 +19,4 @@ bool nests_deeper(std::string_view text, int deepest) {
   return false;
 }
 
-nlohmann::json parsed_json(std::string_view text) {
-  if (nests_deeper(text, kDeepestJson)) return nlohmann::json::value_t::discarded;
-  return nlohmann::json::parse(text, nullptr, false);
-}
-
 }  // namespace mcdbn

@@ -79,7 +79,7 @@ Sweep::Log::Log(fs::path path) : path_(std::move(path)) {
   if (!fs::exists(path_)) return;
   std::istringstream lines(read_text_file(path_));
   for (std::string line; std::getline(lines, line);) {
-    ordered_json record = parsed_json(line);
+    auto record = parsed_json<ordered_json>(line);
     if (record.is_object() && record.contains("settings") && record["name"].is_string() &&
         record["status"].is_string())
       records_.push_back(std::move(record));

@@ -118,8 +118,8 @@ class MappedChannels : public ClipChannels {
 
  private:
   const double* numbers(const Extent& extent) const {
-    return reinterpret_cast<const double*>(static_cast<const char*>(region_.get_address()) +
-                                           extent.first_byte);
+    const void* first = static_cast<const char*>(region_.get_address()) + extent.first_byte;
+    return static_cast<const double*>(first);
   }
   /// Pages that were read stay with the process until it gives them back.
   void has_read(std::size_t bytes) const {

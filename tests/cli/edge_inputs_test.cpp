@@ -50,12 +50,12 @@ TEST_CASE("a clip of one frame is seen, drawn and answered; nothing is learnt or
                     track = (folder / "one.csv").string(), out = (folder / "out").string();
   const std::string model = TinyPipeline::instance().model().string();
   check_run("info " + clip, 0);
-  check_run("project " + clip + " -o " + track, 0, "1 frames");
+  check_run("project " + clip + " -o " + track, 0, "1 frame");
   check_run("render " + clip + " -o " + out + ".png", 0);
   check_run("regenerate --model " + model + " --input " + track + " -o " + out + ".bvh", 0);
   CHECK(read_bvh(out + ".bvh").frames() == 1);
   check_run("generate --model " + model + " --seed-clip " + clip + " -o " + out + "_2.bvh", 3,
-            "one.bvh: the seed clip has 1 frames");
+            "one.bvh: the seed clip has 1 frame");
   check_run("train " + clip + " -o " + out + "_run --quiet", 2, "the longest clip has 1;");
   CHECK(!fs::exists(out + "_2.bvh"));
 }

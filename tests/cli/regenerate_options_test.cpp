@@ -306,14 +306,14 @@ TEST_CASE("regenerate: every option changes what its help says") {
                     CHECK(run_cli(one.arguments(output)).exit_code == 0);
                     CHECK(text() == by_library(one).at(0));
                   }});
-  rows.push_back({"--quiet", [&] {
-                    const std::string call = one.arguments(output);
-                    CHECK(count_lines(run_cli(call).standard_error) == 2);  // the camera, the file
-                    const std::string seen = text();
-                    CHECK(run_cli(call + " --quiet").standard_error.find(": info: ") ==
-                          std::string::npos);
-                    CHECK(text() == seen);
-                  }});
+  rows.push_back(
+      {"--quiet", [&] {
+         const std::string call = one.arguments(output);
+         CHECK(count_lines(run_cli(call).standard_error) == 3);  // camera, deviation, file
+         const std::string seen = text();
+         CHECK(run_cli(call + " --quiet").standard_error.find(": info: ") == std::string::npos);
+         CHECK(text() == seen);
+       }});
   check_options("regenerate", rows);
 }
 
