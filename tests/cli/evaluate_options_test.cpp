@@ -303,7 +303,7 @@ TEST_CASE("evaluate: what holds where an option is not said, and the text for pe
                                              call.model.string(), call.test[0].string(), platform));
   REQUIRE(text.exit_code == 0);
   CHECK(text.standard_error.find("%  reading clips") != std::string::npos);
-  CHECK(text.standard_output.starts_with("1 clips, 36 frames\n"));
+  CHECK(text.standard_output.starts_with("1 clip, 36 frames\n"));
   call.uncertainty_draws = 50;
   const json wanted = by_library(call, views_of_training(call.model));
   CHECK(text.standard_output.find(fmt::format(

@@ -161,7 +161,7 @@ TEST_CASE("fit: every option changes what its help says") {
          const CliResult result =
              run_cli(call.substr(0, call.size() - std::string(" --quiet").size()));
          CHECK(result.standard_error.find("100 %  layer.0 epoch 2/2") != std::string::npos);
-         CHECK(result.standard_error.find("1 files, 60 rows of 5 values") != std::string::npos);
+         CHECK(result.standard_error.find("1 file, 60 rows of 5 values") != std::string::npos);
          CHECK(model() == plain);
          CHECK(run_cli(call).standard_error.empty());
        }});
