@@ -163,7 +163,7 @@ TEST_CASE("known of a clip: a body that nobody knows gets the lengths that the t
                                        {camera, std::nullopt}, TrackFitSettings{});
   const Track2d seen = project_motion(clip.motion, in_file_units(camera, clip.motion.skeleton));
   CHECK(largest(seen.x_px - clip.shown.x_px) < 1e-6);
-  CHECK(largest(seen.x_px - scene.track.x_px) < 20);
+  CHECK(largest(seen.x_px - scene.track.x_px) < 1.5);
   // Who is known stays who they are.
   const auto known = scene.placed({scene.camera, own}, TrackFitSettings{}).skeleton;
   CHECK(length(known, "LeftHand") == length(own, "LeftHand"));
