@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "fitting/lever.hpp"
@@ -14,6 +15,12 @@ struct SeenJoint {
   std::vector<Lever> levers;  ///< root to joint, as the prior's mean has them
   Eigen::Vector2d ray{0, 0};
   double confidence = 0;  ///< the ray's variance is the track's over this; 0: not seen
+};
+
+/// What other frames of the same body have told of its lengths.
+struct ToldBody {
+  Eigen::VectorXd log_lengths;  ///< as PosteriorPoint has them
+  Eigen::MatrixXd information;  ///< inverse covariance
 };
 
 /// What is likely of a clip before its track is looked at, and its track. Metres of a 1.7 m body,
@@ -31,6 +38,7 @@ struct PosteriorClip {
   MatrixD planted;  ///< [frames x feet] how surely each stands, 0…1, from
                     ///< the frame before
   bool body_unknown = false;
+  std::optional<ToldBody> body_told = {};  ///< unset: the settings' `proportions` alone tell of it
   double frame_time_s = 1;
 
   Eigen::Index frames() const { return root.rows(); }

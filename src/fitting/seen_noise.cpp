@@ -33,10 +33,18 @@ SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m
 bool SeenNoise::learn(double residual) {
   const double before = std::hypot(rays_.white, rays_.lasting);
   const double told = residual * residual / (kResidualOfNoise * kResidualOfNoise * before);
-  const double both = std::clamp(told, least_, std::max({least_, measured_, kMost * usual_}));
-  rays_.lasting = std::sqrt(std::max(0.0, both * both - measured_ * measured_));
+  take(told);
   const double after = std::hypot(rays_.white, rays_.lasting);
   return std::abs(after - before) > kSmallChange * before;
+}
+
+void SeenNoise::settle_on(double residual) {
+  take(residual / kResidualOfNoise);
+}
+
+void SeenNoise::take(double told) {
+  const double both = std::clamp(told, least_, std::max({least_, measured_, kMost * usual_}));
+  rays_.lasting = std::sqrt(std::max(0.0, both * both - measured_ * measured_));
 }
 
 }  // namespace mcdbn

@@ -22,8 +22,13 @@ class SeenNoise {
   /// @param residual how far from the rays a solution's joints are, x/z and y/z each
   /// @return whether that makes another solution worth while
   bool learn(double residual);
+  /// The same where many solutions have left that residual on average: the noise of which it would
+  /// be what is left.
+  void settle_on(double residual);
 
  private:
+  void take(double told);
+
   double measured_, usual_, least_;  ///< on the rays: of the track, of detectors, of both parts
   RayNoise rays_;
 };

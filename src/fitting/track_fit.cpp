@@ -13,6 +13,7 @@
 #include "fitting/root_trajectory.hpp"
 #include "fitting/seen_noise.hpp"
 #include "fitting/track_smoothing.hpp"
+#include "fitting/tracked_joints.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
 
@@ -28,14 +29,6 @@ TrackFitSettings settings_of_draws(TrackFitSettings settings) {
   settings.doubt = 1;
   settings.noise_lasts_s = 10;
   return settings;
-}
-
-/// The joints that the model looks at: others, such as a node that stays on the floor, may move in
-/// the file unlike anything that a camera sees.
-std::vector<std::string> tracked_joints(const TrackFeatures& features) {
-  std::vector<std::string> names = features.joint_names();
-  names.push_back(features.root_name());
-  return names;
 }
 
 void check(const PosePrior& prior, const Modalities& features, const Track2d& track) {

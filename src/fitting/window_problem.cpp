@@ -14,11 +14,11 @@
 #include "fitting/terms/linear_term.hpp"
 #include "fitting/terms/reprojection.hpp"
 #include "fitting/terms/standing_foot.hpp"
+#include "fitting/terms/told_lengths.hpp"
 
 namespace mcdbn {
 namespace {
 
-constexpr int kMostIterations = 25;
 /// A step that lowers the energy by less than this share is the last one.
 constexpr double kSmallGain = 1e-3;
 /// A joint that is nearer to the camera than this share of the root's first distance says nothing.
@@ -59,7 +59,7 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
   if (clip_.body_unknown) add_lengths(unknowns);
 }
 
-void WindowProblem::solve(bool lengths_too) {
+void WindowProblem::solve(bool lengths_too, int most_iterations) {
   check_interruption();
   for (double& length : x_.log_lengths)
     if (problem_.HasParameterBlock(&length) && !lengths_too)
@@ -67,7 +67,7 @@ void WindowProblem::solve(bool lengths_too) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-  options.max_num_iterations = kMostIterations;
+  options.max_num_iterations = most_iterations;
   options.function_tolerance = kSmallGain;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
@@ -229,6 +229,14 @@ void WindowProblem::add_feet() {
 }
 
 void WindowProblem::add_lengths(Unknowns unknowns) {
+  if (clip_.body_told) {
+    std::vector<double*> blocks;
+    for (double& length : x_.log_lengths) blocks.push_back(&length);
+    problem_.AddResidualBlock(
+        new ToldLengths(clip_.body_told->log_lengths, clip_.body_told->information), nullptr,
+        blocks);
+    return;
+  }
   for (double& length : x_.log_lengths)
     if (unknowns == Unknowns::all || problem_.HasParameterBlock(&length))
       problem_.AddResidualBlock(

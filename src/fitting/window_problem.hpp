@@ -23,8 +23,10 @@ class WindowProblem {
                 const PosteriorPoint& from, Eigen::Index first, Eigen::Index frames,
                 Unknowns unknowns = Unknowns::seen);
 
+  static constexpr int kMostIterations = 25;
+
   /// @param lengths_too else the body stays as it is
-  void solve(bool lengths_too);
+  void solve(bool lengths_too, int most_iterations = kMostIterations);
 
   /// Derivatives of the residuals, as their losses weigh them, at the point where the problem is.
   /// @return [residuals x frames·(3·orientations + 3) + lengths]: frame by frame its turns and its

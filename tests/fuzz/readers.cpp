@@ -20,6 +20,7 @@
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/joint_map.hpp"
 #include "mcdbn/formats/track_file.hpp"
+#include "mcdbn/formats/track_lines.hpp"
 #include "mcdbn/motion/frame_rate.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "motion_model/modalities_json.hpp"
@@ -67,6 +68,20 @@ void read_all_tracks(const fs::path& path, const std::string& format) {
   }
 }
 
+/// Line by line, up to the first that is broken.
+void read_track_lines(const fs::path& path) {
+  TrackLines lines(path.string(), {.image_size = ImageSize{1280, 720}});
+  std::ifstream file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line);) {
+    const std::optional<SeenFrame> frame = lines.read(line);
+    if (!frame) continue;
+    require(frame->joints() == (lines.knows_joints() ? lines.like().joint_count() : 0),
+            "a frame of other joints");
+    require((frame->x_px.array().isNaN() == (frame->confidence.array() == 0)).all(),
+            "a joint that is seen nowhere");
+  }
+}
+
 void read_all_cameras(const fs::path& path) {
   for (const NamedCamera& named : read_cameras(path).cameras) {
     const Camera& camera = named.camera;
@@ -105,6 +120,7 @@ std::vector<Reader> all_readers() {
       {"safetensors", ".safetensors", [](const fs::path& path) { read_safetensors(path); }},
       {"model", ".json", read_model_modalities},
       {"track", "", [](const fs::path& path) { read_all_tracks(path, {}); }},
+      {"track-lines", "", read_track_lines},
   };
   for (const TrackFormat& format : track_formats())
     all.push_back({"track-" + format.name, "",

@@ -208,6 +208,57 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(len(seen), 4)
         self.assertTrue(self.find("#legend").is_displayed())
 
+    def test_intervals_are_shaded_where_the_answer_says_how_sure_it_is(self):
+        sure, motions = self.find("#sure"), Select(self.find("#motion"))
+        self.assertEqual(self.viewer("motion"), "mean field")
+        self.assertTrue(sure.is_enabled() and sure.is_selected())
+        self.show(self.find("#scene"))
+        self.shoot("intervals")
+        shaded = self.picture()
+        sure.click()
+        plain = self.picture()
+        self.assertGreater(shaded[0], plain[0] + 300)  # more of the panel is drawn on
+        self.press("u")
+        self.assertEqual(self.picture(), shaded)
+        motions.select_by_index(1)  # a sample does not say it
+        self.assertFalse(sure.is_enabled())
+        self.assertGreater(shaded[0], self.picture()[0])
+
+    def test_an_interval_is_the_ellipse_that_its_deviations_make(self):
+        # Seen from straight ahead: x to the right, y up; from the side z is to the left.
+        ahead, aside, turned = self.browser.execute_script("""
+          const orbit = new Orbit();
+          const seen = (yaw, deviation) => {
+            Object.assign(orbit, {yaw, pitch: 0});
+            return orbit.ellipse(deviation);
+          };
+          return [seen(0, [30, 10, 500]), seen(Math.PI / 2, [500, 10, 70]), seen(Math.PI / 4, [40, 0, 40])];""")
+        self.assertAlmostEqual(ahead["wide"], 30)
+        self.assertAlmostEqual(ahead["narrow"], 10)
+        self.assertAlmostEqual(ahead["angle"] % 3.141592653589793, 0)
+        self.assertAlmostEqual(aside["wide"], 70)
+        self.assertAlmostEqual(turned["wide"], 40)
+        self.assertAlmostEqual(turned["narrow"], 0)
+
+    def test_decoded_intervals_hold_as_many_truths_as_the_program_says(self):
+        # Of whole millimetres, so not quite.
+        shown, told = self.browser.execute_script("""
+          const shares = report.clips.map(data => {
+            const clip = new Clip(data), motion = clip.motion(0);
+            let held = 0, all = 0;
+            for (let joint = 1; joint < clip.joints; ++joint)
+              for (let axis = 0; axis < 3; ++axis)
+                for (let frame = 0; frame < clip.frames; ++frame, ++all) {
+                  const from = columns => columns[3 * joint + axis][frame] - columns[axis][frame];
+                  held += Math.abs(from(motion.columns) - from(clip.truth))
+                    <= 1.645 * motion.deviations[3 * joint + axis][frame];
+                }
+            return held / all;
+          });
+          return [shares.reduce((a, b) => a + b) / shares.length, report.summary.model_mean_field.within_90];""")
+        self.assertLess(abs(shown - told), 0.03)
+        self.assertGreater(told, 0)
+
     def test_keyboard(self):
         self.press(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT, Keys.ARROW_LEFT)
         self.assertEqual(float(self.viewer("frame")), 1)
