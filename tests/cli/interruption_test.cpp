@@ -1,9 +1,11 @@
-// Ctrl-C is heard, whatever the program does, before it has computed for another second, and leaves
-// nothing behind. Seconds of its own work, not of a clock, which other programs would share.
+// Ctrl-C is heard, whatever the program does, before it has computed for another second on every
+// processor, and leaves nothing behind: its own work is counted, as others share the clock.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <thread>
 
 #include "base/text_file.hpp"
 #include "tiny_pipeline.hpp"
@@ -12,6 +14,9 @@ using namespace mcdbn::test;
 namespace fs = std::filesystem;
 
 namespace {
+
+/// A second of all processors.
+const double kMost_s = std::max(1U, std::thread::hardware_concurrency());
 
 struct Stopped {
   int exit_code = -1;
@@ -22,8 +27,8 @@ struct Stopped {
 Stopped stopped(const std::string& arguments, double after_s, const std::string& signals = "INT") {
   const ScratchFolder folder;
   // A shell that is no terminal's starts programs deaf to Ctrl-C until they listen by themselves.
-  const fs::path script = folder.write(
-      "stop.py", fmt::format(R"py(
+  const fs::path script =
+      folder.write("stop.py", fmt::format(R"py(
 import os, shlex, signal, subprocess, sys, time
 process = subprocess.Popen(['{0}'] + shlex.split("""{1}"""), stdout=subprocess.DEVNULL,
                            stderr=subprocess.DEVNULL)
@@ -46,7 +51,7 @@ used = os.wait4(process.pid, 0)
 print(used[2].ru_utime + used[2].ru_stime - before_s)
 sys.exit(os.waitstatus_to_exitcode(used[1]) % 256)
 )py",
-                             MCDBN_CLI, arguments, after_s, signals));
+                                          MCDBN_CLI, arguments, after_s, signals));
   const CliResult result = run_program("/usr/bin/python3", fmt::format("'{}'", script.string()));
   CAPTURE(result.standard_error);
   REQUIRE(!result.standard_output.empty());
@@ -57,7 +62,7 @@ void check_stopped(const std::string& arguments, double after_s) {
   CAPTURE(arguments);
   const Stopped result = stopped(arguments, after_s);
   CHECK(result.exit_code == 130);
-  CHECK(result.computed_s < 1.0);
+  CHECK(result.computed_s < kMost_s);
 }
 
 }  // namespace
@@ -95,5 +100,5 @@ TEST_CASE("a second signal ends the program at once, with the same exit code") {
   const Stopped result = stopped(
       fmt::format("render '{}' -o '{}'", clip, (output / "film.mp4").string()), 0.3, "TERM INT");
   CHECK(result.exit_code == 130);
-  CHECK(result.computed_s < 1.0);
+  CHECK(result.computed_s < kMost_s);
 }
