@@ -15,7 +15,7 @@ void TrainingState::matrix(const std::string& name, Matrix& value) {
   }
   const auto found = content_.matrices.find(prefix_ + name);
   if (found == content_.matrices.end() || found->second.shape != shape)
-    throw InputError(fmt::format("the checkpoint is of another training: no {} of {} x {}",
+    throw InputError(fmt::format("{}: of another training: no {} of {} x {}", content_.file,
                                  prefix_ + name, value.rows(), value.columns()));
   value.upload(Eigen::Map<const MatrixF>(found->second.values.data(),
                                          static_cast<Eigen::Index>(value.rows()),
@@ -26,7 +26,7 @@ const nlohmann::json& TrainingState::at(const std::string& name,
                                         bool (*holds_it)(const nlohmann::json&)) const {
   const auto found = content_.numbers.find(prefix_ + name);
   if (found == content_.numbers.end() || !holds_it(*found))
-    throw InputError(fmt::format("the checkpoint is of another training: no {}", prefix_ + name));
+    throw InputError(fmt::format("{}: of another training: no {}", content_.file, prefix_ + name));
   return *found;
 }
 

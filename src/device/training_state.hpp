@@ -20,6 +20,7 @@ class TrainingState {
   struct Content {
     nlohmann::json numbers = nlohmann::json::object();
     std::map<std::string, Safetensors::Tensor> matrices;
+    std::string file = {};  ///< that they were read from
   };
 
   /// Fills `content`. Reading matrices waits for the queue.

@@ -46,9 +46,9 @@ void check_finite(const Safetensors& file, const std::string& path) {
           fmt::format("{}: tensor {} holds a number that is not finite", path, shown(name)));
 }
 
-TrainingState::Content content_of(const Safetensors& file, const std::string& stage,
-                                  const JsonPlace& numbers) {
-  TrainingState::Content content{numbers_of(numbers), {}};
+TrainingState::Content content_of(const Safetensors& file, const std::string& path,
+                                  const std::string& stage, const JsonPlace& numbers) {
+  TrainingState::Content content{numbers_of(numbers), {}, path};
   const std::string prefix = stage + kBetween;
   for (auto found = file.tensors.lower_bound(prefix);
        found != file.tensors.end() && found->first.starts_with(prefix); ++found)
@@ -90,11 +90,11 @@ CheckpointContent read_checkpoint(const fs::path& path) {
   CheckpointContent content;
   const JsonPlace over = about["over"];
   for (const std::string& stage : over.keys())
-    content.over[stage] = content_of(file, stage, over[stage]);
+    content.over[stage] = content_of(file, path.string(), stage, over[stage]);
   content.running = about["stage"].text();
   content.done = about["done"].count(any_seed());
-  content.now = content_of(file, content.running, about["now"]);
-  content.more.numbers = numbers_of(about["more"]);
+  content.now = content_of(file, path.string(), content.running, about["now"]);
+  content.more = {numbers_of(about["more"]), {}, path.string()};
   return content;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/interruption.hpp"
 #include "base/output_file.hpp"
+#include "base/shown.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -61,8 +62,8 @@ std::optional<std::size_t> Checkpoints::begin(const std::string& stage, Visit re
   const CheckpointContent stages = std::exchange(found_, {}).value();
   if (stages.running.empty()) return 0;
   if (stages.running != stage)
-    throw InputError(fmt::format("the checkpoint is of another training: it stands in {}, not {}",
-                                 stages.running, stage));
+    throw InputError(fmt::format("{}: of another training: it stands in {}, not {}",
+                                 stages.now.file, shown(stages.running), stage));
   TrainingState::Content now = stages.now;
   restore(now, result_);
   restore(now, running_);

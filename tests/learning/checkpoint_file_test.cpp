@@ -63,6 +63,8 @@ TEST_CASE("a checkpoint's file holds everything") {
   write_checkpoint(folder / "c", wanted);
   const CheckpointContent got = read_checkpoint(folder / "c");
   CHECK(got.running == "pose.0");
+  for (const TrainingState::Content& part : {got.now, got.more, got.over.at("track.0")})
+    CHECK(part.file == (folder / "c").string());
   CHECK(got.done == 12);
   CHECK(got.now.numbers == wanted.now.numbers);
   CHECK(got.now.matrices.at("W").shape == std::vector<std::size_t>{1, 2});

@@ -260,11 +260,14 @@ TEST_CASE("a checkpoint of another training is refused") {
     const ScratchFolder folder;
     KilledTraining killed(folder / "", greedy(device, source, small_settings()));
     CHECK_THROWS_AS(killed.run(5), Killed);
-    CHECK_THROWS_AS(KilledTraining(folder / "", greedy(device, source, wider)).run(0), InputError);
+    CHECK_THROWS_WITH_AS(KilledTraining(folder / "", greedy(device, source, wider)).run(0),
+                         doctest::Contains((folder / "checkpoint.safetensors: ").c_str()),
+                         InputError);
     const MatrixSource named(
         {{"2D", scene_of_different_sizes().tracks}, {"3D", scene_of_different_sizes().poses}});
-    CHECK_THROWS_AS(KilledTraining(folder / "", greedy(device, named, small_settings())).run(0),
-                    InputError);
+    CHECK_THROWS_WITH_AS(
+        KilledTraining(folder / "", greedy(device, named, small_settings())).run(0),
+        doctest::Contains((folder / "checkpoint.safetensors: ").c_str()), InputError);
   });
 }
 
