@@ -34,10 +34,16 @@ struct BenchOptions {
 nlohmann::ordered_json measure(Device& device, const BenchStep& step, double seconds,
                                double peak_gflops) {
   step.run();  // builds programs
+  std::uint64_t runs = 0;
   const auto launches_before = device.launch_count();
-  step.run();
-  const auto launches = device.launch_count() - launches_before;
-  const double median_s = median_time_s(device, step.run, seconds);
+  const double median_s = median_time_s(
+      device,
+      [&] {
+        ++runs;
+        step.run();
+      },
+      seconds);
+  const auto launches = (device.launch_count() - launches_before) / runs;
 
   nlohmann::ordered_json result = step.what;
   result["median_us"] = median_s * 1e6;
@@ -72,19 +78,22 @@ void print_line(const BenchStep& step, const nlohmann::ordered_json& result) {
   std::cout << std::endl;
 }
 
-/// Epochs are long: only who asks for them waits for them.
+/// Those of the layers, or all but the epochs, which are long.
 std::vector<BenchStepMaker> wanted_steps(const std::vector<std::string>& layers) {
   std::vector<BenchStepMaker> makers = bench_steps();
-  if (std::find(layers.begin(), layers.end(), "epoch") != layers.end())
-    for (BenchStepMaker& make : epoch_steps()) makers.push_back(std::move(make));
+  if (layers.empty()) return makers;
+  for (BenchStepMaker& maker : epoch_steps()) makers.push_back(std::move(maker));
+  std::erase_if(makers, [&](const BenchStepMaker& maker) {
+    return std::ranges::count(layers, maker.layer) == 0;
+  });
   return makers;
 }
 
 /// Seconds of a mini-batch of the usual size of each kind of CRBM.
 double minibatches_s(Device& device, double seconds) {
   double sum_s = 0;
-  for (const BenchStepMaker& make : crbm_minibatch_steps(LearningSettings{}.batch)) {
-    const BenchStep step = make(device);
+  for (const BenchStepMaker& maker : crbm_minibatch_steps(LearningSettings{}.batch)) {
+    const BenchStep step = maker.make(device);
     step.run();  // builds programs
     sum_s += median_time_s(device, step.run, seconds);
   }
@@ -106,12 +115,8 @@ void run_bench(const CommandContext& context, const BenchOptions& options) {
     std::cout << fmt::format("{}, {} compute units: {:.1f} GFLOP/s with fma alone\n",
                              device.info().name, device.info().compute_units, peak_gflops);
   LaunchTrace trace;
-  for (const BenchStepMaker& make : wanted_steps(options.layers)) {
-    const BenchStep step = make(device);
-    const auto& wanted = options.layers;
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(),
-                                     step.what.at("layer").get<std::string>()) == wanted.end())
-      continue;
+  for (const BenchStepMaker& maker : wanted_steps(options.layers)) {
+    const BenchStep step = maker.make(device);
     results.push_back(measure(device, step, options.seconds, peak_gflops));
     if (!context.json) print_line(step, results.back());
     if (!options.roofline && options.trace.empty()) continue;

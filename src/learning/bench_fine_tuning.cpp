@@ -75,7 +75,8 @@ BenchStep fine_tuning_step(Device& device, std::size_t directions) {
 std::vector<BenchStepMaker> fine_tuning_steps() {
   std::vector<BenchStepMaker> makers;
   for (const std::size_t directions : {1U, 2U})
-    makers.emplace_back([=](Device& device) { return fine_tuning_step(device, directions); });
+    makers.push_back(
+        {"fine_tuning", [=](Device& device) { return fine_tuning_step(device, directions); }});
   return makers;
 }
 

@@ -305,33 +305,39 @@ BenchStep generation_step(Device& device, std::size_t gibbs_steps) {
 }  // namespace
 
 std::vector<BenchStepMaker> crbm_minibatch_steps(std::size_t batch) {
-  return {[=](Device& device) {
-            return crbm_step<ContrastiveDivergence>(device, {96, 300, 5, VisibleKind::gaussian},
-                                                    batch, 5);
-          },
-          [=](Device& device) {
-            return crbm_step<ContrastiveDivergence>(device, {300, 300, 5, VisibleKind::binary},
-                                                    batch, 1);
-          }};
+  return {{"gaussian_crbm",
+           [=](Device& device) {
+             return crbm_step<ContrastiveDivergence>(device, {96, 300, 5, VisibleKind::gaussian},
+                                                     batch, 5);
+           }},
+          {"binary_crbm", [=](Device& device) {
+             return crbm_step<ContrastiveDivergence>(device, {300, 300, 5, VisibleKind::binary},
+                                                     batch, 1);
+           }}};
 }
 
 std::vector<BenchStepMaker> bench_steps() {
   std::vector<BenchStepMaker> makers;
+  const auto add = [&](const char* layer, std::function<BenchStep(Device&)> make) {
+    makers.push_back({layer, std::move(make)});
+  };
   for (const std::size_t batch : {100U, 1024U}) {
-    for (BenchStepMaker& make : crbm_minibatch_steps(batch)) makers.push_back(std::move(make));
-    for (const auto& [shape, steps] : {std::pair{CrbmShape{96, 300, 5, VisibleKind::gaussian}, 5},
-                                       {CrbmShape{300, 300, 5, VisibleKind::binary}, 1}})
-      makers.emplace_back([=, shape = shape, steps = steps](Device& device) {
-        return crbm_step<PersistentContrastiveDivergence>(
-            device, shape, batch, static_cast<std::size_t>(steps), "persistent_");
-      });
+    for (BenchStepMaker& maker : crbm_minibatch_steps(batch)) makers.push_back(std::move(maker));
+    add("persistent_gaussian_crbm", [=](Device& device) {
+      return crbm_step<PersistentContrastiveDivergence>(device, {96, 300, 5, VisibleKind::gaussian},
+                                                        batch, 5, "persistent_");
+    });
+    add("persistent_binary_crbm", [=](Device& device) {
+      return crbm_step<PersistentContrastiveDivergence>(device, {300, 300, 5, VisibleKind::binary},
+                                                        batch, 1, "persistent_");
+    });
     for (const std::size_t modalities : {2U, 3U})
-      makers.emplace_back(
+      add("mrbm",
           [=](Device& device) { return mrbm_step(device, modalities, 300, 150, batch, 10); });
-    makers.emplace_back(
+    add("joint_likelihood",
         [=](Device& device) { return joint_likelihood_step(device, 300, 150, batch, 1); });
     for (const double temperature : {0.0, 1.0})
-      makers.emplace_back([=](Device& device) {
+      add("mrbm_chain", [=](Device& device) {
         return mrbm_chain_step(device, 300, 150, batch, 10, temperature);
       });
   }
@@ -340,20 +346,20 @@ std::vector<BenchStepMaker> bench_steps() {
                                   {100, 300, 480},
                                   {100, 300, 1500},
                                   {1024, 300, 1500}})
-      makers.emplace_back(
+      add("gemm",
           [=, m = m, n = n, k = k](Device& device) { return gemm_step(device, m, n, k, backend); });
-  for (BenchStepMaker& make : fine_tuning_steps()) makers.push_back(std::move(make));
+  for (BenchStepMaker& maker : fine_tuning_steps()) makers.push_back(std::move(maker));
   for (const double temperature : {0.0, 1.0})
-    makers.emplace_back([=](Device& device) { return regeneration_step(device, temperature); });
+    add("regeneration", [=](Device& device) { return regeneration_step(device, temperature); });
   for (const std::size_t gibbs_steps : {1U, 30U})
-    makers.emplace_back([=](Device& device) { return generation_step(device, gibbs_steps); });
+    add("generation", [=](Device& device) { return generation_step(device, gibbs_steps); });
   return makers;
 }
 
 std::vector<BenchStepMaker> epoch_steps() {
   std::vector<BenchStepMaker> makers;
   for (const std::size_t frames : {1'000U, 10'000U, 100'000U, 1'000'000U})
-    makers.emplace_back([=](Device& device) { return epoch_step(device, frames); });
+    makers.push_back({"epoch", [=](Device& device) { return epoch_step(device, frames); }});
   return makers;
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "device/kernel_rates.hpp"
@@ -17,8 +18,11 @@ struct BenchStep {
   std::vector<KernelWork> kernels = {};  ///< as far as they are counted one by one
 };
 
-/// Makes a step when its turn comes.
-using BenchStepMaker = std::function<BenchStep(Device&)>;
+/// Makes a step when its turn comes: its matrices alone may take as long as running it.
+struct BenchStepMaker {
+  std::string layer;  ///< as `what` names it
+  std::function<BenchStep(Device&)> make;
+};
 
 /// The mini-batch step of each kind of CRBM: what a tuner looks at.
 std::vector<BenchStepMaker> crbm_minibatch_steps(std::size_t batch);
