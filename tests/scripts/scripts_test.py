@@ -10,6 +10,7 @@ import csv
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -40,22 +41,33 @@ def is_png(path):
 class Scripts(unittest.TestCase):
     cli = None
 
+    @classmethod
+    def setUpClass(cls):
+        cls.made = tempfile.TemporaryDirectory()
+        for action in ("walk", "clap"):
+            cls.run_cli("synthesize", "--action", action, "--clips", 4, "--subjects", 2,
+                        "--seconds", 2, "-o", pathlib.Path(cls.made.name) / action)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.made.cleanup()
+
     def setUp(self):
         self.temporary = tempfile.TemporaryDirectory()
         self.folder = pathlib.Path(self.temporary.name)
-        for action in ("walk", "clap"):
-            self.run_cli("synthesize", "--action", action, "--clips", 4, "--subjects", 2,
-                         "--seconds", 2, "-o", self.folder / action)
+        shutil.copytree(self.made.name, self.folder, dirs_exist_ok=True)
 
     def tearDown(self):
         self.temporary.cleanup()
 
-    def run_program(self, *arguments):
+    @staticmethod
+    def run_program(*arguments):
         return subprocess.run([str(a) for a in arguments], capture_output=True, text=True,
                               check=False)
 
-    def run_cli(self, *arguments):
-        return self.run_program(self.cli, *arguments)
+    @classmethod
+    def run_cli(cls, *arguments):
+        return cls.run_program(cls.cli, *arguments)
 
     def sweep(self, text=SWEEP):
         (self.folder / "sweep.toml").write_text(text)
