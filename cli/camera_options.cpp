@@ -12,7 +12,7 @@
 namespace mcdbn::cli {
 
 namespace {
-constexpr const char* kGroup = "Camera";
+constexpr const char* kCameraGroup = "Camera";
 }
 
 Camera CameraOptions::camera_for(const Motion& motion) const {
@@ -42,10 +42,10 @@ void add_seen_by_options(CLI::App& command, SeenByOptions& options) {
                                "file's cameras as FILE:NAME (default: none is known, see the "
                                "others; --to track: the model's view)")
                    ->type_name("FILE[:NAME]")
-                   ->group(kGroup);
+                   ->group(kCameraGroup);
   const auto add = [&](const std::string& flag, const Setting& setting,
                        std::optional<double>& value) {
-    add_setting_flag(command, flag, setting, value)->group(kGroup)->excludes(file);
+    add_setting_flag(command, flag, setting, value)->group(kCameraGroup)->excludes(file);
   };
   add("--camera-pitch",
       {"pitch", AssumedView::kPitch_deg, "degrees",
@@ -67,8 +67,8 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
       command
           .add_option("--camera", options.file, "Calibration; one of a file's cameras as FILE:NAME")
           ->type_name("FILE[:NAME]")
-          ->group(kGroup);
-  const auto placed = [&](CLI::Option* option) { option->group(kGroup)->excludes(file); };
+          ->group(kCameraGroup);
+  const auto placed = [&](CLI::Option* option) { option->group(kCameraGroup)->excludes(file); };
   visit_group("camera", placement, [&](const Setting& setting, double& value) {
     placed(add_setting_flag(command, flag_of(setting.name), setting, value));
   });

@@ -14,7 +14,7 @@
 namespace mcdbn::cli {
 
 namespace {
-constexpr const char* kGroup = "Track";
+constexpr const char* kTrackGroup = "Track";
 }
 
 CLI::Option* add_format_option(CLI::App& command, std::string& format, const std::string& help) {
@@ -28,18 +28,18 @@ CLI::Option* add_format_option(CLI::App& command, std::string& format, const std
 
 void add_track_options(CLI::App& command, TrackReadOptions& options) {
   add_format_option(command, options.format, "Of the track (default: by its content)")
-      ->group(kGroup);
+      ->group(kTrackGroup);
   command
       .add_option("--person", options.person,
                   "Which one: largest, all, or a number, 1 the largest (default: largest)")
       ->type_name("WHO")
-      ->group(kGroup);
+      ->group(kTrackGroup);
   command
       .add_option_function<double>(
           "--fps", [&options](double fps) { options.fps = fps; },
           "Frames a second (default: the file's, else 30)")
       ->check(in_range(kFrameRate_hz))
-      ->group(kGroup);
+      ->group(kTrackGroup);
   command
       .add_option_function<std::pair<int, int>>(
           "--image-size",
@@ -49,7 +49,7 @@ void add_track_options(CLI::App& command, TrackReadOptions& options) {
           "Width and height in pixels (default: the file's, else guessed)")
       ->check(in_range(Camera::kImage_px))
       ->type_name("WIDTH HEIGHT")
-      ->group(kGroup);
+      ->group(kTrackGroup);
 }
 
 TrackReading read_tracks_with_notices(const std::filesystem::path& path,

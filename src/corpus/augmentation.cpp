@@ -24,11 +24,11 @@ namespace {
 enum Draw : std::uint32_t {
   kSpeed,
   kPhase,
-  kMirror,
+  kMirroring,
   kCamera,
   kNoise,
   kBones,
-  kTurns,
+  kTurning,
   kMissing,
   kDetector,
   kGravity
@@ -52,7 +52,8 @@ void change_carriage(Motion& motion, double deviation_deg, const RandomKey& key)
     if (count == 0 || (own.rowwise() - own.row(0)).cwiseAbs().maxCoeff() < 1e-9) continue;
     Eigen::Vector3d turn;
     for (int axis = 0; axis < 3; ++axis)
-      turn[axis] = deviation * random_normal(key, kTurns, static_cast<std::uint32_t>(3 * j + axis));
+      turn[axis] =
+          deviation * random_normal(key, kTurning, static_cast<std::uint32_t>(3 * j + axis));
     const Eigen::Matrix3d rotation =
         Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
     for (int t = 0; t < motion.frames(); ++t) {
@@ -121,7 +122,7 @@ AugmentedView seen_view(const Motion& raw, double fps, const CameraPlacement& pl
                         bool all_in_sight, const PosePool* pool) {
   AugmentedView view;
   view.motion = other_timing(raw, fps, settings.speed, key);
-  if (settings.mirror && uniform(key, kMirror) < 0.5)
+  if (settings.mirror && uniform(key, kMirroring) < 0.5)
     if (auto other = mirrored(view.motion)) view.motion = std::move(*other);
   if (pool != nullptr) view.motion = with_new_poses(view.motion, settings, *pool, key);
   if (settings.bone > 0)

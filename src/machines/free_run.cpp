@@ -14,7 +14,7 @@ namespace mcdbn {
 namespace {
 
 /// Rows of a sequence and where they are filled in.
-struct Frames {
+struct RunFrames {
   std::size_t sequences, first, end;
 };
 
@@ -33,7 +33,7 @@ std::optional<RowTile> choose_tile(const Crbm& crbm, std::size_t sequences) {
                                      shape.visible, shape.hidden, order));
 }
 
-void run_fused(const Crbm& crbm, const Matrix& state, const Frames& frames,
+void run_fused(const Crbm& crbm, const Matrix& state, const RunFrames& frames,
                const GenerationOptions& options, const RowTile& tile) {
   const CrbmShape& shape = crbm.shape();
   Device& device = crbm.device();
@@ -50,7 +50,7 @@ void run_fused(const Crbm& crbm, const Matrix& state, const Frames& frames,
          random_argument(key_of(options)));
 }
 
-void run_composed(const Crbm& crbm, const Matrix& state, const Frames& frames,
+void run_composed(const Crbm& crbm, const Matrix& state, const RunFrames& frames,
                   const GenerationOptions& options) {
   const Matrix hidden(crbm.device(), frames.sequences, crbm.shape().hidden);
   const Matrix sample = Matrix::like(hidden), hidden_bias = Matrix::like(hidden);
@@ -87,7 +87,7 @@ void run_freely(const Crbm& crbm, const Matrix& state, std::size_t sequences, st
           "generation: the sequences do not fit the CRBM");
   require(first >= std::max<std::size_t>(crbm.shape().order, 1),
           "generation: the seed has fewer frames than the order");
-  const Frames frames{sequences, first, state.rows() / sequences};
+  const RunFrames frames{sequences, first, state.rows() / sequences};
   if (first >= frames.end) return;
   const auto tile = fused ? choose_tile(crbm, sequences) : std::nullopt;
   if (tile)
