@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <tuple>
 
 #include "base/text_file.hpp"
 #include "comparison/comparison_run.hpp"
@@ -135,52 +136,62 @@ fs::path with_calibration_pose(const fs::path& clip, const ScratchFolder& folder
 
 }  // namespace
 
-/// Rows of what makes the tracks of a detector, each said together with it.
+/// Rows of what makes the tracks of a detector. All are said at once: each row then says that its
+/// own option did something.
 std::vector<OptionRow> detector_rows() {
   const TinyPipeline& pipeline = TinyPipeline::instance();
-  Call base;
-  base.model = pipeline.model();
-  base.test = {pipeline.motion() / "walk_s02_01.bvh"};
-  base.like = "openpose";
-  const auto row = [base](const std::string& option, const std::string& said,
-                          const std::function<void(Call&)>& change) {
+  Call usual;
+  usual.model = pipeline.model();
+  usual.test = {pipeline.motion() / "walk_s02_01.bvh"};
+  usual.like = "openpose";
+  Call all = usual;
+  all.like = "mediapipe";
+  all.camera_known = false;
+  all.people = {.height = 0.2, .proportions = 0.2};
+  using Cameras = mcdbn::DetectorCameras;
+  const std::vector<std::tuple<std::string, double Cameras::*, double>> cameras = {
+      {"--detector-elevation-from", &Cameras::elevation_from_deg, 10},
+      {"--detector-elevation-to", &Cameras::elevation_to_deg, 60},
+      {"--detector-roll", &Cameras::roll_deg, 1},
+      {"--detector-fov-from", &Cameras::fov_from_deg, 20},
+      {"--detector-fov-to", &Cameras::fov_to_deg, 90},
+      {"--detector-distance-from", &Cameras::distance_from_m, 4},
+      {"--detector-distance-to", &Cameras::distance_to_m, 30}};
+  std::string said =
+      "--baselines none --tracks detector --like mediapipe --camera-unknown --person-height 0.2 "
+      "--person-proportions 0.2";
+  for (const auto& [option, setting, value] : cameras) {
+    all.cameras.*setting = value;
+    said += fmt::format(" {} {}", option, value);
+  }
+  const json found = without_baselines(by_program(all, said));
+  CHECK(found == without_baselines(by_library(all)));
+  const auto row = [=](const std::string& option, const std::function<void(Call&)>& undo) {
     return OptionRow{option, [=] {
-                       Call changed = base;
-                       change(changed);
-                       const json found = without_baselines(
-                           by_program(changed, "--baselines none --tracks detector " + said));
-                       CHECK(found == without_baselines(by_library(changed)));
-                       CHECK(found.at("model") != by_library(base).at("model"));
+                       Call without = all;
+                       undo(without);
+                       CHECK(by_library(without).at("model") != found.at("model"));
                      }};
   };
-  const auto camera_row = [&](const std::string& name, double mcdbn::DetectorCameras::*setting,
-                              double value) {
-    const std::string option = "--detector-" + name;
-    return row(option, fmt::format("{} {}", option, value),
-               [=](Call& call) { call.cameras.*setting = value; });
-  };
-  using Cameras = mcdbn::DetectorCameras;
-  return {
+  std::vector<OptionRow> rows = {
       {"--tracks",
-       [base] {
-         Call exact = base;
+       [usual] {
+         Call exact = usual;
          exact.like.clear();
-         CHECK(by_library(exact).at("model") != by_library(base).at("model"));
-         CHECK(without_baselines(by_program(base, "--baselines none --tracks detector")) ==
-               without_baselines(by_library(base)));
+         const json by_default = without_baselines(by_library(usual));
+         CHECK(by_library(exact).at("model") != by_default.at("model"));
+         CHECK(without_baselines(by_program(usual, "--baselines none --tracks detector")) ==
+               by_default);
        }},
-      row("--like", "--like mediapipe", [](Call& call) { call.like = "mediapipe"; }),
-      row("--camera-unknown", "--camera-unknown", [](Call& call) { call.camera_known = false; }),
-      row("--person-height", "--person-height 0.2", [](Call& call) { call.people.height = 0.2; }),
-      row("--person-proportions", "--person-proportions 0.2",
-          [](Call& call) { call.people.proportions = 0.2; }),
-      camera_row("elevation-from", &Cameras::elevation_from_deg, 10),
-      camera_row("elevation-to", &Cameras::elevation_to_deg, 60),
-      camera_row("roll", &Cameras::roll_deg, 1),
-      camera_row("fov-from", &Cameras::fov_from_deg, 20),
-      camera_row("fov-to", &Cameras::fov_to_deg, 90),
-      camera_row("distance-from", &Cameras::distance_from_m, 12),
-      camera_row("distance-to", &Cameras::distance_to_m, 30)};
+      row("--like", [](Call& call) { call.like = "openpose"; }),
+      row("--camera-unknown", [](Call& call) { call.camera_known = true; }),
+      row("--person-height", [](Call& call) { call.people.height = mcdbn::OtherBody{}.height; }),
+      row("--person-proportions",
+          [](Call& call) { call.people.proportions = mcdbn::OtherBody{}.proportions; })};
+  for (const auto& [option, setting, value] : cameras)
+    rows.push_back(row(
+        option, [setting = setting](Call& call) { call.cameras.*setting = Cameras{}.*setting; }));
+  return rows;
 }
 
 TEST_CASE("evaluate: every option changes what its help says") {

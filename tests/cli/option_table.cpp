@@ -30,8 +30,10 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-nlohmann::json first_device() {
-  return nlohmann::json::parse(run_cli("devices --json").standard_output).at("devices").at(0);
+const nlohmann::json& first_device() {
+  static const nlohmann::json listed =
+      nlohmann::json::parse(run_cli("devices --json").standard_output);
+  return listed.at("devices").at(0);
 }
 
 void check_no_such_device(const std::string& call) {
@@ -40,7 +42,7 @@ void check_no_such_device(const std::string& call) {
   CHECK(result.exit_code == 4);
   CHECK(result.standard_output.empty());
   CHECK(result.standard_error.find("no-such-name") != std::string::npos);
-  const nlohmann::json device = first_device();
+  const nlohmann::json& device = first_device();
   for (const char* field : {"name", "platform"})
     CHECK(result.standard_error.find(device.at(field).get<std::string>()) != std::string::npos);
 }

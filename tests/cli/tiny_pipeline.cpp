@@ -4,11 +4,22 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <optional>
+
+#include "base/text_file.hpp"
 
 namespace fs = std::filesystem;
 
 namespace mcdbn::test {
 namespace {
+
+constexpr const char* kMessages = "training_messages.txt";
+
+/// Where CTest has it made once, for every file of cases; none where test_cli is run alone.
+std::optional<fs::path> made_for_all() {
+  const char* folder = std::getenv("MCDBN_TINY_PIPELINE");
+  return folder == nullptr ? std::nullopt : std::optional<fs::path>(folder);
+}
 
 /// The synthesized clips of one subject, each in quotes.
 std::string clips_of(const fs::path& folder, int subject) {
@@ -53,8 +64,15 @@ std::string TinyPipeline::test_clips() const {
 }
 
 TinyPipeline::TinyPipeline() {
+  const auto made = made_for_all();
+  motion_ = made.value_or(folder("")) / "motion";
+  if (made && fs::exists(*made / "run")) {
+    fs::copy(*made / "run", folder("run"), fs::copy_options::recursive);
+    training_messages_ = read_text_file(*made / kMessages);
+    return;
+  }
   REQUIRE(synthesize(motion()).exit_code == 0);
-  const CliResult trained = train(training_clips(), folder_ / "run", kTiny);
+  const CliResult trained = train(training_clips(), folder("run"), kTiny);
   CAPTURE(trained.standard_error);
   REQUIRE(trained.exit_code == 0);
   REQUIRE(trained.standard_output.empty());
@@ -72,3 +90,14 @@ bool have_device() {
 }
 
 }  // namespace mcdbn::test
+
+TEST_CASE("the small job that the other files of cases take") {
+  if (!mcdbn::test::have_device()) return;
+  const auto made = mcdbn::test::made_for_all();
+  if (made) fs::remove_all(*made);
+  const auto& pipeline = mcdbn::test::TinyPipeline::instance();
+  CHECK(fs::exists(pipeline.model()));
+  if (!made) return;
+  mcdbn::write_text_file(*made / mcdbn::test::kMessages, pipeline.training_messages());
+  fs::copy(pipeline.folder("run"), *made / "run", fs::copy_options::recursive);
+}

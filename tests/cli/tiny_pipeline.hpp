@@ -19,11 +19,12 @@ CliResult synthesize(const std::filesystem::path& folder);
 CliResult train(const std::string& clips, const std::filesystem::path& run,
                 const std::string& options, const std::string& environment = "");
 
-/// The whole job at a size that takes seconds, done once for all tests.
+/// The whole job at a size that takes seconds, done once for all tests. All read the same clips,
+/// whose places the model knows; each process has a run folder of its own.
 class TinyPipeline {
  public:
   static const TinyPipeline& instance();
-  std::filesystem::path motion() const { return folder_ / "motion"; }
+  std::filesystem::path motion() const { return motion_; }
   std::filesystem::path model() const { return folder_ / "run/model.safetensors"; }
   std::filesystem::path folder(const std::string& name) const { return folder_ / name; }
   std::string training_clips() const;  ///< each in quotes
@@ -33,6 +34,7 @@ class TinyPipeline {
  private:
   TinyPipeline();
   ScratchFolder folder_;
+  std::filesystem::path motion_;
   std::string training_messages_;
 };
 

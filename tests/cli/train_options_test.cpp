@@ -2,6 +2,9 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <array>
+#include <map>
+
 #include "all_settings_run.hpp"
 #include "base/text_file.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
@@ -23,17 +26,25 @@ std::string with_dashes(std::string name) {
   return name;
 }
 
-/// `--mirror` and `--no-mirror`, each against a file that says the opposite.
-void check_switch(const std::string& name, bool on) {
+/// Whether a switch is on where every second one is: those with even numbers, or the others.
+bool is_on(std::size_t number, bool even) {
+  return (number % 2 == 0) == even;
+}
+
+/// What is set where every switch is said, `--mirror` or `--no-mirror`, and a file says the
+/// opposite.
+std::map<std::string, double> switched(bool even) {
   const ScratchFolder folder;
-  const auto dot = name.find('.');
-  const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);
-  const std::string table = dot == std::string::npos ? "" : "[" + name.substr(0, dot) + "]\n";
-  const fs::path file = folder.write("s.toml", fmt::format("{}{} = {}\n", table, key, !on));
-  const std::string config = fmt::format("--config '{}'", file.string());
-  CHECK(settings_of_options(config).at(name) == (on ? 0.0 : 1.0));
-  CHECK(settings_of_options(config + (on ? " --" : " --no-") + with_dashes(name)).at(name) ==
-        (on ? 1.0 : 0.0));
+  std::string opposite, flags;
+  std::size_t number = 0;
+  for (const SettingRow& row : setting_rows()) {
+    if (!row.is_switch) continue;
+    const bool on = is_on(number++, even);
+    opposite += fmt::format("{} = {}\n", row.name, !on);
+    flags += (on ? " --" : " --no-") + with_dashes(row.name);
+  }
+  const fs::path file = folder.write("opposite.toml", opposite);
+  return settings_of_options(fmt::format("--config '{}'{}", file.string(), flags));
 }
 
 /// Its flag stands in the run with all flags; its value in that run's record, not the default.
@@ -46,14 +57,20 @@ void check_setting(const SettingRow& row) {
 
 std::vector<OptionRow> setting_option_rows() {
   std::vector<OptionRow> rows;
+  const std::array all_switched{switched(false), switched(true)};
+  std::size_t number = 0;
   for (const SettingRow& row : setting_rows()) {
     if (!row.is_switch) {
       rows.push_back({"--" + with_dashes(row.name), [&row] { check_setting(row); }});
       continue;
     }
-    for (const bool on : {true, false})
+    for (const bool even : {false, true}) {
+      const bool on = is_on(number, even);
+      const double found = all_switched[even ? 1 : 0].at(row.name);
       rows.push_back({(on ? "--" : "--no-") + with_dashes(row.name),
-                      [&row, on] { check_switch(row.name, on); }});
+                      [=] { CHECK(found == (on ? 1.0 : 0.0)); }});
+    }
+    ++number;
   }
   return rows;
 }
