@@ -78,6 +78,19 @@ class Figure {
   std::vector<int> parents_;
 };
 
+ReportMotion report_motion(const Figure& figure, const Regeneration& answer) {
+  ReportMotion motion{figure.points_mm(answer.motion), answer.score};
+  if (answer.deviation_mm.size() == 0) return motion;
+  const int joints = figure.joint_count();
+  motion.deviation_mm = MatrixD::Zero(answer.motion.frames(), 3 * joints);
+  for (int joint = 1; joint < joints; ++joint) {
+    const auto& name = figure.names()[static_cast<std::size_t>(joint)];
+    motion.deviation_mm.middleCols(3 * joint, 3) =
+        answer.deviation_mm.middleCols(3 * answer.motion.skeleton.find(name), 3);
+  }
+  return motion;
+}
+
 /// NaN where the track does not show the joint.
 MatrixD track_px(const Track2d& track, const std::vector<std::string>& names) {
   MatrixD pixels =
@@ -132,9 +145,9 @@ std::vector<ReportClip> report_clips(const Model& model, const std::vector<ClipR
     clip.width_px = result.truth.track.width_px;
     clip.height_px = result.truth.track.height_px;
     for (const Regeneration& sample : result.samples)
-      clip.samples.push_back({figure.points_mm(sample.motion), sample.score});
+      clip.samples.push_back(report_motion(figure, sample));
     for (const auto& [name, other] : result.others)
-      clip.others[name] = {figure.points_mm(other.motion), other.score};
+      clip.others[name] = report_motion(figure, other);
     clip.track = result.track;
     clips.push_back(std::move(clip));
   }

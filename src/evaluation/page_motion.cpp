@@ -90,6 +90,8 @@ class ClipWriter {
                                 {"kind", kind},
                                 {"mpjpe_mm", motion.score.error.mpjpe_mm},
                                 {"points_mm", code(motion.points_mm)}});
+    if (motion.deviation_mm.size() > 0)
+      json_["motions"].back()["deviation_mm"] = code(motion.deviation_mm);
   }
 
   const ReportClip& clip_;

@@ -14,6 +14,9 @@ namespace mcdbn {
 struct ReportMotion {
   MatrixD points_mm;  ///< [frames x 3·points], as ReportClip::truth_mm
   ClipScore score;
+  /// How sure each joint is, from the root along the world's axes [frames x 3·joints], the root's
+  /// own 0; 0 x 0 where nobody said it.
+  MatrixD deviation_mm = {};
 };
 
 /// What a report knows of one test clip. Points are joints first (the root, then those that are

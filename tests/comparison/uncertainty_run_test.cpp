@@ -158,3 +158,24 @@ TEST_CASE("a test run whose camera nobody knows turns what it draws as it turns 
     CHECK(largest(answer.deviation_mm - deviation_mm) < 1e-9 * largest(deviation_mm));
   });
 }
+
+TEST_CASE("a report is told how sure the single answer is, joint by joint") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const Model model = scene.model(device);
+    TestRunOptions options = scene.options();
+    options.baselines = {"mean_pose"};
+    const auto results = run_test(model, scene.tests, options);
+    const ReportClip clip = report_clips(model, results, false)[1];
+    CHECK(clip.others.at("mean_pose").deviation_mm.size() == 0);
+    const MatrixD& shown = clip.samples.at(0).deviation_mm;
+    REQUIRE(shown.cols() == 3 * clip.joints);
+    CHECK(shown.leftCols<3>().isZero());
+    const Regeneration& answer = results[1].samples.at(0);
+    for (int joint = 1; joint < clip.joints; ++joint) {
+      const auto& name = clip.point_names[static_cast<std::size_t>(joint)];
+      const int column = 3 * answer.motion.skeleton.find(name);
+      CHECK(shown.middleCols<3>(3 * joint) == answer.deviation_mm.middleCols<3>(column));
+    }
+  });
+}

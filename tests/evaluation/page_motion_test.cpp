@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "evaluation/motion_code.hpp"
+
 using namespace mcdbn;
 
 TEST_CASE("the page knows whose side each point is on; an end is on its joint's") {
@@ -15,4 +17,20 @@ TEST_CASE("the page knows whose side each point is on; an end is on its joint's"
   const PageMotion motion = page_motion({clip}, 1'000'000);
   REQUIRE(motion.clips.size() == 1);
   CHECK(motion.clips[0].at("sides") == std::vector<int>{0, -1, 1, -1, 1});
+}
+
+TEST_CASE("the page holds how sure an answer is, every so manieth frame of it, where it says so") {
+  ReportClip clip;
+  clip.name = "clip";
+  clip.point_names = {"Hips", "Head"};
+  clip.parents = {-1, 0};
+  clip.joints = 2;
+  clip.truth_mm = MatrixD::Zero(4, 6);
+  clip.track_px = MatrixD::Zero(4, 4);
+  MatrixD deviation_mm = MatrixD::Zero(4, 6);
+  deviation_mm.rightCols(3) << 10, 20, 30, 11, 21, 31, 12, 22, 32, 14, 24, 34;
+  clip.samples = {{clip.truth_mm, {}, deviation_mm}, {clip.truth_mm, {}}};
+  const auto motions = page_motion({clip}, 1'000'000).clips.at(0).at("motions");
+  CHECK(motions.at(0).at("deviation_mm") == encode_series(deviation_mm));
+  CHECK(!motions.at(1).contains("deviation_mm"));
 }

@@ -106,6 +106,22 @@ class ReportPage(unittest.TestCase):
     def picture(self, canvas="scene"):
         return self.browser.execute_script(PICTURE, canvas)
 
+    def pixels_that_change_with(self, checkbox):
+        """Of the scene, as it is clicked."""
+        return self.browser.execute_script("""
+          const canvas = document.getElementById("scene");
+          const pixels = () => {
+            const copy = document.createElement("canvas");
+            [copy.width, copy.height] = [canvas.width, canvas.height];
+            const context = copy.getContext("2d", {willReadFrequently: true});
+            context.drawImage(canvas, 0, 0);
+            return new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
+          };
+          const before = pixels();
+          document.querySelector(arguments[0]).click();
+          const after = pixels();
+          return before.reduce((changed, pixel, i) => changed + (pixel !== after[i]), 0);""", checkbox)
+
     def viewer(self, name):
         return self.find(".viewer").get_attribute(f"data-{name}")
 
@@ -209,6 +225,69 @@ class ReportPage(unittest.TestCase):
             seen.add(self.picture()[1])
         self.assertEqual(len(seen), 4)
         self.assertTrue(self.find("#legend").is_displayed())
+
+    def test_intervals_are_shaded_where_the_answer_says_how_sure_it_is(self):
+        sure, motions = self.find("#sure"), Select(self.find("#motion"))
+        self.assertEqual(self.viewer("motion"), "mean field")
+        self.assertTrue(sure.is_enabled() and sure.is_selected())
+        self.show(self.find("#scene"))
+        self.shoot("intervals")
+        shaded = self.picture()
+        changed = self.pixels_that_change_with("#sure")
+        self.assertGreater(changed, 0)
+        self.assertNotEqual(self.picture(), shaded)
+        self.press("u")
+        self.assertEqual(self.picture(), shaded)
+        # An answer that is less sure has more of it.
+        self.browser.execute_script("""
+          const drawn = Scene.prototype.intervals;
+          Scene.prototype.intervals = function (panel, target, clip, points, deviations, colour) {
+            drawn.call(this, panel, target, clip, points, deviations.map(d => d.map(mm => mm + 60)), colour);
+          };""")
+        sure.click()
+        self.assertGreater(self.pixels_that_change_with("#sure"), changed + 300)
+        motions.select_by_index(1)  # a sample does not say it
+        self.assertFalse(sure.is_enabled())
+
+    def test_an_interval_is_the_ellipse_that_its_deviations_make(self):
+        # Seen from straight ahead: x to the right, y up; from the side z is to the left.
+        ahead, aside, turned = self.browser.execute_script("""
+          const orbit = new Orbit();
+          const seen = (yaw, deviation) => {
+            Object.assign(orbit, {yaw, pitch: 0});
+            return orbit.ellipse(deviation);
+          };
+          return [seen(0, [30, 10, 500]), seen(Math.PI / 2, [500, 10, 70]), seen(Math.PI / 4, [40, 0, 40])];""")
+        self.assertAlmostEqual(ahead["wide"], 30)
+        self.assertAlmostEqual(ahead["narrow"], 10)
+        self.assertAlmostEqual(ahead["angle"] % 3.141592653589793, 0)
+        self.assertAlmostEqual(aside["wide"], 70)
+        self.assertAlmostEqual(turned["wide"], 40)
+        self.assertAlmostEqual(turned["narrow"], 0)
+
+    def test_decoded_intervals_hold_as_many_truths_as_the_program_says(self):
+        # The page has whole millimetres: four rounded coordinates, and a deviation, are off by half of one each.
+        least, most, told = self.browser.execute_script("""
+          const share = rounding => {
+            const shares = report.clips.map(data => {
+              const clip = new Clip(data), motion = clip.motion(0);
+              let held = 0, all = 0;
+              for (let joint = 1; joint < clip.joints; ++joint)
+                for (let axis = 0; axis < 3; ++axis)
+                  for (let frame = 0; frame < clip.frames; ++frame, ++all) {
+                    const from = columns => columns[3 * joint + axis][frame] - columns[axis][frame];
+                    held += Math.abs(from(motion.columns) - from(clip.truth))
+                      <= 1.645 * (motion.deviations[3 * joint + axis][frame] + rounding / 2) + 2 * rounding;
+                  }
+              return held / all;
+            });
+            return shares.reduce((a, b) => a + b) / shares.length;
+          };
+          return [share(-1), share(1), report.summary.model_mean_field.within_90];""")
+        self.assertLessEqual(least, told)
+        self.assertLessEqual(told, most)
+        self.assertGreater(least, 0)
+        self.assertLess(most, 1)
 
     def test_keyboard(self):
         self.press(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT, Keys.ARROW_LEFT)

@@ -46,6 +46,7 @@ class Clip {
     const motion = this.motions[index];
     motion.columns ??= decodeSeries(motion.points_mm, this.frames);
     motion.errors ??= this.errorPerFrame(motion.columns);
+    if (motion.deviation_mm) motion.deviations ??= decodeSeries(motion.deviation_mm, this.frames);
     return motion;
   }
   // Distance of a joint from the truth, roots aligned; an end of a limb counts as its joint.

@@ -17,6 +17,16 @@ class Orbit {
     return {x: panel.x + panel.width / 2 + focal * right / distance,
             y: panel.y + panel.height * .5 - focal * up / distance, distance, scale: focal / distance};
   }
+  // Deviations along the world's axes as the panel shows them: an ellipse's radii and its turn.
+  ellipse(deviation) {
+    const cy = Math.cos(this.yaw), sy = Math.sin(this.yaw), cp = Math.cos(this.pitch), sp = Math.sin(this.pitch);
+    const right = [cy, 0, -sy], up = [-sp * sy, cp, -sp * cy];
+    const sum = (a, b) => deviation.reduce((all, d, axis) => all + d * d * a[axis] * b[axis], 0);
+    const across = sum(right, right), high = sum(up, up), both = sum(right, up);
+    const middle = (across + high) / 2, spread = Math.hypot((across - high) / 2, both);
+    return {wide: Math.sqrt(middle + spread), narrow: Math.sqrt(Math.max(0, middle - spread)),
+            angle: -Math.atan2(2 * both, across - high) / 2};
+  }
 }
 
 // Blue-green (near) over yellow to red (150 mm and more).
@@ -105,6 +115,29 @@ class Scene {
         this.segment(a, b, Math.max(2.5, 42 * a.scale));
       }
     }
+    c.globalAlpha = 1;
+  }
+  // Where nine of ten true joints are: around each bone the ellipses that its intervals make on the
+  // panel, filled as one, so that they are evenly pale.
+  // @param deviations [x, y, z] each, of the joints
+  intervals(panel, target, clip, points, deviations, colour) {
+    const c = this.context, steps = 8, reach = 1.645;
+    c.fillStyle = colour;
+    c.globalAlpha = .28;
+    c.beginPath();
+    for (const [to, from] of clip.parents.entries()) {
+      if (from < 0 || to >= clip.joints) continue;
+      for (let step = 0; step <= steps; ++step) {
+        const part = step / steps, mixed = (a, b) => a.map((value, axis) => value + (b[axis] - value) * part);
+        const at = this.orbit.project(mixed(points[from], points[to]), target, panel);
+        if (at.distance < 100) return;
+        const seen = this.orbit.ellipse(mixed(deviations[from], deviations[to]));
+        const [wide, narrow] = [seen.wide, seen.narrow].map(r => reach * r * at.scale);
+        c.moveTo(at.x + wide * Math.cos(seen.angle), at.y + wide * Math.sin(seen.angle));
+        c.ellipse(at.x, at.y, wide, narrow, seen.angle, 0, 2 * Math.PI);
+      }
+    }
+    c.fill();
     c.globalAlpha = 1;
   }
   // On the ground below the figure, as one stroke, so that it is evenly dark.

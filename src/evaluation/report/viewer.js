@@ -39,6 +39,7 @@ class Viewer {
     on("scrub", "input", e => this.seek(+e.target.value));
     on("error", "change", () => this.draw());
     on("align", "change", () => this.draw());
+    on("sure", "change", () => this.draw());
     on("closer", "click", () => this.zoom(1.15));
     on("farther", "click", () => this.zoom(1 / 1.15));
     for (const radio of this.root.querySelectorAll("[name=layout]")) radio.addEventListener("change", () => this.draw());
@@ -78,6 +79,7 @@ class Viewer {
     else if (e.key === "n" || e.key === "p") this.choose((this.index + (e.key === "n" ? 1 : this.sources.length - 1)) % this.sources.length);
     else if (e.key === "o") { this.root.querySelector(`[value=${this.overlaid ? "side" : "overlay"}]`).click(); }
     else if (e.key === "e") press("error");
+    else if (e.key === "u") press("sure");
     else return;
     e.preventDefault();
   }
@@ -101,6 +103,7 @@ class Viewer {
   chooseMotion() {
     this.motion = this.clip.motion(+this.part("motion").value);
     this.root.dataset.motion = this.motion.label;
+    this.part("sure").disabled = !this.motion.deviations;
     this.draw();
   }
   seek(frame) {
@@ -143,6 +146,9 @@ class Viewer {
   pointsOf(columns) {
     return this.clip.points.map((_, i) => [0, 1, 2].map(axis => valueAt(columns[3 * i + axis], this.frame)));
   }
+  deviationsOf(columns) {
+    return Array.from({length: this.clip.joints}, (_, i) => [0, 1, 2].map(axis => valueAt(columns[3 * i + axis], this.frame)));
+  }
   draw() {
     if (!this.scene.fit()) return;
     const truth = this.pointsOf(this.clip.truth), other = this.pointsOf(this.motion.columns);
@@ -158,6 +164,9 @@ class Viewer {
       const panel = this.scene.panel(this.overlaid ? 0 : i, panels);
       this.scene.clipTo(panel, () => {
         if (i < panels) this.scene.ground(panel, target, this.clip.ground);
+        if (figure.name === "other" && this.motion.deviations && this.part("sure").checked)
+          this.scene.intervals(panel, target, this.clip, figure.points, this.deviationsOf(this.motion.deviations),
+                               this.scene.colour("other"));
         this.scene.figure(panel, target, this.clip, figure.points, this.clip.ground, figure.colour,
                           this.overlaid && i === 0 ? .75 : 1);
         const at = this.overlaid ? {...panel, y: 20 * i} : panel;
