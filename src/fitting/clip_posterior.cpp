@@ -1,6 +1,7 @@
 #include "fitting/clip_posterior.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <future>
 #include <utility>
 
@@ -22,6 +23,40 @@ void join(PosteriorPoint& whole, Eigen::Index known, const PosteriorPoint& part,
   }
 }
 
+/// Every so-manieth row, from the first on.
+MatrixD thinned(const MatrixD& rows, Eigen::Index every) {
+  return rows(Eigen::seq(0, rows.rows() - 1, every), Eigen::all);
+}
+
+/// The clip as a camera of that much slower rate has it.
+PosteriorClip thinned(const PosteriorClip& clip, Eigen::Index every) {
+  PosteriorClip coarse = clip;
+  for (const auto rows : {&PosteriorClip::turn_deviation_rad, &PosteriorClip::root,
+                          &PosteriorClip::travelled, &PosteriorClip::planted})
+    coarse.*rows = thinned(clip.*rows, every);
+  coarse.seen.clear();
+  for (Eigen::Index t = 0; t < clip.frames(); t += every) {
+    coarse.seen.push_back(clip.seen[static_cast<std::size_t>(t)]);
+    // A foot stands if it does from each frame to the next.
+    if (t > 0)
+      coarse.planted.row(t / every) =
+          clip.planted.middleRows(t - every + 1, every).colwise().minCoeff();
+  }
+  coarse.frame_time_s *= static_cast<double>(every);
+  return coarse;
+}
+
+/// Straight lines between rows that are `every` frames apart; the last one stays.
+MatrixD between(const MatrixD& rows, Eigen::Index every, Eigen::Index frames) {
+  MatrixD all(frames, rows.cols());
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    const Eigen::Index before = t / every, after = std::min(before + 1, rows.rows() - 1);
+    const double share = static_cast<double>(t % every) / static_cast<double>(every);
+    all.row(t) = (1 - share) * rows.row(before) + share * rows.row(after);
+  }
+  return all;
+}
+
 }  // namespace
 
 PosteriorPoint PosteriorPoint::zero(const PosteriorClip& clip) {
@@ -35,11 +70,12 @@ PosteriorPoint PosteriorPoint::zero(const PosteriorClip& clip) {
 }
 
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
-                           const TrackFitSettings& settings, PosteriorPoint from) {
+                           const TrackFitSettings& settings, PosteriorPoint from,
+                           double small_gain) {
   const std::vector<ClipWindow> windows = windows_of(clip.frames());
   const auto solved = [&](const ClipWindow& window, bool shared_too) {
     WindowProblem problem(clip, noise, settings, from, window.first, window.frames);
-    problem.solve(shared_too);
+    problem.solve(shared_too, small_gain);
     return problem.solution();
   };
   if (windows.size() == 1) return solved(windows.front(), true);
@@ -61,6 +97,18 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
     known = windows[i + 1].end();
   }
   return whole;
+}
+
+PosteriorPoint roughly_likely(const PosteriorClip& clip, const RayNoise& noise,
+                              const TrackFitSettings& settings, PosteriorPoint from) {
+  const auto every = std::max<Eigen::Index>(1, std::lround(kRoughly_s / clip.frame_time_s));
+  for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
+    from.*rows = thinned(from.*rows, every);
+  PosteriorPoint point =
+      most_likely(thinned(clip, every), noise, settings, std::move(from), kSmallGainOfRough);
+  for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
+    point.*rows = between(point.*rows, every, clip.frames());
+  return point;
 }
 
 Eigen::Vector3d place_of(const PosteriorClip& clip, const PosteriorPoint& point, Eigen::Index frame,

@@ -63,8 +63,20 @@ struct PosteriorPoint {
 /// the costs in terms/. Long clips are solved in windows that overlap, with the body of the middle
 /// one.
 /// @param from where to start
+/// @param small_gain a step that lowers the energy by less than this share is the last one
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
-                           const TrackFitSettings& settings, PosteriorPoint from);
+                           const TrackFitSettings& settings, PosteriorPoint from,
+                           double small_gain = 1e-3);
+
+/// Time between the frames that roughly_likely solves for.
+inline constexpr double kRoughly_s = 0.1;
+/// The gain at which it stops.
+inline constexpr double kSmallGainOfRough = 1e-2;
+
+/// About the same from fewer frames, in a fraction of the time: how a motion differs from the
+/// prior's mean is slow, and runs straight between those frames.
+PosteriorPoint roughly_likely(const PosteriorClip& clip, const RayNoise& noise,
+                              const TrackFitSettings& settings, PosteriorPoint from);
 
 /// Where the joint is. @return camera axes
 Eigen::Vector3d place_of(const PosteriorClip& clip, const PosteriorPoint& point, Eigen::Index frame,

@@ -119,15 +119,13 @@ class ClipFit {
     clip.camera = doubt_of(known, modalities_, track, settings);
     SeenNoise noise(track_noise_px, camera_, evidence_->usual_depth_m(), own_skeleton, settings);
     point_ = PosteriorPoint::zero(clip);
+    look_again(settings);
+    rays_ = noise.rays();
+    take(point_ = roughly_likely(clip, rays_, settings, std::move(point_)));
     for (std::size_t solution = 0; solution < settings.solutions; ++solution) {
-      evidence_->find_planted(motion());
-      point_.ground_m = evidence_->ground(point_);
-      if (clip.camera)
-        clip.camera->balanced =
-            evidence_->balanced(upright(), settings.balance_deg * kRadiansPerDegree);
+      look_again(settings);
       rays_ = noise.rays();
-      point_ = most_likely(clip, rays_, settings, std::move(point_));
-      take(point_);
+      take(point_ = most_likely(clip, rays_, settings, std::move(point_)));
       if (!noise.learn(evidence_->usual_residual(point_))) break;
     }
   }
@@ -203,6 +201,16 @@ class ClipFit {
   }
 
  private:
+  /// What the motion tells of standing feet, their ground and how the camera stands.
+  void look_again(const TrackFitSettings& settings) {
+    PosteriorClip& clip = evidence_->clip;
+    evidence_->find_planted(motion());
+    point_.ground_m = evidence_->ground(point_);
+    if (clip.camera)
+      clip.camera->balanced =
+          evidence_->balanced(upright(), settings.balance_deg * kRadiansPerDegree);
+  }
+
   /// Pose, root and, if it is unknown, body are what the point makes of the prior's mean. A single
   /// camera does not tell how large things are: body and distance are scaled so that the body is
   /// one of 1.7 m, as the camera's metres are meant, and it looks the same.

@@ -22,8 +22,6 @@ namespace mcdbn {
 namespace {
 
 constexpr int kMostIterations = 25;
-/// A step that lowers the energy by less than this share is the last one.
-constexpr double kSmallGain = 1e-3;
 /// A joint that is nearer to the camera than this share of the root's first distance says nothing.
 constexpr double kNearest = 0.1;
 /// What hardly stands is not worth an equation.
@@ -68,7 +66,7 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
   if (clip_.body_unknown) add_lengths(unknowns);
 }
 
-void WindowProblem::solve(bool shared_too) {
+void WindowProblem::solve(bool shared_too, double small_gain) {
   check_interruption();
   if (!shared_too)
     for (double* block : shared_blocks()) problem_.SetParameterBlockConstant(block);
@@ -76,7 +74,10 @@ void WindowProblem::solve(bool shared_too) {
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
   options.max_num_iterations = kMostIterations;
-  options.function_tolerance = kSmallGain;
+  // Half as many steps as Levenberg and Marquardt's.
+  options.trust_region_strategy_type = ceres::DOGLEG;
+  options.dogleg_type = ceres::SUBSPACE_DOGLEG;
+  options.function_tolerance = small_gain;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   const OneThreadSolver one_thread;

@@ -24,7 +24,8 @@ class WindowProblem {
                 Unknowns unknowns = Unknowns::seen);
 
   /// @param shared_too else what all frames share, body, ground and camera, stays as it is
-  void solve(bool shared_too);
+  /// @param small_gain a step that lowers the energy by less than this share is the last one
+  void solve(bool shared_too, double small_gain);
 
   /// Derivatives of the residuals, as their losses weigh them, at the point where the problem is.
   /// @return [residuals x frames·(3·orientations + 3) + lengths]: frame by frame its turns and its

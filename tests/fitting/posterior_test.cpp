@@ -42,6 +42,16 @@ TEST_CASE("posterior: a wrong prior comes back to the truth, and to the track") 
   }
 }
 
+TEST_CASE(
+    "posterior: a rough solution comes back to the truth, too, but not to every frame's track") {
+  const Scene scene = make_scene();
+  TrackFitSettings rough;
+  rough.solutions = 0;
+  const Motion fitted = scene.fit(scene.track, rough);
+  CHECK(error_cm(scene, fitted) < 0.4 * error_cm(scene, scene.unfitted()));
+  CHECK(miss_px(scene, fitted, scene.track) > miss_px(scene, scene.fit(), scene.track));
+}
+
 TEST_CASE("posterior: the same again, bit for bit") {
   const Scene scene = make_scene(1, 20);
   CHECK(scene.fit().channels == scene.fit().channels);

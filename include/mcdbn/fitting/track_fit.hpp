@@ -117,9 +117,11 @@ struct TrackFitSettings {
         self.proportions);
     visit(Setting{"footing", above(0), "m/s", "how fast a foot that stands slips"},
           self.footing_m_s);
-    visit(Setting{"solutions", at_least(1), "",
-                  "at most, each with the noise and the standing feet that the one before tells"},
-          self.solutions);
+    visit(
+        Setting{"solutions", at_least(0), "",
+                "of all frames at most, after one of every tenth of a second; each with the noise "
+                "and the standing feet that the one before tells"},
+        self.solutions);
     visit(Setting{"spread", above(0), "",
                   "how many times wider the posterior is drawn than its equations make it"},
           self.spread);

@@ -1,0 +1,102 @@
+// A solution of a few frames a second stands in for one of all.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fitting/clip_posterior.hpp"
+
+namespace roughly_likely_test {
+
+using namespace mcdbn;
+
+namespace {
+
+constexpr double kRate_hz = 30;
+constexpr Eigen::Index kEvery = 3;  // frames of kRoughly_s
+const RayNoise kNoise{0.002, 0.004};
+
+/// Two bones that swing in the image, of which the lower one's end is seen and stands now and then.
+/// The prior takes them for still.
+PosteriorClip swinging(Eigen::Index frames) {
+  PosteriorClip clip;
+  clip.parents = {-1, 0};
+  clip.lengths = {0, 1};
+  clip.root = MatrixD::Zero(frames, 3);
+  clip.root.col(2).setConstant(4);
+  clip.travelled = clip.root;
+  clip.feet = {1};
+  clip.grounds = {0};
+  clip.frame_time_s = 1 / kRate_hz;
+  clip.turn_deviation_rad.resize(frames, 2);
+  clip.planted.resize(frames, 1);
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    clip.turn_deviation_rad.row(t).setConstant(0.2 + 0.01 * static_cast<double>(t % 7));
+    clip.planted(t, 0) = t % 7 == 2 ? 0.3 : 0.9;
+    const double turn = 0.3 * std::sin(3.0 * static_cast<double>(t) / kRate_hz);
+    const Eigen::Vector3d knee(-0.4 * std::sin(turn), 0.4 * std::cos(turn), 4),
+        ankle = knee + Eigen::Vector3d(-0.4 * std::sin(2 * turn), 0.4 * std::cos(2 * turn), 0);
+    clip.seen.push_back({{{{0, {0, 0.4, 0}}}, knee.head<2>() / 4, 1},
+                         {{{0, {0, 0.4, 0}}, {1, {0, 0.4, 0}}}, ankle.head<2>() / 4, 1}});
+  }
+  return clip;
+}
+
+/// Its every third frame, as a camera of 10 Hz has them.
+PosteriorClip every_third(const PosteriorClip& clip) {
+  PosteriorClip thin = clip;
+  const Eigen::Index frames = (clip.frames() + kEvery - 1) / kEvery;
+  for (const auto rows : {&PosteriorClip::turn_deviation_rad, &PosteriorClip::root,
+                          &PosteriorClip::travelled, &PosteriorClip::planted})
+    (thin.*rows).conservativeResize(frames, Eigen::NoChange);
+  thin.seen.resize(static_cast<std::size_t>(frames));
+  for (Eigen::Index k = 1; k < frames; ++k) {
+    const Eigen::Index t = kEvery * k;
+    thin.turn_deviation_rad.row(k) = clip.turn_deviation_rad.row(t);
+    thin.seen[static_cast<std::size_t>(k)] = clip.seen[static_cast<std::size_t>(t)];
+    double surely = 1;  // stands throughout
+    for (Eigen::Index step = t - kEvery + 1; step <= t; ++step)
+      surely = std::min(surely, clip.planted(step, 0));
+    thin.planted(k, 0) = surely;
+  }
+  thin.frame_time_s = kEvery / kRate_hz;
+  return thin;
+}
+
+}  // namespace
+
+TEST_CASE("roughly likely: it is the likeliest of every third frame, straight between them") {
+  constexpr Eigen::Index kFrames = 44;  // the last one lies beyond the last of every third
+  const PosteriorClip clip = swinging(kFrames), thin = every_third(clip);
+  PosteriorPoint from = PosteriorPoint::zero(clip), thin_from = PosteriorPoint::zero(thin);
+  from.ground_m.setConstant(-0.8);
+  thin_from.ground_m = from.ground_m;
+  const PosteriorPoint rough = roughly_likely(clip, kNoise, {}, from),
+                       expected = most_likely(thin, kNoise, {}, thin_from, kSmallGainOfRough);
+  REQUIRE(rough.turns.rows() == kFrames);
+  CHECK(expected.turns.cwiseAbs().maxCoeff() > 0.1);
+  constexpr double kClose = 1e-12;
+  for (Eigen::Index t = 0; t < kFrames; ++t) {
+    CAPTURE(t);
+    const Eigen::Index before = t / kEvery, after = std::min(before + 1, expected.turns.rows() - 1);
+    const double share = static_cast<double>(t % kEvery) / kEvery;
+    const auto straight = [&](const MatrixD& rows) {
+      return ((1 - share) * rows.row(before) + share * rows.row(after)).eval();
+    };
+    CHECK((rough.turns.row(t) - straight(expected.turns)).cwiseAbs().maxCoeff() < kClose);
+    CHECK((rough.shift.row(t) - straight(expected.shift)).cwiseAbs().maxCoeff() < kClose);
+  }
+  CHECK(std::abs(rough.ground_m[0] - expected.ground_m[0]) < kClose);
+}
+
+TEST_CASE("roughly likely: a clip whose frames are as far apart as that is solved as it is") {
+  PosteriorClip clip = swinging(10);
+  clip.frame_time_s = kRoughly_s;
+  const PosteriorPoint from = PosteriorPoint::zero(clip);
+  const PosteriorPoint rough = roughly_likely(clip, kNoise, {}, from),
+                       full = most_likely(clip, kNoise, {}, from, kSmallGainOfRough);
+  CHECK(rough.turns == full.turns);
+}
+
+}  // namespace roughly_likely_test
