@@ -14,10 +14,8 @@ namespace {
 constexpr int kRounds = 3;
 
 /// The rounds need to know about where joints are: a solution of a few frames a second tells it.
-constexpr std::size_t kSolutions = 0;
-
 ClipPlacement roughly(ClipPlacement placement) {
-  if (placement.fit) placement.fit->solutions = std::min(placement.fit->solutions, kSolutions);
+  if (placement.fit) placement.fit->solutions = 0;
   return placement;
 }
 
