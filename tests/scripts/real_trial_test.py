@@ -9,7 +9,6 @@ Where there is no numpy, exit code 77, which CTest takes for "skipped".
 import json
 import math
 import pathlib
-import struct
 import subprocess
 import sys
 import tempfile
@@ -39,7 +38,17 @@ with (here / "calls.jsonl").open("a") as calls:
     calls.write(json.dumps(sys.argv[1:]) + "\\n")
 known = "known" if "--camera" in said else "unknown"
 shutil.copy(here / f"{pathlib.Path(said['--input']).name}_{known}.bvh", said["-o"])
+if "--write-camera" in said:
+    shutil.copy(here / "camera.json", said["--write-camera"])
 """
+# The camera that it found: to the person's left, along -x, and 20 degrees down. Rows are right, down, ahead.
+SIN, COS = math.sin(math.radians(20)), math.cos(math.radians(20))
+FOUND = [[0, 0, -1], [SIN, -COS, 0], [-COS, -SIN, 0]]
+
+
+def as_found(place):
+    """What that camera has to see to see the same as the real one, which is level."""
+    return tuple(place[0] * right - place[1] * down for right, down in zip(FOUND[0], FOUND[1]))
 
 
 def world(frame, joint):
@@ -133,10 +142,9 @@ class RealTrial(unittest.TestCase):
             openpose(self.data / TRIAL / f"pose/cam{number:02}_json", BODY_25B, range(FRAMES), 3)
         # The second file of RTMPose shows the first row.
         openpose(self.data / "pose2sim_rtmpose_S00P00T01/cam03", HALPE_26, range(-1, FRAMES), 4)
-        header = json.dumps({"__metadata__": {
-            "view": json.dumps({"azimuth_deg": 90, "elevation_deg": 20, "level_view": True})}}).encode()
         self.model = self.folder / "model.safetensors"
-        self.model.write_bytes(struct.pack("<Q", len(header)) + header)
+        (self.folder / "camera.json").write_text(json.dumps(
+            {"R": {"type_id": "opencv-matrix", "rows": 3, "cols": 3, "dt": "d", "data": sum(FOUND, [])}}))
         self.program = self.folder / "program"
         self.program.write_text(PROGRAM)
         self.program.chmod(0o755)
@@ -163,25 +171,20 @@ class RealTrial(unittest.TestCase):
             x, y, z = world(frame, joint)
             return x + 0.1, y - (0.12 if joint == "LWrist" else 0), z
 
-        def along_heading(frame, joint):
-            # A camera to the left looks along -x: what lies to its right is -z.
-            x, y, z = world(frame, joint)
-            return z, y, -x
-
         for name in ("cam01_json", "truth_cam01"):
             self.lay_answer(f"{name}_known", wrong)
-            self.lay_answer(f"{name}_unknown", along_heading)
+            self.lay_answer(f"{name}_unknown", lambda frame, joint: as_found(world(frame, joint)))
         rows = self.run_script("--cameras", "1", "--joints")
         known, unknown = rows[2], rows[3]
         self.assertEqual(known[:4], ["1", "OpenPose", "yes", "model"])
         self.assertEqual(known[4], "10")  # 120 mm of one of twelve
         self.assertLess(int(known[5]), 20)  # a little turned towards the wrist
         self.assertLess(int(known[6]), 20)
-        self.assertEqual(known[7:], ["100", "2", "17.0", "3.0"])  # 100 mm are 20 px, the track's 3 less
+        self.assertEqual(known[7:], ["100", "2", "17.0", "3.0", ""])  # 100 mm are 20 px, the track's 3 less
         self.assertEqual(unknown[:4], ["1", "OpenPose", "no", "model"])
-        self.assertEqual(unknown[4:], ["0", "0", "0", "", "2", "", "3.0"])
+        self.assertEqual(unknown[4:], ["0", "0", "0", "", "2", "", "3.0", "20"])
         self.assertEqual(rows[4][1], "truth, projected")
-        self.assertEqual(rows[4][-2:], ["20.0", "0.0"])
+        self.assertEqual(rows[4][-3:], ["20.0", "0.0", ""])
         joints = dict(zip(rows[-6][4:], rows[-4][4:]))
         self.assertEqual(joints.pop("LWrist"), "120")
         self.assertEqual(set(joints.values()), {"0"})
@@ -228,8 +231,8 @@ class RealTrial(unittest.TestCase):
         for known in ("known", "unknown"):
             self.lay_answer(f"cam03_{known}", lambda frame, joint: world(frame - 1, joint), FRAMES + 1)
         rows = {(row[1], row[2]): row[4:] for row in self.run_script("--cameras", "3")[2:]}
-        self.assertEqual(rows["RTMPose", "yes"], ["0", "0", "0", "0", "2", "4.0", "4.0"])
-        self.assertEqual(rows["OpenPose", "yes"], ["0", "0", "0", "0", "2", "3.0", "3.0"])
+        self.assertEqual(rows["RTMPose", "yes"], ["0", "0", "0", "0", "2", "4.0", "4.0", ""])
+        self.assertEqual(rows["OpenPose", "yes"], ["0", "0", "0", "0", "2", "3.0", "3.0", ""])
 
     def test_without_data_it_says_so(self):
         done = subprocess.run([sys.executable, SCRIPT, self.model, "--data", self.folder / "none"],
