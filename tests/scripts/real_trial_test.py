@@ -196,6 +196,10 @@ class RealTrial(unittest.TestCase):
         # What is there is not made again, and gives the same.
         self.assertEqual(self.run_script("--cameras", "1", "--joints"), rows)
         self.assertEqual(len(self.calls()), 4)
+        # An answer of an unknown camera is whole with its camera alone.
+        (self.folder / "work" / "cam01_openpose_unknown_model.json").unlink()
+        self.assertEqual(self.run_script("--cameras", "1", "--joints"), rows)
+        self.assertEqual(len(self.calls()), 5)
 
     def test_turned_and_taller_answers_and_the_mean_of_cameras(self):
         def turned(frame, joint):
