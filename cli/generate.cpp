@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "base/counted.hpp"
 #include "commands.hpp"
@@ -20,23 +21,21 @@ namespace mcdbn::cli {
 namespace {
 
 struct GenerateOptions {
-  std::filesystem::path model, seed_clip, output;
+  std::filesystem::path model, output;
+  std::vector<std::filesystem::path> seed_clips;
   GenerationOptions generation;
 };
 
-/// What the library says of the seed clip, with its name.
-std::vector<Motion> generated(const Model& model, const GenerateOptions& options,
-                              const GenerationOptions& generation, GenerationHealth& health) {
-  const Motion seed = load_clip(options.seed_clip, {.fps = model.modalities.fps});
-  try {
-    return generate_clip(model, seed, generation, &health);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", options.seed_clip.string(), error.what()));
-  }
+std::vector<SeedClip> load_seeds(const GenerateOptions& options, double fps) {
+  std::vector<SeedClip> seeds;
+  for (const std::filesystem::path& file : options.seed_clips)
+    seeds.push_back({file.string(), load_clip(file, {.fps = fps})});
+  return seeds;
 }
 
-/// How bounded and alive it is, in a line.
+/// How bounded and alive it is.
 void report(const GenerationHealth& health) {
+  constexpr double kLeast = 0.5, kMost = 1.5;  // shares of the training data's deviation
   std::vector<double> deviation(health.deviation.begin(), health.deviation.end());
   std::sort(deviation.begin(), deviation.end());
   const std::size_t cycle = *std::min_element(health.cycle.begin(), health.cycle.end());
@@ -44,6 +43,12 @@ void report(const GenerationHealth& health) {
       "its channels deviate {:.2f} to {:.2f} times as far as in training (median {:.2f}); {}",
       deviation.front(), deviation.back(), deviation[deviation.size() / 2],
       cycle > 0 ? fmt::format("the shortest cycle has {}", counted(cycle, "frame")) : "no cycle");
+  const std::size_t in_range = static_cast<std::size_t>(std::ranges::count_if(
+      deviation, [](double of_channel) { return of_channel >= kLeast && of_channel <= kMost; }));
+  spdlog::info(
+      "{} of {} between {:g} and {:g}; {} of {} slower than half the clip's speed in the end",
+      in_range, counted(deviation.size(), "channel"), kLeast, kMost, health.slow_sequences(),
+      counted(health.late_speed.size(), "sequence"));
 }
 
 void run_generate(const CommandContext& context, const GenerateOptions& options) {
@@ -52,7 +57,8 @@ void run_generate(const CommandContext& context, const GenerateOptions& options)
   GenerationOptions generation = options.generation;
   generation.seed = context.seed;
   GenerationHealth health;
-  const auto motions = generated(model, options, generation, health);
+  const auto motions =
+      generate_clips(model, load_seeds(options, model.modalities.fps), generation, &health);
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const auto path = sample_path(options.output, i, motions.size());
     write_bvh(path, motions[i]);
@@ -72,8 +78,10 @@ void add_generate_command(CLI::App& app, CommandContext& context) {
       "generate", "Goes on where a clip ends: new 3D motion, as BVH, without any track");
   add_model_option(*command, options->model);
   command
-      ->add_option("--seed-clip", options->seed_clip,
-                   "BVH clip to go on from: its last frames and its person")
+      ->add_option(
+          "--seed-clip", options->seed_clips,
+          "BVH clip to go on from: its last frames and its person; several are gone on from "
+          "one after another")
       ->required()
       ->type_name("FILE");
   mark_output(
@@ -86,7 +94,7 @@ void add_generate_command(CLI::App& app, CommandContext& context) {
       ->capture_default_str();
   command
       ->add_option("--samples", generation.samples,
-                   "Variations; several are written as out_01.bvh …")
+                   "Variations of each; several are written as out_01.bvh …")
       ->check(in_range(within(1, kMostSamples)))
       ->capture_default_str();
   command

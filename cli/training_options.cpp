@@ -25,8 +25,9 @@ void TrainingOptions::add_to(CLI::App& command) {
           "--preset", preset_,
           "default; paper: the paper's own figures, which diverge; paper-stable: the same at "
           "rates that do not; generation: the greedy stages alone, so that `generate` goes "
-          "on and on")
-      ->check(CLI::IsMember({"default", "paper", "paper-stable", "generation"}))
+          "on and on; general: many people, actions and skeletons for a detector's tracks, as the "
+          "model that comes with the program is trained")
+      ->check(CLI::IsMember({"default", "paper", "paper-stable", "generation", "general"}))
       ->capture_default_str();
   command
       .add_option(
@@ -104,6 +105,7 @@ TrainingConfig TrainingOptions::resolve(const std::vector<SaidSetting>& last,
   if (preset_ == "paper") return applied_to(TrainingConfig::paper());
   if (preset_ == "paper-stable") return applied_to(TrainingConfig::paper_stable());
   if (preset_ == "generation") return applied_to(TrainingConfig::generation());
+  if (preset_ == "general") return applied_to(TrainingConfig::general());
   const TrainingConfig config = applied_to({});
   return config.fine_tuning.steps > 0 ? config : applied_to(TrainingConfig::greedy());
 }
@@ -118,8 +120,8 @@ void TrainingOptions::apply_stages(TrainingConfig& config) const {
 }
 
 void TrainingOptions::apply_tracks(TrainingConfig& config) const {
-  constexpr double kUsualShare = 0.8;
-  if (tracks_ == "detector" && config.augment.detector == 0) config.augment.detector = kUsualShare;
+  if (tracks_ == "detector" && config.augment.detector == 0)
+    config.augment.detector = TrainingConfig::kShareOfDetectorViews;
 }
 
 void TrainingOptions::apply_skeleton(TrainingConfig& config) const {

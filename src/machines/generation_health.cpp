@@ -1,7 +1,11 @@
 #include "mcdbn/machines/generation_health.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -42,8 +46,22 @@ std::size_t shortest_cycle(const MatrixF& sequence, std::size_t longest) {
   return 0;
 }
 
-GenerationHealth generation_health(const std::vector<MatrixF>& sequences) {
+std::size_t GenerationHealth::slow_sequences() const {
+  std::size_t slow = 0;
+  for (std::size_t i = 0; i < seed_speed.size(); ++i)
+    if (!(late_speed[i] >= kSlow * seed_speed[i])) ++slow;
+  return slow;
+}
+
+GenerationHealth generation_health(const std::vector<MatrixF>& sequences,
+                                   const std::vector<MatrixF>& seeds) {
+  if (!seeds.empty() && sequences.size() % seeds.size() != 0)
+    throw ShapeError(fmt::format("{} sequences cannot have gone on from {} seeds alike",
+                                 sequences.size(), seeds.size()));
   GenerationHealth health;
+  for (const MatrixF& seed : seeds)
+    health.seed_speed.insert(health.seed_speed.end(), sequences.size() / seeds.size(),
+                             std::sqrt(change(seed, 1)));
   health.deviation = deviation_of(sequences);
   for (const MatrixF& sequence : sequences) {
     const Eigen::Index late =

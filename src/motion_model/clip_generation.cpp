@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "base/counted.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
@@ -26,40 +28,68 @@ MatrixD root_path(const MatrixD& root, const Eigen::Matrix3d& axes_from_world, d
   return path;
 }
 
-}  // namespace
+/// A seed on the model's joints and at its rate, and the way back.
+struct PreparedSeed {
+  Motion motion;
+  std::optional<HumanoidRig> rig;  ///< where the model is the humanoid's and the seed is not
+  MatrixF features;                ///< standardized
+};
 
-std::vector<Motion> generate_clip(const Model& model, const Motion& seed,
-                                  const GenerationOptions& options, GenerationHealth* health) {
+PreparedSeed prepared(const Model& model, const Motion& seed,
+                      const Eigen::Matrix3d& camera_from_world) {
   const Modalities& modalities = model.modalities;
-  if (is_humanoid(modalities.pose_features.skeleton()) && !is_humanoid(seed.skeleton)) {
-    const HumanoidRig rig = rig_of_person(seed);
-    std::vector<Motion> motions = generate_clip(model, rig.to_humanoid(seed), options, health);
-    for (Motion& motion : motions) motion = rig.from_humanoid(motion);
-    return motions;
-  }
-  const Cdbn& cdbn = model.network.cdbns[kPose];
-  const Motion at_rate = resample(seed, modalities.fps);
-  if (at_rate.frames() < static_cast<int>(seed_frames(cdbn)))
+  PreparedSeed own;
+  if (is_humanoid(modalities.pose_features.skeleton()) && !is_humanoid(seed.skeleton))
+    own.rig = rig_of_person(seed);
+  own.motion = resample(own.rig ? own.rig->to_humanoid(seed) : seed, modalities.fps);
+  const std::size_t needed = seed_frames(model.network.cdbns[kPose]);
+  if (own.motion.frames() < static_cast<int>(needed))
     throw InputError(
         fmt::format("the seed clip has {} at the model's {:g} fps, the network looks at {}; give a "
                     "longer one",
-                    counted(at_rate.frames(), "frame"), modalities.fps, seed_frames(cdbn)));
-  const Eigen::Matrix3d camera_from_world = camera_at_origin(modalities.camera).camera_from_world,
-                        axes_from_world = modalities.pose_axes(camera_from_world);
-  const Skeleton& skeleton = at_rate.skeleton;
-  const WorldPose last = forward_kinematics(skeleton, at_rate.channels.bottomRows(1));
+                    counted(own.motion.frames(), "frame"), modalities.fps, needed));
+  own.features = modalities.encode_pose(own.motion, camera_from_world);
+  return own;
+}
+
+/// What was generated, on the seed's person and from where the seed ends.
+Motion decoded(const Modalities& modalities, const MatrixF& pose, const PreparedSeed& seed,
+               const Eigen::Matrix3d& axes_from_world) {
+  const Skeleton& skeleton = seed.motion.skeleton;
+  const WorldPose last = forward_kinematics(skeleton, seed.motion.channels.bottomRows(1));
   const Eigen::Vector3d start =
       last.position[static_cast<std::size_t>(skeleton.find(modalities.root_name()))];
-  const auto poses = generate(cdbn, {modalities.encode_pose(at_rate, camera_from_world)}, options);
-  if (health) *health = generation_health(poses);
-  std::vector<Motion> motions;
-  for (const MatrixF& pose : poses) {
-    const MatrixD features = modalities.pose_scale.invert(pose);
-    motions.push_back(modalities.pose_features.decode(
-        features, axes_from_world, skeleton, modalities.fps,
-        root_path(modalities.pose_features.root_features(features), axes_from_world, modalities.fps,
-                  file_units_per_metre(skeleton), start)));
+  const MatrixD features = modalities.pose_scale.invert(pose);
+  const Motion motion = modalities.pose_features.decode(
+      features, axes_from_world, skeleton, modalities.fps,
+      root_path(modalities.pose_features.root_features(features), axes_from_world, modalities.fps,
+                file_units_per_metre(skeleton), start));
+  return seed.rig ? seed.rig->from_humanoid(motion) : motion;
+}
+
+}  // namespace
+
+std::vector<Motion> generate_clips(const Model& model, const std::vector<SeedClip>& seeds,
+                                   const GenerationOptions& options, GenerationHealth* health) {
+  const Modalities& modalities = model.modalities;
+  const Eigen::Matrix3d camera_from_world = camera_at_origin(modalities.camera).camera_from_world,
+                        axes_from_world = modalities.pose_axes(camera_from_world);
+  std::vector<PreparedSeed> prepared_seeds;
+  std::vector<MatrixF> features;
+  for (const SeedClip& seed : seeds) {
+    try {
+      prepared_seeds.push_back(prepared(model, seed.motion, camera_from_world));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", seed.name, error.what()));
+    }
+    features.push_back(prepared_seeds.back().features);
   }
+  const auto poses = generate(model.network.cdbns[kPose], features, options);
+  if (health) *health = generation_health(poses, features);
+  std::vector<Motion> motions;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    motions.push_back(
+        decoded(modalities, poses[i], prepared_seeds[i / options.samples], axes_from_world));
   return motions;
 }
 

@@ -20,14 +20,16 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Call {
-  fs::path model, seed_clip;
+  fs::path model;
+  std::vector<fs::path> seed_clips;
   std::optional<std::size_t> frames = {}, samples = {}, gibbs_steps = {};
   std::optional<double> temperature = {};
   std::optional<std::uint64_t> seed = {};
 
   std::string arguments(const fs::path& output) const {
-    std::string text = fmt::format("generate --model '{}' --seed-clip '{}' -o '{}'", model.string(),
-                                   seed_clip.string(), output.string());
+    std::string text =
+        fmt::format("generate --model '{}' -o '{}' --seed-clip", model.string(), output.string());
+    for (const fs::path& clip : seed_clips) text += fmt::format(" '{}'", clip.string());
     const auto add = [&](const char* flag, const auto& value) {
       if (value) text += fmt::format(" {} {}", flag, *value);
     };
@@ -50,8 +52,10 @@ std::vector<std::string> by_library(const Call& call) {
   options.temperature = call.temperature.value_or(1.0);
   options.seed = call.seed.value_or(1);
   std::vector<std::string> texts;
-  for (const mcdbn::Motion& motion :
-       generate_clip(model, mcdbn::load_clip(call.seed_clip), options))
+  std::vector<mcdbn::SeedClip> seeds;
+  for (const fs::path& clip : call.seed_clips)
+    seeds.push_back({clip.string(), mcdbn::load_clip(clip)});
+  for (const mcdbn::Motion& motion : generate_clips(model, seeds, options))
     texts.push_back(bvh_text(motion));
   return texts;
 }
@@ -63,7 +67,7 @@ std::vector<std::string> by_program(const Call& call) {
   CAPTURE(result.standard_error);
   CHECK(result.exit_code == 0);
   CHECK(result.standard_output.empty());
-  const std::size_t samples = call.samples.value_or(1);
+  const std::size_t samples = call.samples.value_or(1) * call.seed_clips.size();
   std::vector<std::string> texts;
   for (std::size_t i = 1; i <= samples; ++i) {
     const fs::path file = folder / (samples == 1 ? "out.bvh" : fmt::format("out_{:02}.bvh", i));
@@ -94,7 +98,7 @@ TEST_CASE("generate: every option changes what its help says") {
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;
   const Call plain{.model = pipeline.model(),
-                   .seed_clip = seed_clip(1),
+                   .seed_clips = {seed_clip(1)},
                    .frames = 60,
                    .samples = 2,
                    .gibbs_steps = 4,
@@ -116,7 +120,10 @@ TEST_CASE("generate: every option changes what its help says") {
       row("--samples", [](Call& c) { c.samples = 3; }),
       row("--frames", [](Call& c) { c.frames = 31; }),
       row("--gibbs-steps", [](Call& c) { c.gibbs_steps = 0; }),
-      row("--seed-clip", [](Call& c) { c.seed_clip = seed_clip(2); }),
+      row("--seed-clip",
+          [](Call& c) {
+            c.seed_clips = {seed_clip(2), seed_clip(1)};
+          }),
       row("--model", [&](Call& c) {
         REQUIRE(train(pipeline.test_clips(), folder / "run", kTiny).exit_code == 0);
         c.model = folder / "run/model.safetensors";
@@ -129,7 +136,7 @@ TEST_CASE("generate: every option changes what its help says") {
   rows.push_back({"--output", [&] { CHECK(text() == by_library(one).at(0)); }});
   rows.push_back({"--quiet", [&] {
                     const std::string call = one.arguments(output);
-                    CHECK(count_lines(run_cli(call).standard_error) == 2);
+                    CHECK(count_lines(run_cli(call).standard_error) == 3);
                     const std::string seen = text();
                     CHECK(run_cli(call + " --quiet").standard_error.empty());
                     CHECK(text() == seen);
@@ -139,7 +146,7 @@ TEST_CASE("generate: every option changes what its help says") {
 
 TEST_CASE("generate: what holds where an option is not said") {
   if (!have_device()) return;
-  const Call bare{.model = TinyPipeline::instance().model(), .seed_clip = seed_clip(1)};
+  const Call bare{.model = TinyPipeline::instance().model(), .seed_clips = {seed_clip(1)}};
   CHECK(by_program(bare) == by_library(bare));
 }
 
@@ -149,7 +156,7 @@ TEST_CASE("generate: a seed clip that is too short is named") {
   mcdbn::Motion clip = mcdbn::read_bvh(seed_clip(1));
   clip.channels = mcdbn::MatrixD(clip.channels.topRows(5));
   write_bvh(folder / "short.bvh", clip);
-  const Call call{.model = TinyPipeline::instance().model(), .seed_clip = folder / "short.bvh"};
+  const Call call{.model = TinyPipeline::instance().model(), .seed_clips = {folder / "short.bvh"}};
   const CliResult result = run_cli(call.arguments(folder / "out.bvh"));
   CHECK(result.exit_code == 3);
   CHECK(result.standard_error.find("short.bvh") != std::string::npos);

@@ -123,8 +123,12 @@ TEST_CASE("train: every option changes what its help says") {
                     CHECK(train("x.bvh", run, "--config absent.toml").exit_code == 2);
                   }});
   // What these do has test cases of its own, and scripts_test.py.
-  rows.push_back(
-      {"--preset", [&] { CHECK(train("x.bvh", run, "--preset other").exit_code == 2); }});
+  rows.push_back({"--preset", [&] {
+                    CHECK(train("x.bvh", run, "--preset other").exit_code == 2);
+                    trained(pipeline.training_clips(), "--preset general --augment-views 1");
+                    CHECK(model().find("JOINT left_shoulder") !=
+                          std::string::npos);  // the humanoid
+                  }});
   rows.push_back(
       {"--stages", [&] { CHECK(train("x.bvh", run, "--stages other").exit_code == 2); }});
   rows.push_back({"--skeleton", [&] {

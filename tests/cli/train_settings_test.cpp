@@ -186,6 +186,7 @@ TEST_CASE("--preset and --stages say which stages there are and whose defaults h
   check_settings(settings_of_options("--preset paper-stable"), TrainingConfig::paper_stable(), {});
   check_settings(settings_of_options("--preset generation --hidden 5"),
                  TrainingConfig::generation(), {{"hidden", 5}});
+  check_settings(settings_of_options("--preset general"), TrainingConfig::general(), {});
   check_settings(settings_of_options("--stages greedy"), TrainingConfig::greedy(), {});
   check_settings(settings_of_options("--fine-tuning-steps 0 --hidden 6"), TrainingConfig::greedy(),
                  {{"hidden", 6}});

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/random_matrix.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace generation_health_test {
 
@@ -63,6 +64,22 @@ TEST_CASE("generation health: deviations over all sequences, speed at the end of
   const RowVectorD centred = (all.rowwise() - all.colwise().mean()).colwise().norm();
   CHECK((health.deviation - centred / std::sqrt(1000.0)).cwiseAbs().maxCoeff() < 1e-12);
   CHECK(generation_health({}).deviation.size() == 0);
+}
+
+TEST_CASE("generation health: what ends at less than half its seed's speed is slow") {
+  const MatrixF seed = swinging(100, 25), faster = swinging(100, 20);
+  const auto slowed = [&](float factor) { return MatrixF(factor * swinging(300, 25)); };
+  // Two sequences of each seed.
+  const GenerationHealth health =
+      generation_health({slowed(1.0F), slowed(0.49F), slowed(0.51F), slowed(0.3F)}, {seed, faster});
+  REQUIRE(health.seed_speed.size() == 4);
+  CHECK(health.seed_speed[0] == health.seed_speed[1]);
+  CHECK(health.seed_speed[2] == health.seed_speed[3]);
+  CHECK(health.seed_speed[0] == doctest::Approx(health.late_speed[0]).epsilon(0.01));
+  CHECK(health.seed_speed[2] > 1.1 * health.seed_speed[0]);
+  CHECK(health.slow_sequences() == 3);  // 0.51 is slow beside the faster seed
+  CHECK(generation_health({seed}).slow_sequences() == 0);
+  CHECK_THROWS_AS(generation_health({seed, seed, seed}, {seed, seed}), ShapeError);
 }
 
 }  // namespace generation_health_test

@@ -44,13 +44,18 @@ Motion other_person(int frames, double fps) {
   return swinging(body, frames, fps);
 }
 
+std::vector<Motion> generated(const Model& model, const Motion& seed,
+                              const GenerationOptions& options) {
+  return generate_clips(model, {{"seed", seed}}, options);
+}
+
 double largest(const MatrixD& difference) {
   return difference.cwiseAbs().maxCoeff();
 }
 
 }  // namespace
 
-TEST_CASE("generate_clip: what the network makes of the seed at the model's rate, on its person") {
+TEST_CASE("generate_clips: what the network makes of the seed at the model's rate, on its person") {
   const Scene scene;
   on_every_device([&](Device& device) {
     const Model model = scene.model(device);
@@ -58,7 +63,7 @@ TEST_CASE("generate_clip: what the network makes of the seed at the model's rate
       CAPTURE(fps);
       const Motion seed = other_person(90, fps);
       const GenerationOptions options = some_options();
-      const auto got = generate_clip(model, seed, options);
+      const auto got = generated(model, seed, options);
       const Motion at_rate = resample(seed, 30);
       const Eigen::Matrix3d camera = camera_rotation(35, 12);
       const auto poses = generate(model.network.cdbns[1],
@@ -79,7 +84,7 @@ TEST_CASE("generate_clip: what the network makes of the seed at the model's rate
   });
 }
 
-TEST_CASE("generate_clip: the root goes on from the seed's end, as height and velocity say") {
+TEST_CASE("generate_clips: the root goes on from the seed's end, as height and velocity say") {
   const Scene scene;
   on_every_device([&](Device& device) {
     const Model model = scene.model(device);
@@ -89,7 +94,7 @@ TEST_CASE("generate_clip: the root goes on from the seed's end, as height and ve
     const auto poses =
         generate(model.network.cdbns[1], {scene.modalities.encode_pose(seed, camera)}, options);
     const double units = file_units_per_metre(seed.skeleton);
-    const auto motions = generate_clip(model, seed, options);
+    const auto motions = generated(model, seed, options);
     for (std::size_t i = 0; i < motions.size(); ++i) {
       const MatrixD path = path_of(motions[i], "Hips");
       const MatrixD root = scene.modalities.pose_features.root_features(
@@ -107,14 +112,14 @@ TEST_CASE("generate_clip: the root goes on from the seed's end, as height and ve
   });
 }
 
-TEST_CASE("generate_clip: every option comes to its use, and too short a seed is refused") {
+TEST_CASE("generate_clips: every option comes to its use, and too short a seed is refused") {
   const Scene scene;
   on_every_device([&](Device& device) {
     const Model model = scene.model(device);
     const Motion seed = swinging(small_body(), 40);
     const GenerationOptions options = some_options();
     const auto first = [&](const GenerationOptions& changed) {
-      return generate_clip(model, seed, changed).at(0).channels;
+      return generated(model, seed, changed).at(0).channels;
     };
     const MatrixD usual = first(options);
     CHECK(first(options) == usual);
@@ -132,12 +137,48 @@ TEST_CASE("generate_clip: every option comes to its use, and too short a seed is
     CHECK(first(longer).rows() == 25);
     Motion end = seed;
     end.channels = MatrixD(seed.channels.bottomRows(3));
-    CHECK_NOTHROW(generate_clip(model, end, options));
+    CHECK_NOTHROW(generated(model, end, options));
     end.channels = MatrixD(seed.channels.bottomRows(2));  // the network's order is 3
-    CHECK_THROWS_AS(generate_clip(model, end, options), InputError);
+    CHECK_THROWS_AS(generated(model, end, options), InputError);
     Motion stranger = seed;
     stranger.skeleton.joints[4].name = "Tail";
-    CHECK_THROWS_AS(generate_clip(model, stranger, options), InputError);
+    CHECK_THROWS_AS(generated(model, stranger, options), InputError);
+  });
+}
+
+TEST_CASE("generate_clips: several seeds go on each on its own person, and health is of all") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const Model model = scene.model(device);
+    const std::vector<SeedClip> seeds{{"one", swinging(small_body(), 60)},
+                                      {"other", other_person(90, 30)},
+                                      {"fast", other_person(200, 120)}};
+    const GenerationOptions options = some_options();
+    GenerationHealth health;
+    const auto got = generate_clips(model, seeds, options, &health);
+    std::vector<MatrixF> features;
+    for (const SeedClip& seed : seeds)
+      features.push_back(
+          scene.modalities.encode_pose(resample(seed.motion, 30), camera_rotation(35, 12)));
+    const auto poses = generate(model.network.cdbns[1], features, options);
+    REQUIRE(got.size() == 6);
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      CAPTURE(i);
+      const Skeleton& person = seeds[i / 2].motion.skeleton;
+      CHECK(got[i].skeleton.joints[3].offset == person.joints[3].offset);
+      const Motion there = scene.modalities.pose_features.decode(
+          scene.modalities.pose_scale.invert(poses[i]), camera_rotation(35, 12), person, 30,
+          path_of(got[i], "Hips"));
+      CHECK(largest(got[i].channels - there.channels) < 1e-6);
+    }
+    const GenerationHealth want = generation_health(poses, features);
+    CHECK(health.deviation == want.deviation);
+    CHECK(health.late_speed == want.late_speed);
+    CHECK(health.seed_speed == want.seed_speed);
+    auto with_stranger = seeds;
+    with_stranger[1].motion.channels = MatrixD(seeds[1].motion.channels.topRows(2));
+    CHECK_THROWS_WITH_AS(generate_clips(model, with_stranger, options),
+                         doctest::Contains("other: the seed clip has 2 frames"), InputError);
   });
 }
 

@@ -15,15 +15,24 @@ struct GenerationHealth {
   /// Of each sequence, RMS change of a channel from frame to frame over the last kLateFrames: next
   /// to nothing where it came to a stop.
   std::vector<double> late_speed;
+  /// Of each sequence, the same of what it went on from, all its frames; empty where nobody said.
+  std::vector<double> seed_speed = {};
   /// Of each sequence, the shortest lag in frames after which it comes back to where it was
   /// (shortest_cycle).
   std::vector<std::size_t> cycle;
 
   static constexpr int kLateFrames = 200;
+  /// How many sequences move at less than kSlow of their seed's speed in the end.
+  std::size_t slow_sequences() const;
+  static constexpr double kSlow = 0.5;
 };
 
 /// @param sequences standardized, [frames x visible] each
-GenerationHealth generation_health(const std::vector<MatrixF>& sequences);
+/// @param seeds what they went on from, as many sequences of each, one seed's after another's; or
+/// none
+/// @throws ShapeError if the sequences are no multiple of the seeds
+GenerationHealth generation_health(const std::vector<MatrixF>& sequences,
+                                   const std::vector<MatrixF>& seeds = {});
 
 /// The first lag from 2 frames on at which the mean squared change has a minimum that is below
 /// kComesBack of what it was at the largest on the way there: a walk's stride. 0 if there is none

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mcdbn/machines/generation.hpp"
@@ -8,15 +9,20 @@
 
 namespace mcdbn {
 
-/// Motion that goes on where a clip ends, `samples` times (Algorithm 4 on the model's 3D CDBN). The
-/// person is the clip's own, seen as the model's camera would see it; the root keeps the height
+/// A clip that generated motion goes on from.
+struct SeedClip {
+  std::string name;  ///< for messages
+  Motion motion;     ///< at any rate, at least seed_frames() frames at the model's
+};
+
+/// Motion that goes on where each clip ends, `samples` times (Algorithm 4 on the model's 3D CDBN).
+/// The person is the clip's own, seen as the model's camera would see it; the root keeps the height
 /// that the features say and travels by their velocity.
-/// @param seed at any rate, at least seed_frames() frames at the model's
-/// @param health if given, of the standardized features of all samples
-/// @return the new frames alone, at the model's rate
-/// @throws InputError if the clip lacks a joint of the model or is too short
-std::vector<Motion> generate_clip(const Model& model, const Motion& seed,
-                                  const GenerationOptions& options = {},
-                                  GenerationHealth* health = nullptr);
+/// @param health if given, of the standardized features of all samples of all clips
+/// @return the new frames alone, at the model's rate, result[clip · samples + sample]
+/// @throws InputError naming the clip that lacks a joint of the model or is too short
+std::vector<Motion> generate_clips(const Model& model, const std::vector<SeedClip>& seeds,
+                                   const GenerationOptions& options = {},
+                                   GenerationHealth* health = nullptr);
 
 }  // namespace mcdbn

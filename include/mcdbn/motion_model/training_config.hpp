@@ -48,6 +48,11 @@ struct TrainingConfig : CorpusSettings, LearningSettings {
   static TrainingConfig paper_stable();
   /// With LearningSettings::generation, on every frame of the clips' own rates up to 120 a second.
   static TrainingConfig generation();
+  /// Many people, actions and skeletons, seen by a detector from anywhere, with poses that no clip
+  /// holds: what the model that comes with the program is trained with (docs/corpus.md).
+  static TrainingConfig general();
+  /// Of views that a detector sees, where only that is asked for.
+  static constexpr double kShareOfDetectorViews = 0.8;
   /// @throws ConfigError naming the setting that is out of range
   void validate() const { check_settings(*this); }
 
