@@ -63,7 +63,7 @@ class MultiPrediction : public LearningRule {
   std::size_t pieces() const;
 
   /// Of a part: the steps of its mean field, read again for the gradients, stay in a CPU's cache.
-  static constexpr std::size_t kMostPartRows = 256;
+  static constexpr std::size_t kMostPartRows = 100;
   /// Rows of the stacks that are added up at once: two pieces should fit a core's cache.
   static constexpr std::size_t kPieceRows = 1024;
 
