@@ -91,7 +91,10 @@ void TrainingOptions::add_setting(CLI::App& command, const Setting& setting,
 TrainingConfig TrainingOptions::resolve(const std::vector<SaidSetting>& last,
                                         const std::vector<SaidSetting>& start) const {
   const auto applied_to = [&](TrainingConfig config) {
-    if (!start.empty()) config.fine_tuning.from_greedy = false;
+    if (!start.empty()) {
+      config.fine_tuning.from_greedy = false;
+      config.fine_tuning.rate = FineTuningSettings::kRateFromModel;
+    }
     config.joint_map = joint_map_;
     assign_settings(config, start);
     assign_settings(config, file_);

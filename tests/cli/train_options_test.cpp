@@ -173,6 +173,8 @@ TEST_CASE("train: every option changes what its help says") {
              run_cli(fmt::format("info '{}'", (folder / "from/model.safetensors").string()))
                  .standard_output;
          CHECK(info.find("start.safetensors") != std::string::npos);
+         CHECK(recorded_settings(folder / "from").at("fine-tuning.rate") ==
+               mcdbn::FineTuningSettings::kRateFromModel);
          CHECK(from("absent", "").exit_code == 3);
          const CliResult wider = from(fmt::format("'{}'", start.string()), "--hidden 99");
          CHECK(wider.exit_code == 2);

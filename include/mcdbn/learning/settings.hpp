@@ -158,6 +158,8 @@ struct FineTuningSettings {
   double people_power = 0.5;
   std::size_t window_frames = 20, settle_frames = 4;
   double rate = 2e-3;
+  /// Of a training that starts from a model: what it knows is kept (docs/corpus.md).
+  static constexpr double kRateFromModel = 5e-4;
   double weight_decay = 1.0;
   double dropout = 0.0;
   double average = 0.995;
