@@ -23,6 +23,18 @@ void join(PosteriorPoint& whole, Eigen::Index known, const PosteriorPoint& part,
   }
 }
 
+/// One camera does not tell a large body from a near one: the other frames start where a body of
+/// the size that a window has found is seen as theirs was.
+void follow_body(PosteriorPoint& from, const PosteriorClip& clip, const ClipWindow& window,
+                 const PosteriorPoint& found) {
+  const auto depth = [&](const MatrixD& shift) {
+    return (clip.root.middleRows(window.first, window.frames) + shift).col(2).sum();
+  };
+  const double further =
+      depth(found.shift) / depth(from.shift.middleRows(window.first, window.frames));
+  from.shift += (further - 1) * (clip.root + from.shift);
+}
+
 /// Every so-manieth row, from the first on.
 MatrixD thinned(const MatrixD& rows, Eigen::Index every) {
   return rows(Eigen::seq(0, rows.rows() - 1, every), Eigen::all);
@@ -84,6 +96,7 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
   from.ground_m = middle.ground_m;
   from.lean = middle.lean;
   from.log_focal = middle.log_focal;
+  if (clip.body_unknown) follow_body(from, clip, windows[windows.size() / 2], middle);
   PosteriorPoint whole = from;
   Eigen::Index known = 0;
   for (std::size_t i = 0; i < windows.size(); i += 2) {  // two at once
