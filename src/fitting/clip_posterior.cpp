@@ -1,6 +1,7 @@
 #include "fitting/clip_posterior.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <future>
 #include <utility>
@@ -90,25 +91,27 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
     problem.solve(shared_too, small_gain);
     return problem.solution();
   };
-  if (windows.size() == 1) return solved(windows.front(), true);
-  const PosteriorPoint middle = solved(windows[windows.size() / 2], true);
+  const std::size_t middle_one = windows.size() / 2;
+  PosteriorPoint middle = solved(windows[middle_one], true);
+  if (windows.size() == 1) return middle;
   from.log_lengths = middle.log_lengths;
   from.ground_m = middle.ground_m;
   from.lean = middle.lean;
   from.log_focal = middle.log_focal;
-  if (clip.body_unknown) follow_body(from, clip, windows[windows.size() / 2], middle);
+  if (clip.body_unknown) follow_body(from, clip, windows[middle_one], middle);
+  std::vector<PosteriorPoint> parts(windows.size());
+  parts[middle_one] = std::move(middle);
+  std::atomic<std::size_t> next = 0;
+  const auto solve_others = [&] {
+    for (std::size_t i = next++; i < windows.size(); i = next++)
+      if (i != middle_one) parts[i] = solved(windows[i], false);
+  };
+  std::future<void> second = std::async(std::launch::async, solve_others);
+  solve_others();
+  second.get();
   PosteriorPoint whole = from;
-  Eigen::Index known = 0;
-  for (std::size_t i = 0; i < windows.size(); i += 2) {  // two at once
-    std::future<PosteriorPoint> second;
-    if (i + 1 < windows.size())
-      second = std::async(std::launch::async, solved, windows[i + 1], false);
-    join(whole, std::max(known, windows[i].first), solved(windows[i], false), windows[i]);
-    known = windows[i].end();
-    if (!second.valid()) continue;
-    join(whole, known, second.get(), windows[i + 1]);
-    known = windows[i + 1].end();
-  }
+  for (std::size_t i = 0; i < windows.size(); ++i)
+    join(whole, i == 0 ? 0 : windows[i - 1].end(), parts[i], windows[i]);
   return whole;
 }
 
