@@ -1,6 +1,7 @@
 #include "fitting/clip_posterior.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <future>
 #include <utility>
@@ -21,6 +22,18 @@ void join(PosteriorPoint& whole, Eigen::Index known, const PosteriorPoint& part,
       (whole.*rows).row(window.first + t) =
           (1 - share) * (whole.*rows).row(window.first + t) + share * (part.*rows).row(t);
   }
+}
+
+/// One camera does not tell a large body from a near one: the other frames start where a body of
+/// the size that a window has found is seen as theirs was.
+void follow_body(PosteriorPoint& from, const PosteriorClip& clip, const ClipWindow& window,
+                 const PosteriorPoint& found) {
+  const auto depth = [&](const MatrixD& shift) {
+    return (clip.root.middleRows(window.first, window.frames) + shift).col(2).sum();
+  };
+  const double further =
+      depth(found.shift) / depth(from.shift.middleRows(window.first, window.frames));
+  from.shift += (further - 1) * (clip.root + from.shift);
 }
 
 /// Every so-manieth row, from the first on.
@@ -78,24 +91,27 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
     problem.solve(shared_too, small_gain);
     return problem.solution();
   };
-  if (windows.size() == 1) return solved(windows.front(), true);
-  const PosteriorPoint middle = solved(windows[windows.size() / 2], true);
+  const std::size_t middle_one = windows.size() / 2;
+  PosteriorPoint middle = solved(windows[middle_one], true);
+  if (windows.size() == 1) return middle;
   from.log_lengths = middle.log_lengths;
   from.ground_m = middle.ground_m;
   from.lean = middle.lean;
   from.log_focal = middle.log_focal;
+  if (clip.body_unknown) follow_body(from, clip, windows[middle_one], middle);
+  std::vector<PosteriorPoint> parts(windows.size());
+  parts[middle_one] = std::move(middle);
+  std::atomic<std::size_t> next = 0;
+  const auto solve_others = [&] {
+    for (std::size_t i = next++; i < windows.size(); i = next++)
+      if (i != middle_one) parts[i] = solved(windows[i], false);
+  };
+  std::future<void> second = std::async(std::launch::async, solve_others);
+  solve_others();
+  second.get();
   PosteriorPoint whole = from;
-  Eigen::Index known = 0;
-  for (std::size_t i = 0; i < windows.size(); i += 2) {  // two at once
-    std::future<PosteriorPoint> second;
-    if (i + 1 < windows.size())
-      second = std::async(std::launch::async, solved, windows[i + 1], false);
-    join(whole, std::max(known, windows[i].first), solved(windows[i], false), windows[i]);
-    known = windows[i].end();
-    if (!second.valid()) continue;
-    join(whole, known, second.get(), windows[i + 1]);
-    known = windows[i + 1].end();
-  }
+  for (std::size_t i = 0; i < windows.size(); ++i)
+    join(whole, i == 0 ? 0 : windows[i - 1].end(), parts[i], windows[i]);
   return whole;
 }
 

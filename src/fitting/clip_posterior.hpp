@@ -66,7 +66,7 @@ struct PosteriorPoint {
 /// @param small_gain a step that lowers the energy by less than this share is the last one
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
                            const TrackFitSettings& settings, PosteriorPoint from,
-                           double small_gain = 1e-3);
+                           double small_gain = 2e-3);
 
 /// Time between the frames that roughly_likely solves for.
 inline constexpr double kRoughly_s = 0.1;

@@ -22,7 +22,7 @@ std::vector<PosteriorPoint> prior_draws(const PosteriorClip& clip, const TrackFi
       point.turns.middleCols<3>(3 * k) = clip.turn_deviation_rad.col(k) * turns.col(k).transpose();
     }
     if (clip.body_unknown)
-      for (double& length : point.log_lengths) length = settings.proportions * random.normal();
+      for (double& length : point.log_lengths) length = settings.people * random.normal();
     draws.push_back(std::move(point));
   }
   return draws;

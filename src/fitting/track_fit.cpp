@@ -26,14 +26,9 @@ namespace {
 /// What is wrong with the root's velocity where the prior says no deviation and no fit follows.
 constexpr double kVelocityError_m_s2 = 1.0;
 
-/// The settings' deviation of bones also has to do with where a detector sees joints; people differ
-/// by less.
-constexpr double kProportionsOfPeople = 0.1;
-
-/// What the posterior's width is told by: a detector's error that passes makes the likeliest motion
-/// better, and would make it surer than it is. Chosen as `spread`.
+/// What the posterior's width is told by.
 TrackFitSettings settings_of_draws(TrackFitSettings settings) {
-  settings.noise_lasts_s = 10;
+  settings.noise_lasts_s = settings.draws_noise_lasts_s;
   return settings;
 }
 
@@ -159,10 +154,8 @@ class ClipFit {
     const MatrixD features = features_, root = root_;
     const Skeleton skeleton = skeleton_;
     std::vector<Motion> motions;
-    TrackFitSettings settings;
-    settings.proportions = kProportionsOfPeople;
     for (const PosteriorPoint& point :
-         prior_draws(evidence_->clip, settings, draws.count, draws.seed)) {
+         prior_draws(evidence_->clip, TrackFitSettings{}, draws.count, draws.seed)) {
       take(point);
       motions.push_back(motion());
     }

@@ -22,7 +22,7 @@ namespace mcdbn {
 namespace {
 
 constexpr int kMostIterations = 25;
-/// A joint that is nearer to the camera than this share of the root's first distance says nothing.
+/// A joint is seen as if it were no nearer to the camera than this share of the root's first depth.
 constexpr double kNearest = 0.1;
 /// What hardly stands is not worth an equation.
 constexpr double kHardlyStands = 0.05;

@@ -51,3 +51,10 @@ TEST_CASE("one thread: solvers in two threads, and the first to end leaves the o
   other.join();
   CHECK(number("openblas_get_num_threads") == threads);
 }
+
+TEST_CASE("one thread: matrices are multiplied by the BLAS that the system has chosen") {
+  void* const chosen = dlopen("libblas.so.3", RTLD_LAZY);
+  REQUIRE(chosen);
+  CHECK(dlsym(RTLD_DEFAULT, "dgemm_") == dlsym(chosen, "dgemm_"));
+  dlclose(chosen);
+}

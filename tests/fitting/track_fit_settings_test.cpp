@@ -20,6 +20,7 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"caution", [](S& s) { return at(s.caution); }, "2"},
       {"outlier", [](S& s) { return at(s.outlier); }, "4"},
       {"proportions", [](S& s) { return at(s.proportions); }, "0.3"},
+      {"people", [](S& s) { return at(s.people); }, "0.1"},
       {"footing", [](S& s) { return at(s.footing_m_s); }, "0.5"},
       {"ground", [](S& s) { return at(s.ground_m); }, "0.05"},
       {"step", [](S& s) { return at(s.step_s); }, "0.5"},
@@ -28,19 +29,21 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"balance", [](S& s) { return at(s.balance_deg); }, "5"},
       {"focal", [](S& s) { return at(s.focal); }, "0.1"},
       {"solutions", [](S& s) { return at(s.solutions); }, "5"},
-      {"spread", [](S& s) { return at(s.spread); }, "1.3"}};
+      {"spread", [](S& s) { return at(s.spread); }, "1.3"},
+      {"draws-noise-lasts", [](S& s) { return at(s.draws_noise_lasts_s); }, "10"}};
   check_table(table);
   CHECK(member_count<S>() == table.size());
 }
 
 TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves something") {
   for (const char* name :
-       {"turn", "lasting", "root", "detector", "caution", "proportions", "footing", "spread",
-        "outlier", "ground", "step", "pitch", "roll", "balance", "focal"})
+       {"turn", "lasting", "root", "detector", "caution", "proportions", "people", "footing",
+        "spread", "outlier", "ground", "step", "pitch", "roll", "balance", "focal"})
     for (const double value : {0.0, -1.0, kNan})
       check_refused<TrackFitSettings>(name, value, "above 0");
   check_refused<TrackFitSettings>("likeness", 1, "at least 0 and below 1");
   check_refused<TrackFitSettings>("noise-lasts", -0.01, "at least 0");
+  check_refused<TrackFitSettings>("draws-noise-lasts", -0.01, "at least 0");
   check_accepted<TrackFitSettings>("likeness", 0);
   check_accepted<TrackFitSettings>("noise-lasts", 0);
 }

@@ -20,6 +20,8 @@ using namespace mcdbn::test;
 namespace {
 
 constexpr int kFrames = 60;
+/// A prior is believed to a tenth of a degree at the surest, of the 20 by which it is wrong.
+constexpr float kSurest = 0.1F / 20;
 
 /// A walk, its exact track, and a prior whose mean holds both forearms by 20 degrees elsewhere.
 struct Scene {
@@ -109,7 +111,7 @@ TEST_CASE("fit to track: the surer the prior, the nearer the answer to its mean"
     const Motion got = scene.fit().motion;
     const float moved = scene.off(got, scene.prior.mean, "LeftForeArm");
     if (deviation == 0.0F)
-      CHECK(moved < 0.01F * scene.wrong("LeftForeArm"));
+      CHECK(moved < kSurest * scene.wrong("LeftForeArm"));
     else
       CHECK(moved > 1.1F * before);
     before = moved;
@@ -122,7 +124,7 @@ TEST_CASE("fit to track: each joint moves as far as its own features' deviation 
   for (const Eigen::Index column : scene.columns_of("LeftForeArm"))
     scene.prior.deviation.col(column).setZero();
   const Motion got = scene.fit().motion;
-  CHECK(scene.off(got, scene.prior.mean, "LeftForeArm") < 0.01F * scene.wrong("LeftForeArm"));
+  CHECK(scene.off(got, scene.prior.mean, "LeftForeArm") < kSurest * scene.wrong("LeftForeArm"));
   CHECK(scene.off(got, scene.prior.mean, "RightForeArm") > 0.2F);
 }
 

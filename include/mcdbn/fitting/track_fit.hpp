@@ -58,8 +58,8 @@ struct KnownOfClip {
 /// moves. Chosen on clips of training people with other bodies and detector-like tracks, and on the
 /// exact projections of the same: six CMU walks, of a model of walks and of a general one;
 /// `outlier`, `proportions`, `roll` and `focal` on seven CMU clips and twelve of Bandai's training
-/// halves, of the general model, which never saw Bandai's; `spread` on eleven of CMU's,
-/// detector-like, exact, with noise of 5 px and with joints missing.
+/// halves, of the general model, which never saw Bandai's; `spread` and `draws-noise-lasts` on
+/// eleven of CMU's, detector-like, exact, with noise of 5 px and with joints missing.
 struct TrackFitSettings {
   double turn_deg = 9;
   double likeness = 0.75;
@@ -70,6 +70,7 @@ struct TrackFitSettings {
   double caution = 2;
   double outlier = 4;
   double proportions = 0.3;
+  double people = 0.1;
   double footing_m_s = 0.5;
   double ground_m = 0.05;
   double step_s = 0.5;
@@ -79,6 +80,7 @@ struct TrackFitSettings {
   double focal = 0.1;
   std::size_t solutions = 5;
   double spread = 1.3;
+  double draws_noise_lasts_s = 10;
 
   /// Metres are those of a 1.7 m body.
   template <typename Self, typename Visit>
@@ -115,6 +117,9 @@ struct TrackFitSettings {
             "deviation of the logarithm of a bone's length from the model's, where the person's "
             "own is not known: people, and where a detector sees the joints between them"},
         self.proportions);
+    visit(Setting{"people", above(0), "",
+                  "the same of people alone: how far draws without a track's fit stray"},
+          self.people);
     visit(Setting{"footing", above(0), "m/s", "how fast a foot that stands slips"},
           self.footing_m_s);
     visit(
@@ -125,6 +130,10 @@ struct TrackFitSettings {
     visit(Setting{"spread", above(0), "",
                   "how many times wider the posterior is drawn than its equations make it"},
           self.spread);
+    visit(Setting{"draws-noise-lasts", at_least(0), "seconds",
+                  "as noise-lasts, for draws: a detector's error that passes makes the likeliest "
+                  "motion better, and would make it surer than it is"},
+          self.draws_noise_lasts_s);
     visit(Setting{"ground", above(0), "m",
                   "deviation of a standing foot's height above the clip's ground"},
           self.ground_m);

@@ -20,24 +20,19 @@ Reprojection::Reprojection(JointPlace place, double nearest_m, Eigen::Vector2d r
 bool Reprojection::Evaluate(double const* const* unknowns, double* residuals,
                             double** jacobians) const {
   const Eigen::Vector3d x = place_.at(unknowns);
-  const bool before_camera = x.z() > nearest_m_;
+  const bool near = !(x.z() > nearest_m_);
+  const double depth = near ? nearest_m_ : x.z();
   const int focal = place_.blocks();
   const double magnified = camera_unknown_ ? std::exp(unknowns[focal][0]) : 1;
-  Eigen::Map<Eigen::Vector2d> residual(residuals);
-  residual.setZero();
-  if (before_camera) residual = (magnified * x.head<2>() / x.z() - ray_) / deviation_;
+  const Eigen::Vector2d shown = magnified * x.head<2>() / depth;
+  Eigen::Map<Eigen::Vector2d>{residuals} = (shown - ray_) / deviation_;
   if (!jacobians) return true;
-  Eigen::Matrix<double, 2, 3> of_place = Eigen::Matrix<double, 2, 3>::Zero();
-  if (before_camera) {
-    of_place << 1, 0, -x.x() / x.z(), 0, 1, -x.y() / x.z();
-    of_place *= magnified / (x.z() * deviation_);
-  }
+  Eigen::Matrix<double, 2, 3> of_place;
+  of_place << Eigen::Matrix2d::Identity(), (near ? 0 : -1 / depth) * x.head<2>();
+  of_place *= magnified / (depth * deviation_);
   place_.differentiate(of_place, unknowns, jacobians);
-  if (camera_unknown_ && jacobians[focal]) {
-    Eigen::Map<Eigen::Vector2d> of_focal(jacobians[focal]);
-    of_focal.setZero();
-    if (before_camera) of_focal = magnified * x.head<2>() / (x.z() * deviation_);
-  }
+  if (camera_unknown_ && jacobians[focal])
+    Eigen::Map<Eigen::Vector2d>{jacobians[focal]} = shown / deviation_;
   return true;
 }
 

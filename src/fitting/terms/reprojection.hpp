@@ -9,8 +9,9 @@ namespace mcdbn {
 /// A joint lies on the ray that the camera saw it along:
 ///   r = (exp(focal) · (x/z, y/z) − ray) / deviation       two numbers of variance 1
 /// where focal is, if the camera is unknown, one more block (1): the logarithm of the camera's
-/// focal length over the one that ray and deviation were made with; else 0. A joint nearer to the
-/// camera than a tenth of the root's first depth says nothing.
+/// focal length over the one that ray and deviation were made with; else 0. Nearer to the camera
+/// than nearest_m, or behind it, a joint is seen as if it were so near: else whole bodies would be
+/// likeliest where no ray is missed, behind the camera.
 class Reprojection : public ceres::CostFunction {
  public:
   /// @param ray x/z and y/z, lens taken out  @param deviation of each of both, in the same unit
