@@ -68,7 +68,7 @@ class Following {
             const FollowOptions& options)
       : model_(model), output_(std::move(output)), placement_(placement), options_(options) {}
 
-  void take(const SeenFrame& frame, const TrackLines& lines) {
+  void take(const TrackFrame& frame, const TrackLines& lines) {
     if (!lines.knows_joints()) {
       ++before_;
       return;
@@ -77,7 +77,7 @@ class Following {
     push(frame);
   }
 
-  void take_broken() { push(SeenFrame::unseen(joints_)); }
+  void take_broken() { push(TrackFrame::unseen(joints_)); }
   bool has_begun() const { return live_ != nullptr; }
 
   /// @return frames written
@@ -94,9 +94,9 @@ class Following {
     frames_ = std::make_unique<FrameOutput>(output_, options_.frames, like.fps);
     spdlog::info("frames come back {} frames of {:g} a second later at most",
                  live_->latency_frames(), model_.modalities.fps);
-    for (; before_ > 0; --before_) push(SeenFrame::unseen(joints_));
+    for (; before_ > 0; --before_) push(TrackFrame::unseen(joints_));
   }
-  void push(const SeenFrame& frame) {
+  void push(const TrackFrame& frame) {
     const std::vector<LiveFrame> finished = live_->push(frame);
     frames_->write(live_->skeleton(), finished);
   }

@@ -10,7 +10,7 @@
 
 namespace mcdbn::cli {
 
-/// What regenerate --follow is told besides.
+/// Options of regenerate --follow.
 struct FollowOptions {
   bool follow = false;
   std::optional<std::size_t> look_ahead;

@@ -6,7 +6,7 @@
 
 #include "fitting/camera_doubt.hpp"
 #include "fitting/lever.hpp"
-#include "fitting/told_by_past.hpp"
+#include "fitting/marginal_prior.hpp"
 #include "mcdbn/base/matrices.hpp"
 #include "mcdbn/fitting/track_fit.hpp"
 
@@ -38,7 +38,7 @@ struct PosteriorClip {
   std::optional<CameraDoubt> camera;  ///< unset: known
   MatrixD mean_lean;  ///< [frames x 3] how the camera leaned that the prior's mean was seen by;
                       ///< 0 x 0: as assumed
-  std::optional<ToldByPast> told;  ///< what frames before the first tell
+  std::optional<MarginalPrior> past;  ///< of frames before the first
   bool body_unknown = false;
   double frame_time_s = 1;
 

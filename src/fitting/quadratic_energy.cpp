@@ -47,7 +47,7 @@ void QuadraticEnergy::add(const ceres::Problem& problem, ceres::ResidualBlockId 
   }
 }
 
-ToldByPast QuadraticEnergy::without_first(Eigen::Index numbers) const {
+MarginalPrior QuadraticEnergy::without_first(Eigen::Index numbers) const {
   const Eigen::Index rest = at_.size() - numbers;
   const Eigen::LDLT<Eigen::MatrixXd> first(hessian_.topLeftCorner(numbers, numbers));
   const Eigen::MatrixXd across = first.solve(hessian_.topRightCorner(numbers, rest));
@@ -58,16 +58,16 @@ ToldByPast QuadraticEnergy::without_first(Eigen::Index numbers) const {
   // H = Pᵀ L D Lᵀ P, where what nothing tells of has 0 in D, or a little less.
   const Eigen::LDLT<Eigen::MatrixXd> factors((hessian + hessian.transpose()) / 2);
   const Eigen::VectorXd root = factors.vectorD().cwiseMax(0).cwiseSqrt();
-  ToldByPast told;
-  told.at = at_.tail(rest);
+  MarginalPrior left;
+  left.at = at_.tail(rest);
   const Eigen::MatrixXd lower = factors.matrixL();
   // Eigen puts transpositions on a product's right in the wrong order: they stand on the left.
-  told.factor = (factors.transpositionsP().transpose() * (lower * root.asDiagonal())).transpose();
-  told.residual = factors.matrixL().solve(Eigen::VectorXd(factors.transpositionsP() * gradient));
+  left.factor = (factors.transpositionsP().transpose() * (lower * root.asDiagonal())).transpose();
+  left.residual = factors.matrixL().solve(Eigen::VectorXd(factors.transpositionsP() * gradient));
   const double least = 1e-9 * root.maxCoeff();
   for (Eigen::Index i = 0; i < rest; ++i)
-    told.residual[i] = root[i] > least ? told.residual[i] / root[i] : 0;
-  return told;
+    left.residual[i] = root[i] > least ? left.residual[i] / root[i] : 0;
+  return left;
 }
 
 }  // namespace mcdbn

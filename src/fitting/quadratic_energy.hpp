@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "fitting/told_by_past.hpp"
+#include "fitting/marginal_prior.hpp"
 
 namespace mcdbn {
 
@@ -27,7 +27,7 @@ class QuadraticEnergy {
 
   /// What is left when the first so many numbers take their likeliest value, whatever the others
   /// are: H₂₂ − H₂₁ H₁₁⁻¹ H₁₂ and g₂ − H₂₁ H₁₁⁻¹ g₁, as a sum of squares.
-  ToldByPast without_first(Eigen::Index numbers) const;
+  MarginalPrior without_first(Eigen::Index numbers) const;
 
  private:
   std::unordered_map<double*, Eigen::Index> columns_;

@@ -16,10 +16,17 @@
 namespace mcdbn {
 namespace {
 
-/// At most, with each frame: until it settles it has several solutions.
-constexpr int kIterations = 6;
-/// Solutions of so long a time tell what lasts of the track's noise.
-constexpr double kLearned_s = 0.2;
+/// Steps with each frame: until it settles it has several solutions. With 6 of them the answer is
+/// no nearer to that of the whole clip, and takes half as long again.
+constexpr int kIterations = 2;
+/// A step that lowers the energy by less than this share is the last one.
+constexpr double kSmallGain = 1e-3;
+/// What fits of whole clips end with where the body is unknown (SeenNoise), as a share of a usual
+/// detector's lasting noise: solutions of the first second would tell it too late.
+constexpr double kLastingOfUnknownBody = 0.62;
+/// Solutions of so long a time tell what lasts of the track's noise. Few frames follow the rays
+/// nearer than many do: over 0.2 s one would take a detector's track for exact.
+constexpr double kLearned_s = 1;
 
 /// The last rows are others; there may be more of them than before.
 template <typename Rows>
@@ -56,7 +63,8 @@ SlidingFit::SlidingFit(const Modalities& modalities, const KnownOfClip& known, c
       assumed_(in_file_units(known.camera_of(like, modalities), skeleton_)),
       camera_(assumed_),
       doubt_(doubt_of(known, modalities, like, settings)),
-      names_(tracked_joints(modalities.track_features)) {}
+      names_(tracked_joints(modalities.track_features)),
+      lasting_noise_(body_unknown_ ? kLastingOfUnknownBody : 1) {}
 
 Motion SlidingFit::decoded(const MatrixD& features, const Skeleton& skeleton, const Camera& camera,
                            const MatrixD& root) const {
@@ -133,12 +141,12 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
   evidence_->find_planted(motion_);
   // From where the solution before ended it would not leave a valley that few frames had led into.
   point_.turns.setZero();
-  if (!told_) point_.ground_m = evidence_->ground(point_);
+  if (!past_) point_.ground_m = evidence_->ground(point_);
   clip.turn_deviation_rad = turn_deviations_rad(prior_, modalities_, settings_);
   clip.root_m_s2 = root_m_s2;
   clip.body_unknown = body_unknown_;
   clip.mean_lean = mean_lean_;
-  clip.told = told_;
+  clip.past = past_;
   clip.camera = doubt_;
   if (clip.camera)
     clip.camera->balanced =
@@ -147,8 +155,8 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
                   lasting_noise_);
 
   problem_ = std::make_unique<WindowProblem>(clip, noise.rays(), settings_, point_, 0,
-                                             clip.frames(), Unknowns::all);
-  problem_->solve(true, 1e-3, told_ ? kIterations : WindowProblem::kMostIterations);
+                                             clip.frames(), Unknowns::tracked);
+  problem_->solve(true, kSmallGain, past_ ? kIterations : WindowProblem::kMostIterations);
   point_ = problem_->solution();
   root_m_ = clip.root + point_.shift;
   learn(noise);
@@ -158,7 +166,7 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
 
 /// As often as in a whole clip, each time from other solutions.
 void SlidingFit::learn(SeenNoise& noise) {
-  if (learned_ + 1 >= settings_.solutions) return;
+  if (!past_ || learned_ + 1 >= settings_.solutions) return;
   if (const double residual = evidence_->usual_residual(point_); residual > 0)
     residuals_.push_back(residual);
   if (std::ssize(residuals_) < std::lround(kLearned_s * modalities_.fps)) return;
@@ -205,7 +213,7 @@ Eigen::Index SlidingFit::settle(Eigen::Index frames) {
   held_ += frames;
   const Eigen::Index dropped = std::max<Eigen::Index>(0, held_ - kHeld);
   if (dropped == 0) return 0;
-  told_ = problem_->told_by_first(dropped);
+  past_ = problem_->without_first(dropped);
   held_ -= dropped;
   for (MatrixD* rows : {&mean_, &mean_lean_, &root_m_, &point_.turns, &motion_.channels,
                         &shown_.x_px, &shown_.y_px, &shown_.confidence})

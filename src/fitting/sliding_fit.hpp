@@ -16,7 +16,7 @@ namespace mcdbn {
 /// with every frame, from the prior's mean. Its newest frames are open; of those
 /// before, which have settled, the last are held: they are solved, too, but nobody asks for them
 /// again. What still earlier frames tell of these, of the body, the ground and the camera is kept
-/// as a normal distribution (ToldByPast).
+/// as a normal distribution (MarginalPrior).
 class SlidingFit {
  public:
   /// Settled frames that the problem holds at most. They are at least those that a dropped frame
@@ -40,7 +40,7 @@ class SlidingFit {
   Eigen::Index settle(Eigen::Index frames);
   /// Frames of the last solution that are settled and held.
   Eigen::Index held() const { return held_; }
-  /// Of the last solution: held and open frames, on the body as it is told now.
+  /// Of the last solution: held and open frames, on the body as it is estimated by now.
   const Motion& motion() const { return motion_; }
   /// Its joints as the camera sees them.
   const Track2d& shown() const { return shown_; }
@@ -63,14 +63,14 @@ class SlidingFit {
 
   const Modalities& modalities_;
   TrackFitSettings settings_;
-  Skeleton skeleton_, body_;  ///< as it was given, and as it is told
+  Skeleton skeleton_, body_;  ///< as it was given, and as it is estimated
   bool body_unknown_, camera_known_;
   double units_per_m_;
   Camera assumed_, camera_;  ///< at first, and as it was found
   std::optional<CameraDoubt> doubt_;
   std::vector<std::string> names_;
-  double lasting_noise_ = 1;       ///< of a usual detector's
-  std::size_t learned_ = 0;        ///< how often it was told
+  double lasting_noise_;           ///< of a usual detector's
+  std::size_t learned_ = 0;        ///< how often it was estimated
   std::vector<double> residuals_;  ///< what solutions since left
   // Of the frames of the last solution, held and open:
   Eigen::Index held_ = 0;
@@ -81,7 +81,7 @@ class SlidingFit {
   PosteriorPoint point_;
   std::unique_ptr<ClipEvidence> evidence_;
   std::unique_ptr<WindowProblem> problem_;
-  std::optional<ToldByPast> told_;  ///< by frames before
+  std::optional<MarginalPrior> past_;  ///< by frames before
   // Of all frames that have settled, along the camera's axes, file units:
   Eigen::Vector3d upright_sum_{0, 0, 0};
   long long settled_ = 0;

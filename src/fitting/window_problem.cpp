@@ -56,10 +56,7 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
          from.ground_m,
          from.lean,
          from.log_focal} {
-  if (unknowns == Unknowns::all)
-    used_.assign(clip_.parents.size(), true);
-  else
-    find_used();
+  find_used(unknowns);
   add_rays();
   add_turns();
   add_root();
@@ -67,7 +64,7 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
   add_ground();
   if (clip_.camera) add_camera();
   if (clip_.body_unknown) add_lengths(unknowns);
-  if (clip_.told) add_told();
+  if (clip_.past) add_past();
 }
 
 void WindowProblem::solve(bool shared_too, double small_gain, int most_iterations) {
@@ -133,12 +130,14 @@ const std::vector<SeenJoint>& WindowProblem::seen(Eigen::Index t) const {
   return clip_.seen[static_cast<std::size_t>(first_ + t)];
 }
 
-void WindowProblem::find_used() {
-  used_.assign(clip_.parents.size(), false);
+void WindowProblem::find_used(Unknowns unknowns) {
+  used_.assign(clip_.parents.size(), unknowns == Unknowns::all);
+  const auto use = [&](const SeenJoint& joint) {
+    for (const Lever& lever : joint.levers) used_[static_cast<std::size_t>(lever.turn)] = true;
+  };
   for (Eigen::Index t = 0; t < x_.turns.rows(); ++t)
     for (const SeenJoint& joint : seen(t))
-      if (joint.confidence > 0)
-        for (const Lever& lever : joint.levers) used_[static_cast<std::size_t>(lever.turn)] = true;
+      if (unknowns == Unknowns::tracked || joint.confidence > 0) use(joint);
   for (std::size_t turn = used_.size(); turn-- > 0;)
     if (used_[turn] && clip_.parents[turn] >= 0)
       used_[static_cast<std::size_t>(clip_.parents[turn])] = true;
@@ -304,47 +303,52 @@ std::vector<UnknownBlock> WindowProblem::shared_blocks() {
   return blocks;
 }
 
+Eigen::Index WindowProblem::numbers_of_frame() const {
+  return 3 * std::ranges::count(used_, true) + 3;
+}
+
 std::vector<UnknownBlock> WindowProblem::blocks_of_frames(Eigen::Index first, Eigen::Index count) {
   std::vector<UnknownBlock> blocks;
   for (Eigen::Index t = first; t < first + count; ++t) {
-    for (int turn = 0; turn < turns_; ++turn) blocks.push_back({turn_at(t, turn), 3});
+    for (int turn = 0; turn < turns_; ++turn)
+      if (used_[static_cast<std::size_t>(turn)]) blocks.push_back({turn_at(t, turn), 3});
     blocks.push_back({shift_at(t), 3});
   }
   return blocks;
 }
 
-void WindowProblem::add_told() {
+void WindowProblem::add_past() {
   std::vector<double*> unknowns;
   std::vector<int> sizes;
-  std::vector<UnknownBlock> blocks = blocks_of_frames(0, ToldByPast::kReach);
+  std::vector<UnknownBlock> blocks = blocks_of_frames(0, MarginalPrior::kReach);
   append(blocks, shared_blocks());
   for (const UnknownBlock& block : blocks) {
     unknowns.push_back(block.unknown);
     sizes.push_back(block.size);
   }
-  const ToldByPast& told = *clip_.told;
-  Eigen::VectorXd at = told.at;
-  for (Eigen::Index t = 0; t < ToldByPast::kReach; ++t)
-    at.segment<3>((t + 1) * (3 * turns_ + 3) - 3) -= clip_.root.row(first_ + t).transpose();
-  add(0, new NormalTerm(told.factor, std::move(at), told.residual, sizes), nullptr, unknowns);
+  const MarginalPrior& past = *clip_.past;
+  Eigen::VectorXd at = past.at;
+  for (Eigen::Index t = 0; t < MarginalPrior::kReach; ++t)
+    at.segment<3>((t + 1) * numbers_of_frame() - 3) -= clip_.root.row(first_ + t).transpose();
+  add(0, new NormalTerm(past.factor, std::move(at), past.residual, sizes), nullptr, unknowns);
 }
 
-ToldByPast WindowProblem::told_by_first(Eigen::Index frames) {
-  std::vector<UnknownBlock> blocks = blocks_of_frames(0, frames + ToldByPast::kReach);
+MarginalPrior WindowProblem::without_first(Eigen::Index frames) {
+  std::vector<UnknownBlock> blocks = blocks_of_frames(0, frames + MarginalPrior::kReach);
   append(blocks, shared_blocks());
   QuadraticEnergy energy(blocks);
   for (const auto& [term, first] : terms_)
     if (first < frames) energy.add(problem_, term);
-  const Eigen::Index of_frame = 3 * turns_ + 3;
-  ToldByPast told = energy.without_first(frames * of_frame);
-  for (Eigen::Index t = 0; t < ToldByPast::kReach; ++t)
-    told.at.segment<3>((t + 1) * of_frame - 3) += clip_.root.row(first_ + frames + t).transpose();
-  return told;
+  const Eigen::Index of_frame = numbers_of_frame();
+  MarginalPrior past = energy.without_first(frames * of_frame);
+  for (Eigen::Index t = 0; t < MarginalPrior::kReach; ++t)
+    past.at.segment<3>((t + 1) * of_frame - 3) += clip_.root.row(first_ + frames + t).transpose();
+  return past;
 }
 
 void WindowProblem::add_lengths(Unknowns unknowns) {
   for (double& length : x_.log_lengths)
-    if (unknowns == Unknowns::all || problem_.HasParameterBlock(&length))
+    if (unknowns != Unknowns::seen || problem_.HasParameterBlock(&length))
       problem_.AddResidualBlock(
           new LinearTerm({1}, Eigen::VectorXd::Zero(1), settings_.proportions), nullptr, &length);
 }

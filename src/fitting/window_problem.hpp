@@ -12,9 +12,10 @@
 
 namespace mcdbn {
 
-/// What a problem asks for: the orientations and lengths that move a joint which is seen, or also
-/// those of which only the prior tells.
-enum class Unknowns { seen, all };
+/// What a problem asks for: the orientations and lengths that move a joint which is seen in its
+/// frames, one that the track has, whether or not these frames see it, or also those of which only
+/// the prior tells.
+enum class Unknowns { seen, tracked, all };
 
 /// The posterior of some frames of a clip as a problem for Ceres. Unknown are, by frame, a turn of
 /// the orientations and a shift of the root; and the lengths.
@@ -37,14 +38,14 @@ class WindowProblem {
   Eigen::SparseMatrix<double> derivatives();
 
   /// What the first so many frames, and those before them, tell of those behind, near the point
-  /// where the problem is. It has to be one of all unknowns and of kReach frames more.
-  ToldByPast told_by_first(Eigen::Index frames);
+  /// where the problem is. It has to be one of tracked or all unknowns, and of kReach frames more.
+  MarginalPrior without_first(Eigen::Index frames);
 
   /// Of these frames. What moves no seen joint turns as its parent makes likely.
   const PosteriorPoint& solution() const { return x_; }
 
  private:
-  void find_used();
+  void find_used(Unknowns unknowns);
   void add_rays();
   void add_turns();
   void add_root();
@@ -52,7 +53,7 @@ class WindowProblem {
   void add_ground();
   void add_camera();
   void add_lengths(Unknowns unknowns);
-  void add_told();
+  void add_past();
   void add(Eigen::Index first, ceres::CostFunction* cost, ceres::LossFunction* loss,
            const std::vector<double*>& blocks);
   void turn_unused();
@@ -63,6 +64,8 @@ class WindowProblem {
   double* turn_at(Eigen::Index t, int turn) { return x_.turns.row(t).data() + 3 * turn; }
   /// The unknowns that all frames share, as far as the problem has them.
   std::vector<UnknownBlock> shared_blocks();
+  /// Unknowns of one frame: the turns that the problem has, and the root.
+  Eigen::Index numbers_of_frame() const;
   std::vector<UnknownBlock> blocks_of_frames(Eigen::Index first, Eigen::Index count);
   double* shift_at(Eigen::Index t) { return x_.shift.row(t).data(); }
   JointPlace place(Eigen::Index t, std::size_t joint) const;

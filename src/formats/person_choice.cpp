@@ -14,7 +14,7 @@ namespace {
 
 /// How far somebody may be from where they were last, as a share of the body's box's diagonal;
 /// three times as far at the end of the patience.
-constexpr double kReach = 0.5, kReachGrows = 2;
+constexpr double kReachOfChosen = 0.5, kChosenReachGrows = 2;
 
 /// Diagonal of the box around the joints that are seen; below 0 where none is.
 double size_px(const SeenPerson& person) {
@@ -66,7 +66,7 @@ std::optional<std::size_t> PersonChoice::choose(const std::vector<SeenPerson>& p
                              [&](std::size_t i) { return size_px(people[i]); });
     if (order.size() >= number_) chosen = order[number_ - 1];
   } else {
-    double nearest = kReach * size_px_ * (1 + kReachGrows * away_ / patience);
+    double nearest = kReachOfChosen * size_px_ * (1 + kChosenReachGrows * away_ / patience);
     for (std::size_t i = 0; i < people.size(); ++i) {
       const bool numbered = last_->id && people[i].id;
       if (numbered && *last_->id != *people[i].id) continue;

@@ -44,7 +44,7 @@ class TrackLines::Reader {
     if (options.fps) check_range("`fps`", kFrameRate_hz, *options.fps);
   }
 
-  std::optional<SeenFrame> read(std::string_view line) {
+  std::optional<TrackFrame> read(std::string_view line) {
     ++line_;
     if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
     line = trimmed(line);
@@ -97,14 +97,14 @@ class TrackLines::Reader {
         TrackSource(fmt::format("{}{}", header_, line), name_, line_ - lines - 1));
   }
 
-  SeenFrame frame_of(SeenPeople seen) {
+  TrackFrame frame_of(SeenPeople seen) {
     std::vector<SeenPerson> people;
     if (!seen.frames.empty()) people = std::move(seen.frames.begin()->second);
     const bool somebody = farthest(people) > 0;
     // A CSV's header says the joints, a JSON frame that shows somebody.
     if (!is_known_ && (!json_ || somebody)) learn(seen, people);
-    if (!is_known_) return SeenFrame::unseen(0);
-    SeenFrame frame = SeenFrame::unseen(like_.joint_count());
+    if (!is_known_) return TrackFrame::unseen(0);
+    TrackFrame frame = TrackFrame::unseen(like_.joint_count());
     // Rows are of one person.
     const auto chosen = !json_ && !people.empty() ? std::optional<std::size_t>(0)
                                                   : choice_.choose(people, kPatience_s * like_.fps);
@@ -166,7 +166,7 @@ TrackLines::~TrackLines() = default;
 TrackLines::TrackLines(TrackLines&&) noexcept = default;
 TrackLines& TrackLines::operator=(TrackLines&&) noexcept = default;
 
-std::optional<SeenFrame> TrackLines::read(std::string_view line) {
+std::optional<TrackFrame> TrackLines::read(std::string_view line) {
   return reader_->read(line);
 }
 bool TrackLines::knows_joints() const {

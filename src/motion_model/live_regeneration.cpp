@@ -19,42 +19,9 @@
 namespace mcdbn {
 namespace {
 
-/// Settled frames that are kept: noise, and the body's size over a second, are told by them.
+/// Settled frames that are kept: they give the noise, and the body's size over a second.
 constexpr double kKept_s = 2;
 constexpr double kSameRate = 1e-6;
-
-/// Places of `missing` in frames of the track where it shows nothing. Both have the names of
-/// `track`'s columns.
-void fill_from(Track2d& track, Eigen::Index first, const Track2d& shown) {
-  for (int column = 0; column < track.joint_count(); ++column) {
-    const int other = shown.find(track.joint_names[static_cast<std::size_t>(column)]);
-    if (other < 0 || shown.frames() == 0) continue;
-    for (Eigen::Index t = first; t < track.frames(); ++t) {
-      if (track.confidence(t, column) > 0) continue;
-      const Eigen::Index from = std::min<Eigen::Index>(t - first, shown.frames() - 1);
-      track.x_px(t, column) = shown.x_px(from, other);
-      track.y_px(t, column) = shown.y_px(from, other);
-      track.confidence(t, column) = shown.confidence(from, other);
-    }
-  }
-}
-
-/// The joints that the network looks at, those that no column shows unseen.
-Track2d with_all_joints(const Track2d& track, const TrackFeatures& features) {
-  Track2d all = track;
-  for (const std::string& name : features.joint_names()) {
-    if (track.find(name) >= 0) continue;
-    all.joint_names.push_back(name);
-    const auto columns = static_cast<Eigen::Index>(all.joint_names.size());
-    for (MatrixD* px : {&all.x_px, &all.y_px}) {
-      px->conservativeResize(Eigen::NoChange, columns);
-      px->col(columns - 1).setConstant(NAN);
-    }
-    all.confidence.conservativeResize(Eigen::NoChange, columns);
-    all.confidence.col(columns - 1).setZero();
-  }
-  return all;
-}
 
 TrackFitSettings fit_of(const ClipPlacement& placement) {
   if (!placement.fit)
@@ -118,7 +85,7 @@ class LiveRegeneration::Frames {
     open_at_most_ = static_cast<Eigen::Index>(look_ahead) + kMoreFrames - (same_rate ? 0 : 2);
   }
 
-  std::vector<LiveFrame> push(const SeenFrame& frame) {
+  std::vector<LiveFrame> push(const TrackFrame& frame) {
     append(raw_, frame);
     ++pushed_;
     return take_frames(false);
@@ -199,7 +166,11 @@ class LiveRegeneration::Frames {
     see_joints(first, count);
     const Track2d seen = map_ ? map_->evidence(some_frames(joints_, first, count))
                               : some_frames(joints_, first, count);
-    fit_.solve(answered(first), seen, track_noise_px(joints_));
+    fit_.solve(answered(), seen, track_noise_px(joints_));
+    if (!placed_) shown_ = without_frames(fit_.shown());
+    while (shown_.x_px.rows() < recent_.frames())
+      append(shown_, TrackFrame::unseen(shown_.joint_count()));
+    replace_frames(shown_, first, fit_.shown());
   }
 
   /// Sides are as they settle; those of open frames may still be found to be exchanged.
@@ -231,12 +202,18 @@ class LiveRegeneration::Frames {
     replace_frames(joints_, first, joints);
   }
 
-  /// What the network says of the open frames.
-  PosePrior answered(Eigen::Index first) {
-    Track2d all = with_all_joints(smooth_track(joints_), modalities_.track_features);
-    if (placed_) fill_from(all, first, fit_.shown());
-    const MatrixF features = modalities_.encode_track(all, fit_.camera());
-    CodedAnswer answer = running_.answer(features.bottomRows(open_));
+  /// What the network says of the open frames. Features that the track does not show are what the
+  /// solution before shows.
+  PosePrior answered() {
+    const Camera camera = fit_.camera();
+    MatrixF features = modalities_.encode_track(smooth_track(joints_), camera).bottomRows(open_);
+    if (placed_) {
+      const Eigen::Index newest = shown_.frames() - 1;
+      append(shown_,
+             {shown_.x_px.row(newest), shown_.y_px.row(newest), shown_.confidence.row(newest)});
+      features = where_known(features, modalities_.encode_track(shown_, camera).bottomRows(open_));
+    }
+    CodedAnswer answer = running_.answer(features);
     return {std::move(answer.mean),
             network_.deviation ? network_.deviation->of(answer.code) : MatrixF()};
   }
@@ -258,6 +235,7 @@ class LiveRegeneration::Frames {
     const Eigen::Index old = std::max<Eigen::Index>(0, recent_.frames() - open_ - kept);
     drop_first(recent_, old);
     drop_first(joints_, old);
+    drop_first(shown_, old);
     return finished;
   }
 
@@ -281,6 +259,7 @@ class LiveRegeneration::Frames {
   Track2d recent_;                  ///< at the model's rate, settled and open
   Track2d right_;                   ///< the same, sides of the open frames put right
   Track2d joints_;                  ///< the model's joints as they show them
+  Track2d shown_;                   ///< all its joints as the solutions put them
   std::optional<KeypointMap> map_;  ///< of a detector's keypoints
   Eigen::Index open_ = 0, open_at_most_ = 0, waiting_ = 0;
   bool placed_ = false;
@@ -299,7 +278,7 @@ LiveRegeneration::LiveRegeneration(const Model& model, const Track2d& like,
 
 LiveRegeneration::~LiveRegeneration() = default;
 
-std::vector<LiveFrame> LiveRegeneration::push(const SeenFrame& frame) {
+std::vector<LiveFrame> LiveRegeneration::push(const TrackFrame& frame) {
   return frames_->push(frame);
 }
 

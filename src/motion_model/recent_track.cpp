@@ -11,7 +11,7 @@ constexpr auto kValues = {&Track2d::x_px, &Track2d::y_px, &Track2d::confidence};
 
 }  // namespace
 
-void append(Track2d& track, const SeenFrame& frame) {
+void append(Track2d& track, const TrackFrame& frame) {
   const Eigen::Index joints = track.joint_count();
   for (const RowVectorD* row : {&frame.x_px, &frame.y_px, &frame.confidence})
     if (row->size() != joints)

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "mcdbn/camera/seen_frame.hpp"
 #include "mcdbn/camera/track.hpp"
+#include "mcdbn/camera/track_frame.hpp"
 
 namespace mcdbn {
 
 /// Adds a frame at the track's end.
-void append(Track2d& track, const SeenFrame& frame);
+void append(Track2d& track, const TrackFrame& frame);
 /// Takes its first frames away.
 void drop_first(Track2d& track, Eigen::Index frames);
 /// Some of its frames.

@@ -20,11 +20,11 @@ ClipPlacement roughly(ClipPlacement placement) {
   return placement;
 }
 
+}  // namespace
+
 MatrixF where_known(const MatrixF& features, const MatrixF& otherwise) {
   return features.array().isNaN().select(otherwise, features);
 }
-
-}  // namespace
 
 std::vector<Keypoint> keypoints_of_columns(const Track2d& track) {
   if (!track.keypoints.empty()) return track.keypoints;

@@ -89,7 +89,7 @@ TEST_CASE("a sliding fit: eight frames later it is where the whole clip's fit is
   CHECK(from_truth < 0.3 * unfitted);
 }
 
-TEST_CASE("a sliding fit: the person's bones are told as frames come") {
+TEST_CASE("a sliding fit: the person's bones are found as frames come") {
   Scene scene = make_scene();
   Skeleton model = scene.truth.skeleton;
   for (Joint& joint : model.joints)
@@ -155,12 +155,12 @@ TEST_CASE("a sliding fit: what dropped frames tell leaves the others where all f
                     (found.log_lengths - want.log_lengths).cwiseAbs().maxCoeff());
   };
   const double alone = apart();
-  rest.told = problem.told_by_first(kDropped);
-  const double told = apart();
+  rest.past = problem.without_first(kDropped);
+  const double marginal = apart();
   CAPTURE(alone);
-  CAPTURE(told);
-  CHECK(told < 0.003);
-  CHECK(told < 0.1 * alone);
+  CAPTURE(marginal);
+  CHECK(marginal < 0.003);
+  CHECK(marginal < 0.1 * alone);
 }
 
 TEST_CASE("normal term: the energy is that of its distribution, derivatives right") {
@@ -188,11 +188,11 @@ TEST_CASE("a quadratic energy without some unknowns: as the inverse of a dense c
       new NormalTerm(factor, Eigen::VectorXd::Zero(9), off, {4, 5}), nullptr, {&x[0], &x[4]});
   QuadraticEnergy energy({{&x[0], 4}, {&x[4], 5}});
   energy.add(problem, const_cast<ceres::ResidualBlockId>(term));
-  const ToldByPast told = energy.without_first(4);
+  const MarginalPrior marginal = energy.without_first(4);
   const Eigen::MatrixXd all = factor.transpose() * factor;
   const Eigen::MatrixXd want = all.inverse().bottomRightCorner(5, 5).inverse();
-  CHECK((told.factor.transpose() * told.factor - want).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK((marginal.factor.transpose() * marginal.factor - want).cwiseAbs().maxCoeff() < 1e-9);
   // Both energies are least at the same place.
   const Eigen::VectorXd least = -factor.lu().solve(off);
-  CHECK((told.factor * (least.tail(5) - told.at) + told.residual).norm() < 1e-8);
+  CHECK((marginal.factor * (least.tail(5) - marginal.at) + marginal.residual).norm() < 1e-8);
 }

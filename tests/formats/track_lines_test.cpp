@@ -35,8 +35,8 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-std::vector<SeenFrame> read_all(TrackLines& lines, const std::string& text) {
-  std::vector<SeenFrame> frames;
+std::vector<TrackFrame> read_all(TrackLines& lines, const std::string& text) {
+  std::vector<TrackFrame> frames;
   for (const std::string& line : lines_of(text))
     if (auto frame = lines.read(line)) frames.push_back(std::move(*frame));
   return frames;
@@ -127,7 +127,7 @@ TEST_CASE("track lines: every JSON format's frames are what its file is read as"
     for (int frame = 0; frame < whole.frames(); ++frame)
       for (int joint = 0; joint < whole.joint_count(); ++joint) {
         const bool seen = whole.confidence(frame, joint) > 0;
-        const SeenFrame& got = frames[static_cast<std::size_t>(frame)];
+        const TrackFrame& got = frames[static_cast<std::size_t>(frame)];
         CHECK((got.confidence[joint] > 0) == seen);
         if (seen) CHECK(got.x_px[joint] == doctest::Approx(whole.x_px(frame, joint)));
       }

@@ -76,7 +76,7 @@ void read_track_lines(const fs::path& path) {
   TrackLines lines(path.string(), {.image_size = ImageSize{1280, 720}});
   std::ifstream file(path, std::ios::binary);
   for (std::string line; std::getline(file, line);) {
-    const std::optional<SeenFrame> frame = lines.read(line);
+    const std::optional<TrackFrame> frame = lines.read(line);
     if (!frame) continue;
     require(frame->joints() == (lines.knows_joints() ? lines.like().joint_count() : 0),
             "a frame of other joints");

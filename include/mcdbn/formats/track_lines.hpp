@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "mcdbn/camera/seen_frame.hpp"
+#include "mcdbn/camera/track_frame.hpp"
 #include "mcdbn/formats/track_file.hpp"
 
 namespace mcdbn {
 
 /// Reads a 2D track line by line, as it is written: JSON, the value of one frame in each line as
 /// any of the JSON formats has it, or our own CSV, whose header line stands before the frames. What
-/// reading a whole file tells from all of it is told here by what has come so far: joints and
+/// reading a whole file finds from all of it is found here from what has come so far: joints and
 /// whether coordinates are shares of the image by the first frame that shows somebody, rate and
 /// image size by `options` or the file's own words. Of several people the largest of that frame, or
 /// the one of that number, is followed. Confidences beyond 1 are 1.
@@ -29,13 +29,13 @@ class TrackLines {
   /// @return the frame that the line holds, none if it holds none (empty, a comment, the header);
   ///         of no joints while nobody was seen and the joints are not known
   /// @throws InputError `name:line: what`; the lines that follow can be read all the same
-  std::optional<SeenFrame> read(std::string_view line);
+  std::optional<TrackFrame> read(std::string_view line);
 
   /// Whether joints, rate and image size are known.
   bool knows_joints() const;
   /// They, as a track without frames.
   const Track2d& like() const;
-  /// What was assumed or left out, told once.
+  /// What was assumed or left out, each once.
   std::vector<std::string> take_notices();
 
  private:

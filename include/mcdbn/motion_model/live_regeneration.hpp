@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "mcdbn/camera/seen_frame.hpp"
+#include "mcdbn/camera/track_frame.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 
 namespace mcdbn {
@@ -42,12 +42,12 @@ class LiveRegeneration {
 
   /// The next frame of the track. @return those that are finished now, at the track's rate
   /// @throws ShapeError if it has other joints
-  std::vector<LiveFrame> push(const SeenFrame& frame);
+  std::vector<LiveFrame> push(const TrackFrame& frame);
   /// The track has ended. @return the rest; frames pushed and frames returned are as many
   std::vector<LiveFrame> finish();
 
   int latency_frames() const { return latency_frames_; }  ///< at most, of the model's rate
-  /// The person's own, or the model's with bones as long as they are told by now.
+  /// The person's own, or the model's with bones as long as they are estimated by now.
   const Skeleton& skeleton() const;
   double fps() const;     ///< of the frames, the track's
   Camera camera() const;  ///< that sees the motion as the track shows it, in its file units
