@@ -1,6 +1,9 @@
 #include "training_options.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 #include "mcdbn/formats/joint_map.hpp"
 #include "setting_flags.hpp"
@@ -10,6 +13,13 @@ namespace {
 
 /// The group of options that the help does not list.
 constexpr const char* kHidden = "";
+
+const std::vector<std::pair<std::string, TrainingConfig (*)()>> kPresets = {
+    {"default", [] { return TrainingConfig(); }},
+    {"paper", TrainingConfig::paper},
+    {"paper-stable", TrainingConfig::paper_stable},
+    {"generation", TrainingConfig::generation},
+    {"general", TrainingConfig::general}};
 
 /// The heading in the help: "Settings of fine-tuning", or "Settings".
 std::string group_of(const std::string& setting) {
@@ -27,7 +37,7 @@ void TrainingOptions::add_to(CLI::App& command) {
           "rates that do not; generation: the greedy stages alone, so that `generate` goes "
           "on and on; general: many people, actions and skeletons for a detector's tracks, as the "
           "model that comes with the program is trained")
-      ->check(CLI::IsMember({"default", "paper", "paper-stable", "generation", "general"}))
+      ->check(CLI::IsMember(kPresets))
       ->capture_default_str();
   command
       .add_option(
@@ -105,12 +115,11 @@ TrainingConfig TrainingOptions::resolve(const std::vector<SaidSetting>& last,
     assign_settings(config, last);
     return config;
   };
-  if (preset_ == "paper") return applied_to(TrainingConfig::paper());
-  if (preset_ == "paper-stable") return applied_to(TrainingConfig::paper_stable());
-  if (preset_ == "generation") return applied_to(TrainingConfig::generation());
-  if (preset_ == "general") return applied_to(TrainingConfig::general());
-  const TrainingConfig config = applied_to({});
-  return config.fine_tuning.steps > 0 ? config : applied_to(TrainingConfig::greedy());
+  const auto preset =
+      std::ranges::find_if(kPresets, [&](const auto& known) { return known.first == preset_; });
+  const TrainingConfig config = applied_to(preset->second());
+  const bool greedy = preset_ == "default" && config.fine_tuning.steps == 0;
+  return greedy ? applied_to(TrainingConfig::greedy()) : config;
 }
 
 void TrainingOptions::apply_stages(TrainingConfig& config) const {

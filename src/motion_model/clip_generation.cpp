@@ -32,11 +32,9 @@ MatrixD root_path(const MatrixD& root, const Eigen::Matrix3d& axes_from_world, d
 struct PreparedSeed {
   Motion motion;
   std::optional<HumanoidRig> rig;  ///< where the model is the humanoid's and the seed is not
-  MatrixF features;                ///< standardized
 };
 
-PreparedSeed prepared(const Model& model, const Motion& seed,
-                      const Eigen::Matrix3d& camera_from_world) {
+PreparedSeed prepared(const Model& model, const Motion& seed) {
   const Modalities& modalities = model.modalities;
   PreparedSeed own;
   if (is_humanoid(modalities.pose_features.skeleton()) && !is_humanoid(seed.skeleton))
@@ -48,7 +46,6 @@ PreparedSeed prepared(const Model& model, const Motion& seed,
         fmt::format("the seed clip has {} at the model's {:g} fps, the network looks at {}; give a "
                     "longer one",
                     counted(own.motion.frames(), "frame"), modalities.fps, needed));
-  own.features = modalities.encode_pose(own.motion, camera_from_world);
   return own;
 }
 
@@ -78,11 +75,11 @@ std::vector<Motion> generate_clips(const Model& model, const std::vector<SeedCli
   std::vector<MatrixF> features;
   for (const SeedClip& seed : seeds) {
     try {
-      prepared_seeds.push_back(prepared(model, seed.motion, camera_from_world));
+      prepared_seeds.push_back(prepared(model, seed.motion));
+      features.push_back(modalities.encode_pose(prepared_seeds.back().motion, camera_from_world));
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", seed.name, error.what()));
     }
-    features.push_back(prepared_seeds.back().features);
   }
   const auto poses = generate(model.network.cdbns[kPose], features, options);
   if (health) *health = generation_health(poses, features);

@@ -123,7 +123,13 @@ TEST_CASE("terms: reprojection through a camera of unknown focal length") {
     at.blocks.back()[0] = std::log(2);
     CHECK((residuals(cost, at) * 0.003 + ray - 2 * once).norm() < 1e-12);
   }
+  // Behind the camera, too, as at the nearest depth.
   const Reprojection behind({kArm, {0, 0, -1}, false}, 0.4, {0.1, -0.05}, 0.003, true);
+  Unknowns at(behind, 1, 0.0);
+  at.blocks.back()[0] = std::log(2);
+  const Eigen::Vector3d x = kArm[0].bone + kArm[1].bone + kArm[2].bone;
+  const Eigen::Vector2d wanted = (2 * x.head<2>() / 0.4 - Eigen::Vector2d(0.1, -0.05)) / 0.003;
+  CHECK((residuals(behind, at) - wanted).norm() < 1e-9);
   check_jacobians(behind, {behind, 1, 0.1});
 }
 
