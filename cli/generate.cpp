@@ -43,7 +43,7 @@ void report(const GenerationHealth& health) {
       "its channels deviate {:.2f} to {:.2f} times as far as in training (median {:.2f}); {}",
       deviation.front(), deviation.back(), deviation[deviation.size() / 2],
       cycle > 0 ? fmt::format("the shortest cycle has {}", counted(cycle, "frame")) : "no cycle");
-  const std::size_t in_range = static_cast<std::size_t>(std::ranges::count_if(
+  const auto in_range = static_cast<std::size_t>(std::ranges::count_if(
       deviation, [](double of_channel) { return of_channel >= kLeast && of_channel <= kMost; }));
   spdlog::info(
       "{} of {} between {:g} and {:g}; {} of {} slower than half the clip's speed in the end",

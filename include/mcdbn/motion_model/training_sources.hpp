@@ -36,8 +36,8 @@ class ClipSource : public SequenceSource {
 class ViewSource : public SequenceSource {
  public:
   /// @param data of those clips (make_training_set), must live on
-  ViewSource(ClipStore clips, const TrainingSet& data, const TrainingConfig& config)
-      : clips_(std::move(clips)), data_(data), config_(config) {}
+  ViewSource(ClipStore clips, const TrainingSet& data, TrainingConfig config)
+      : clips_(std::move(clips)), data_(data), config_(std::move(config)) {}
 
   const TrainingSet& views() const;
   SynchronizedClips sequences() const override { return ClipSource(views()).sequences(); }
