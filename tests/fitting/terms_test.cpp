@@ -1,4 +1,5 @@
-// Every cost against finite differences, and its residuals against their formulas.
+// Every cost against finite differences, and its residuals against their formulas. CHECK is glog's
+// here, which comes with Ceres and ends the program where it fails: so DOCTEST_CHECK.
 
 #include <doctest/doctest.h>
 
@@ -53,14 +54,14 @@ void check_jacobians(const ceres::CostFunction& cost, Unknowns at) {
   for (auto& value : values) all.push_back(value.data());
   Eigen::VectorXd miss(rows);
   REQUIRE(cost.Evaluate(at.pointers().data(), miss.data(), all.data()));
-  CHECK((miss - residuals(cost, at)).norm() < 1e-12);
+  DOCTEST_CHECK((miss - residuals(cost, at)).norm() < 1e-12);
   for (std::size_t b = 0; b < at.blocks.size(); ++b) {
     CAPTURE(b);
     std::vector<double> alone(values[b].size(), 777.0);
     std::vector<double*> one(at.blocks.size(), nullptr);
     one[b] = alone.data();
     REQUIRE(cost.Evaluate(at.pointers().data(), miss.data(), one.data()));
-    CHECK(alone == values[b]);
+    DOCTEST_CHECK(alone == values[b]);
     for (std::size_t i = 0; i < at.blocks[b].size(); ++i) {
       constexpr double kStep = 1e-6;
       const double here = at.blocks[b][i];
@@ -70,8 +71,8 @@ void check_jacobians(const ceres::CostFunction& cost, Unknowns at) {
       const Eigen::VectorXd slope = (after - residuals(cost, at)) / (2 * kStep);
       at.blocks[b][i] = here;
       for (int row = 0; row < rows; ++row)
-        CHECK(values[b][static_cast<std::size_t>(row) * at.blocks[b].size() + i] ==
-              doctest::Approx(slope[row]).epsilon(1e-5).scale(1 + std::abs(slope[row])));
+        DOCTEST_CHECK(values[b][static_cast<std::size_t>(row) * at.blocks[b].size() + i] ==
+                      doctest::Approx(slope[row]).epsilon(1e-5).scale(1 + std::abs(slope[row])));
     }
   }
 }
@@ -91,7 +92,7 @@ TEST_CASE("terms: a joint is where its root, its turns and its lengths put it") 
   for (std::size_t i = 0; i < 3; ++i)
     wanted += std::exp(lengths[i]) *
               (rotation_of(Eigen::Map<const Eigen::Vector3d>(turns[i])) * kArm[i].bone);
-  CHECK((place.at(unknowns) - wanted).norm() < 1e-12);
+  DOCTEST_CHECK((place.at(unknowns) - wanted).norm() < 1e-12);
 }
 
 TEST_CASE("terms: reprojection") {
@@ -101,14 +102,14 @@ TEST_CASE("terms: reprojection") {
     for (unsigned seed = 1; seed <= 3; ++seed) check_jacobians(cost, {cost, seed, 0.3});
     const Eigen::VectorXd still = residuals(cost, {cost, 1, 0.0});
     const Eigen::Vector3d x = kRoot + kArm[0].bone + kArm[1].bone + kArm[2].bone;
-    CHECK(still[0] == doctest::Approx((x.x() / x.z() - 0.1) / 0.003));
-    CHECK(still[1] == doctest::Approx((x.y() / x.z() + 0.05) / 0.003));
+    DOCTEST_CHECK(still[0] == doctest::Approx((x.x() / x.z() - 0.1) / 0.003));
+    DOCTEST_CHECK(still[1] == doctest::Approx((x.y() / x.z() + 0.05) / 0.003));
   }
   // Behind the camera it is as far off as at the nearest depth: nothing is gained there.
   const Reprojection behind({kArm, {0, 0, -1}, false}, 0.4, {0.1, -0.05}, 0.003);
   const Eigen::Vector3d x = kArm[0].bone + kArm[1].bone + kArm[2].bone;
   const Eigen::Vector2d wanted = (x.head<2>() / 0.4 - Eigen::Vector2d(0.1, -0.05)) / 0.003;
-  CHECK((residuals(behind, {behind, 1, 0.0}) - wanted).norm() < 1e-9);
+  DOCTEST_CHECK((residuals(behind, {behind, 1, 0.0}) - wanted).norm() < 1e-9);
   check_jacobians(behind, {behind, 1, 0.1});
 }
 
@@ -121,7 +122,7 @@ TEST_CASE("terms: reprojection through a camera of unknown focal length") {
     at.blocks.back()[0] = 0;
     const Eigen::Vector2d ray(0.1, -0.05), once = residuals(cost, at) * 0.003 + ray;
     at.blocks.back()[0] = std::log(2);
-    CHECK((residuals(cost, at) * 0.003 + ray - 2 * once).norm() < 1e-12);
+    DOCTEST_CHECK((residuals(cost, at) * 0.003 + ray - 2 * once).norm() < 1e-12);
   }
   // Behind the camera, too, as at the nearest depth.
   const Reprojection behind({kArm, {0, 0, -1}, false}, 0.4, {0.1, -0.05}, 0.003, true);
@@ -129,7 +130,7 @@ TEST_CASE("terms: reprojection through a camera of unknown focal length") {
   at.blocks.back()[0] = std::log(2);
   const Eigen::Vector3d x = kArm[0].bone + kArm[1].bone + kArm[2].bone;
   const Eigen::Vector2d wanted = (2 * x.head<2>() / 0.4 - Eigen::Vector2d(0.1, -0.05)) / 0.003;
-  CHECK((residuals(behind, at) - wanted).norm() < 1e-9);
+  DOCTEST_CHECK((residuals(behind, at) - wanted).norm() < 1e-9);
   check_jacobians(behind, {behind, 1, 0.1});
 }
 
@@ -144,12 +145,12 @@ TEST_CASE("terms: a foot on the ground") {
       Unknowns at(cost, 1, 0);
       at.blocks[static_cast<std::size_t>(body_unknown ? 7 : 4)] = {-1.1};
       const Eigen::Vector3d x = kRoot + kArm[0].bone + kArm[1].bone + kArm[2].bone;
-      CHECK(residuals(cost, at)[0] == doctest::Approx((up.dot(x) + 1.1) / 0.05));
+      DOCTEST_CHECK(residuals(cost, at)[0] == doctest::Approx((up.dot(x) + 1.1) / 0.05));
       if (!camera_unknown) continue;
       // The ground leans as the camera does.
       at.blocks.back() = {0.2, 0, -0.1};
       const Eigen::Vector3d leaning = rotation_of({0.2, 0, -0.1}) * up;
-      CHECK(residuals(cost, at)[0] == doctest::Approx((leaning.dot(x) + 1.1) / 0.05));
+      DOCTEST_CHECK(residuals(cost, at)[0] == doctest::Approx((leaning.dot(x) + 1.1) / 0.05));
     }
 }
 
@@ -157,8 +158,8 @@ TEST_CASE("terms: how a camera leans") {
   const CameraLean cost({0.1, -0.2, 0.05, 0.02});
   const Unknowns at(cost, 3, 0.3);
   check_jacobians(cost, at);
-  CHECK(residuals(cost, at)[0] == doctest::Approx((at.blocks[0][0] - 0.1) / 0.05));
-  CHECK(residuals(cost, at)[1] == doctest::Approx((-at.blocks[0][2] + 0.2) / 0.02));
+  DOCTEST_CHECK(residuals(cost, at)[0] == doctest::Approx((at.blocks[0][0] - 0.1) / 0.05));
+  DOCTEST_CHECK(residuals(cost, at)[1] == doctest::Approx((-at.blocks[0][2] + 0.2) / 0.02));
 }
 
 TEST_CASE("terms: a standing foot") {
@@ -170,7 +171,7 @@ TEST_CASE("terms: a standing foot") {
     const StandingFoot cost({kArm, kRoot, body_unknown}, {later, further, body_unknown}, 0.02);
     for (unsigned seed = 1; seed <= 3; ++seed) check_jacobians(cost, {cost, seed, 0.3});
     const Eigen::Vector3d moved = further - kRoot + later[1].bone - kArm[1].bone;
-    CHECK((residuals(cost, {cost, 1, 0.0}) - moved / 0.02).norm() < 1e-9);
+    DOCTEST_CHECK((residuals(cost, {cost, 1, 0.0}) - moved / 0.02).norm() < 1e-9);
   }
 }
 
@@ -179,10 +180,10 @@ TEST_CASE("terms: a weighted sum of unknowns") {
   const Unknowns at(cost, 5, 1);
   check_jacobians(cost, at);
   for (int i = 0; i < 3; ++i)
-    CHECK(residuals(cost, at)[i] ==
-          doctest::Approx((at.blocks[0][i] - 2 * at.blocks[1][i] + 0.5 * at.blocks[2][i] -
-                           Eigen::Vector3d(0.1, 0.2, -0.3)[i]) /
-                          0.04));
+    DOCTEST_CHECK(residuals(cost, at)[i] ==
+                  doctest::Approx((at.blocks[0][i] - 2 * at.blocks[1][i] + 0.5 * at.blocks[2][i] -
+                                   Eigen::Vector3d(0.1, 0.2, -0.3)[i]) /
+                                  0.04));
 }
 
 TEST_CASE("terms: the left Jacobian is how a rotation follows its vector") {
@@ -195,7 +196,7 @@ TEST_CASE("terms: the left Jacobian is how a rotation follows its vector") {
           (rotation_of(turn + step) - rotation_of(turn - step)) / (2 * kStep);
       const Eigen::Matrix3d wanted =
           cross_matrix(left_jacobian(turn).col(axis)) * rotation_of(turn);
-      CHECK((change - wanted).norm() < 1e-8);
+      DOCTEST_CHECK((change - wanted).norm() < 1e-8);
     }
   }
 }
