@@ -12,9 +12,8 @@ constexpr double kHeight_m = 1.7;  ///< of the body that lengths are of
 /// What a solution leaves of the noise that it was told, as seen on detector-like tracks of CMU
 /// walkers.
 constexpr double kResidualOfNoise = 0.88;
-/// What a few proportions do not tell of a body and of where a detector sees its joints, and what
-/// is not a detector any more, as shares of a detector's noise.
-constexpr double kLeastOfOther = 0.7, kMost = 3;
+/// What is not a detector any more, as a share of a detector's noise.
+constexpr double kMost = 3;
 /// A noise that changes by less is not worth another solution.
 constexpr double kSmallChange = 0.1;
 
@@ -25,7 +24,7 @@ SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m
   const double focal_px = std::sqrt(camera.fx_px * camera.fy_px);
   measured_ = std::max(kLeastNoise_px, track_noise_px) / focal_px;
   usual_ = settings.detector * kHeight_m / std::max(depth_m, 1e-9);
-  least_ = own_skeleton ? measured_ : kLeastOfOther * usual_;
+  least_ = own_skeleton ? measured_ : usual_;
   rays_.white = std::max(kLeastNoise_px, settings.caution * track_noise_px) / focal_px;
   rays_.lasting = usual_;
 }

@@ -8,13 +8,14 @@ namespace mcdbn {
 /// What is known of how far off a track's rays are. The part that is new in every frame is told by
 /// the track itself. The part that lasts is at first a usual detector's, then what the solutions
 /// tell: one that comes nearer to the rays than their noise lets expect shows that there is less of
-/// it, the more so the nearer it comes. So an exact projection is found out in two solutions, and a
-/// detector's track stays one.
+/// it, the more so the nearer it comes. So an exact projection of a known body is found out in two
+/// solutions. A body that is fitted itself comes near to any rays, which shows nothing: there the
+/// part that lasts only grows.
 class SeenNoise {
  public:
   /// @param track_noise_px new in every frame, of x and y each
   /// @param depth_m of the person, on a 1.7 m body
-  /// @param own_skeleton else the body is never known so well that the lasting part vanishes
+  /// @param own_skeleton else the body is fitted
   SeenNoise(double track_noise_px, const Camera& camera, double depth_m, bool own_skeleton,
             const TrackFitSettings& settings);
 

@@ -163,7 +163,10 @@ TEST_CASE("known of a clip: a body that nobody knows gets the lengths that the t
                                        {camera, std::nullopt}, TrackFitSettings{});
   const Track2d seen = project_motion(clip.motion, in_file_units(camera, clip.motion.skeleton));
   CHECK(largest(seen.x_px - clip.shown.x_px) < 1e-6);
-  CHECK(largest(seen.x_px - scene.track.x_px) < 1.5);
+  // To within what a detector is usually off: of an unknown body no track is taken for exact.
+  const double height_px =
+      (scene.track.y_px.rowwise().maxCoeff() - scene.track.y_px.rowwise().minCoeff()).mean();
+  CHECK(largest(seen.x_px - scene.track.x_px) < TrackFitSettings{}.detector * height_px);
   // Who is known stays who they are.
   const auto known = scene.placed({scene.camera, own}, TrackFitSettings{}).skeleton;
   CHECK(length(known, "LeftHand") == length(own, "LeftHand"));

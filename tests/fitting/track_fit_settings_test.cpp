@@ -12,8 +12,8 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
   using S = TrackFitSettings;
   const std::vector<Expected<S>> table = {
       {"turn", [](S& s) { return at(s.turn_deg); }, "9"},
-      {"likeness", [](S& s) { return at(s.likeness); }, "0.75"},
-      {"lasting", [](S& s) { return at(s.lasting_s); }, "0.17"},
+      {"likeness", [](S& s) { return at(s.likeness); }, "0.6"},
+      {"lasting", [](S& s) { return at(s.lasting_s); }, "0.1"},
       {"root", [](S& s) { return at(s.root_m_s2); }, "3"},
       {"detector", [](S& s) { return at(s.detector); }, "0.009"},
       {"noise-lasts", [](S& s) { return at(s.noise_lasts_s); }, "0.35"},
@@ -29,7 +29,7 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"balance", [](S& s) { return at(s.balance_deg); }, "5"},
       {"focal", [](S& s) { return at(s.focal); }, "0.1"},
       {"solutions", [](S& s) { return at(s.solutions); }, "5"},
-      {"spread", [](S& s) { return at(s.spread); }, "1.3"},
+      {"spread", [](S& s) { return at(s.spread); }, "1.2"},
       {"draws-noise-lasts", [](S& s) { return at(s.draws_noise_lasts_s); }, "10"}};
   check_table(table);
   CHECK(member_count<S>() == table.size());

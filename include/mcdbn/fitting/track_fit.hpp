@@ -57,13 +57,14 @@ struct KnownOfClip {
 /// What the fit takes for likely: of the prior, of the track, of a camera, and of a body that
 /// moves. Chosen on clips of training people with other bodies and detector-like tracks, and on the
 /// exact projections of the same: six CMU walks, of a model of walks and of a general one;
-/// `outlier`, `proportions`, `roll` and `focal` on seven CMU clips and twelve of Bandai's training
-/// halves, of the general model, which never saw Bandai's; `spread` and `draws-noise-lasts` on
-/// eleven of CMU's, detector-like, exact, with noise of 5 px and with joints missing.
+/// `likeness`, `lasting`, `outlier`, `proportions`, `roll` and `focal` on seven CMU clips and
+/// twelve of Bandai's training halves, of the general model, which never saw Bandai's; `spread` and
+/// `draws-noise-lasts` on eleven of CMU's, detector-like, exact, with noise of 5 px and with joints
+/// missing.
 struct TrackFitSettings {
   double turn_deg = 9;
-  double likeness = 0.75;
-  double lasting_s = 0.17;
+  double likeness = 0.6;
+  double lasting_s = 0.1;
   double root_m_s2 = 3;
   double detector = 0.009;
   double noise_lasts_s = 0.35;
@@ -79,7 +80,7 @@ struct TrackFitSettings {
   double balance_deg = 5;
   double focal = 0.1;
   std::size_t solutions = 5;
-  double spread = 1.3;
+  double spread = 1.2;
   double draws_noise_lasts_s = 10;
 
   /// Metres are those of a 1.7 m body.
