@@ -1,0 +1,87 @@
+#include "formats/person_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "mcdbn/base/errors.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// How far somebody may be from where they were last, as a share of the body's box's diagonal;
+/// three times as far at the end of the patience.
+constexpr double kReachOfChosen = 0.5, kChosenReachGrows = 2;
+
+/// Diagonal of the box around the joints that are seen; below 0 where none is.
+double size_px(const SeenPerson& person) {
+  double least_x = std::numeric_limits<double>::infinity(), least_y = least_x, most_x = -least_x,
+         most_y = -least_x;
+  for (std::size_t joint = 0; joint < person.x_px.size(); ++joint) {
+    if (!(person.confidence[joint] > 0)) continue;
+    least_x = std::min(least_x, person.x_px[joint]);
+    most_x = std::max(most_x, person.x_px[joint]);
+    least_y = std::min(least_y, person.y_px[joint]);
+    most_y = std::max(most_y, person.y_px[joint]);
+  }
+  return most_x < least_x ? -1 : std::hypot(most_x - least_x, most_y - least_y);
+}
+
+/// Mean distance of the joints that both show; infinite where they share none.
+double distance_px(const SeenPerson& one, const SeenPerson& other) {
+  double sum = 0;
+  int shared = 0;
+  for (std::size_t joint = 0; joint < std::min(one.x_px.size(), other.x_px.size()); ++joint) {
+    if (!(one.confidence[joint] > 0 && other.confidence[joint] > 0)) continue;
+    sum += std::hypot(one.x_px[joint] - other.x_px[joint], one.y_px[joint] - other.y_px[joint]);
+    ++shared;
+  }
+  return shared == 0 ? std::numeric_limits<double>::infinity() : sum / shared;
+}
+
+}  // namespace
+
+PersonChoice::PersonChoice(const std::string& person) {
+  if (person == "largest") return;
+  const char* end = person.data() + person.size();
+  const auto [rest, error] = std::from_chars(person.data(), end, number_);
+  if (error != std::errc() || rest != end || number_ == 0)
+    throw ConfigError(fmt::format(
+        "`person` {}: of a track that is followed as it grows say largest, or a number from 1 on",
+        person));
+}
+
+std::optional<std::size_t> PersonChoice::choose(const std::vector<SeenPerson>& people,
+                                                double patience) {
+  if (last_ && ++away_ > patience) last_.reset();
+  std::optional<std::size_t> chosen;
+  if (!last_) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < people.size(); ++i)
+      if (size_px(people[i]) >= 0) order.push_back(i);
+    std::ranges::stable_sort(order, std::greater(),
+                             [&](std::size_t i) { return size_px(people[i]); });
+    if (order.size() >= number_) chosen = order[number_ - 1];
+  } else {
+    double nearest = kReachOfChosen * size_px_ * (1 + kChosenReachGrows * away_ / patience);
+    for (std::size_t i = 0; i < people.size(); ++i) {
+      const bool numbered = last_->id && people[i].id;
+      if (numbered && *last_->id != *people[i].id) continue;
+      const double away = numbered ? 0 : distance_px(*last_, people[i]);
+      if (!(away < nearest) || size_px(people[i]) < 0) continue;
+      nearest = away;
+      chosen = i;
+    }
+  }
+  if (!chosen) return {};
+  if (!last_) size_px_ = 0;
+  last_ = people[*chosen];
+  size_px_ = std::max(size_px_, size_px(*last_));
+  away_ = 0;
+  return chosen;
+}
+
+}  // namespace mcdbn
