@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "formats/person_box.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -16,18 +17,13 @@ namespace {
 /// three times as far at the end of the patience.
 constexpr double kReachOfChosen = 0.5, kChosenReachGrows = 2;
 
-/// Diagonal of the box around the joints that are seen; below 0 where none is.
+/// Whether any joint is.
+bool is_seen(const SeenPerson& person) {
+  return std::ranges::any_of(person.confidence, [](double sure) { return sure > 0; });
+}
+
 double size_px(const SeenPerson& person) {
-  double least_x = std::numeric_limits<double>::infinity(), least_y = least_x, most_x = -least_x,
-         most_y = -least_x;
-  for (std::size_t joint = 0; joint < person.x_px.size(); ++joint) {
-    if (!(person.confidence[joint] > 0)) continue;
-    least_x = std::min(least_x, person.x_px[joint]);
-    most_x = std::max(most_x, person.x_px[joint]);
-    least_y = std::min(least_y, person.y_px[joint]);
-    most_y = std::max(most_y, person.y_px[joint]);
-  }
-  return most_x < least_x ? -1 : std::hypot(most_x - least_x, most_y - least_y);
+  return box_of(person).diagonal();
 }
 
 /// Mean distance of the joints that both show; infinite where they share none.
@@ -61,7 +57,7 @@ std::optional<std::size_t> PersonChoice::choose(const std::vector<SeenPerson>& p
   if (!last_) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < people.size(); ++i)
-      if (size_px(people[i]) >= 0) order.push_back(i);
+      if (is_seen(people[i])) order.push_back(i);
     std::ranges::stable_sort(order, std::greater(),
                              [&](std::size_t i) { return size_px(people[i]); });
     if (order.size() >= number_) chosen = order[number_ - 1];
@@ -71,7 +67,7 @@ std::optional<std::size_t> PersonChoice::choose(const std::vector<SeenPerson>& p
       const bool numbered = last_->id && people[i].id;
       if (numbered && *last_->id != *people[i].id) continue;
       const double away = numbered ? 0 : distance_px(*last_, people[i]);
-      if (!(away < nearest) || size_px(people[i]) < 0) continue;
+      if (!(away < nearest) || !is_seen(people[i])) continue;
       nearest = away;
       chosen = i;
     }

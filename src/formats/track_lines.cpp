@@ -11,16 +11,12 @@
 #include "formats/joint_naming.hpp"
 #include "formats/person_choice.hpp"
 #include "formats/track_formats.hpp"
+#include "formats/track_reading.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion/frame_rate.hpp"
 
 namespace mcdbn {
 namespace {
-
-constexpr double kUsualFps = 30;
-/// Coordinates up to here are shares of the image, as in track_reading.cpp.
-constexpr double kLargestShare = 3;
-constexpr double kPatience_s = 1.5;
 
 bool is_json(std::string_view line) {
   return line.starts_with('{') || line.starts_with('[');
@@ -100,7 +96,9 @@ class TrackLines::Reader {
   TrackFrame frame_of(SeenPeople seen) {
     std::vector<SeenPerson> people;
     if (!seen.frames.empty()) people = std::move(seen.frames.begin()->second);
-    const bool somebody = farthest(people) > 0;
+    const double far = farthest(people);
+    if (far > kFarthest_px) fail(fmt::format("a coordinate of {:.3g}, which is no pixel", far));
+    const bool somebody = far > 0;
     // A CSV's header says the joints, a JSON frame that shows somebody.
     if (!is_known_ && (!json_ || somebody)) learn(seen, people);
     if (!is_known_) return TrackFrame::unseen(0);

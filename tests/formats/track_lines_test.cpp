@@ -162,6 +162,7 @@ TEST_CASE("track lines: a broken line is named, and the next is read") {
   TrackLines json("pipe", of_image());
   CHECK(json.read(people_line({300}))->joints() == 17);
   CHECK(message_of(json, "{\"keypoints\":[[[1,2]").starts_with("pipe:2"));
+  CHECK(message_of(json, people_line({3e6})).find("no pixel") != std::string::npos);
   // Nobody who was seen before.
   CHECK(json.read("{\"keypoints\":[[[1,2]]],\"scores\":[[1]]}")->confidence.sum() == 0);
   CHECK(json.read(people_line({302}))->x_px[0] == 302);
