@@ -7,9 +7,11 @@
 
 #include <limits>
 
-#include "camera/track_noise.hpp"
+#include "camera/detector_track.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
+#include "mcdbn/motion/skeleton_roles.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"
 #include "motion_model/clip_scene.hpp"
@@ -163,6 +165,29 @@ TEST_CASE(
     CHECK(off_track_px(got) < 1.2 * off_track_px(whole));
     for (int t = 1; t < 50; ++t)
       CHECK((got.channels.row(t) - got.channels.row(t - 1)).cwiseAbs().maxCoeff() < 60);
+  });
+}
+
+TEST_CASE("live: a detector's keypoints as the whole clip has them, exchanged sides put right") {
+  on_every_device([](Device& device) {
+    Scene scene;
+    const Model model = scene.model(device);
+    scene.track = project_keypoints(scene.clip, skeleton_roles(scene.clip.skeleton),
+                                    joint_set("COCO_17").keypoints, scene.camera);
+    const auto got = [&] {
+      LiveRegeneration live(model, scene.track, scene.placement());
+      return followed(live, scene.track);
+    };
+    const Motion right = got();
+    CHECK(apart_mm(right, regenerate_clip(model, scene.track, scene.placement(), {}).front()) < 25);
+    for (const std::string joint : {"shoulder", "elbow", "wrist", "hip", "knee", "ankle"}) {
+      const int left = scene.track.find("left_" + joint),
+                other = scene.track.find("right_" + joint);
+      REQUIRE(left >= 0);
+      for (MatrixD* values : {&scene.track.x_px, &scene.track.y_px})
+        for (int t = 25; t < 28; ++t) std::swap((*values)(t, left), (*values)(t, other));
+    }
+    CHECK(apart_mm(got(), right) < 3);
   });
 }
 
