@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/interruption.hpp"
@@ -65,8 +66,11 @@ class FrameOutput {
 class Following {
  public:
   Following(const Model& model, std::filesystem::path output, const ClipPlacement& placement,
-            const FollowOptions& options)
-      : model_(model), output_(std::move(output)), placement_(placement), options_(options) {}
+            FollowOptions options)
+      : model_(model),
+        output_(std::move(output)),
+        placement_(placement),
+        options_(std::move(options)) {}
 
   void take(const TrackFrame& frame, const TrackLines& lines) {
     if (!lines.knows_joints()) {

@@ -34,6 +34,7 @@ void QuadraticEnergy::add(const ceres::Problem& problem, ceres::ResidualBlockId 
   for (const int size : cost->parameter_block_sizes())
     derivatives.emplace_back(cost->num_residuals(), size);
   std::vector<double*> places;
+  places.reserve(derivatives.size());
   for (MatrixD& derivative : derivatives) places.push_back(derivative.data());
   cost->Evaluate(unknowns.data(), residual.data(), places.data());
   double rho[3] = {0, 1, 0};

@@ -64,10 +64,13 @@ std::optional<std::size_t> PersonChoice::choose(const std::vector<SeenPerson>& p
   } else {
     double nearest = kReachOfChosen * size_px_ * (1 + kChosenReachGrows * away_ / patience);
     for (std::size_t i = 0; i < people.size(); ++i) {
-      const bool numbered = last_->id && people[i].id;
-      if (numbered && *last_->id != *people[i].id) continue;
-      const double away = numbered ? 0 : distance_px(*last_, people[i]);
-      if (!(away < nearest) || !is_seen(people[i])) continue;
+      if (!is_seen(people[i])) continue;
+      const long long number = people[i].id.value_or(-1), wanted = last_->id.value_or(-1);
+      const bool numbered = number >= 0 && wanted >= 0;
+      if (numbered && number != wanted) continue;
+      const double away = distance_px(*last_, people[i]);
+      // By the number somebody is found however far away.
+      if (!(away < nearest) && !(numbered && !chosen)) continue;
       nearest = away;
       chosen = i;
     }

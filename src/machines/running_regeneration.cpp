@@ -112,7 +112,7 @@ void RunningRegeneration::settle(std::size_t frames) {
   visible_.clear();
   for (MatrixF& layer : last_visible_) {
     layer = MatrixF(layer.bottomRows(layer.rows() - passed));
-    visible_.push_back(layer.topRows(history_));
+    visible_.emplace_back(layer.topRows(history_));
   }
   run_in_ = 0;
 }

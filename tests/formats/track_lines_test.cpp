@@ -152,6 +152,26 @@ TEST_CASE("track lines: nobody, then several people, of whom one is followed") {
   CHECK(lines.read(people_line({700}))->x_px[0] == 700);
 }
 
+TEST_CASE("track lines: a person whom the file numbers is followed however far") {
+  const auto line = [](const std::vector<std::pair<int, int>>& people) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const auto& [number, at_px] : people) {
+      nlohmann::json numbers = nlohmann::json::array();
+      for (int joint = 0; joint < 25; ++joint)
+        for (const double value : {at_px + 10.0 * (joint % 3), 100.0 + 12 * joint, 0.9})
+          numbers.push_back(value);
+      list.push_back({{"person_id", {number}}, {"pose_keypoints_2d", numbers}});
+    }
+    return nlohmann::json{{"people", list}}.dump();
+  };
+  TrackLines lines("pipe", of_image());
+  CHECK(lines.read(line({{4, 300}}))->x_px[0] == 300);
+  CHECK(lines.read(line({{7, 300}, {4, 900}}))->x_px[0] == 900);
+  CHECK(lines.read(line({{7, 900}}))->confidence.sum() == 0);
+  // A number that several have does not tell them apart.
+  CHECK(lines.read(line({{4, 300}, {4, 890}}))->x_px[0] == 890);
+}
+
 TEST_CASE("track lines: a broken line is named, and the next is read") {
   TrackLines lines("pipe");
   (void)read_all(lines, kCsv);

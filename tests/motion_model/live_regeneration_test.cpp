@@ -15,6 +15,7 @@
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"
 #include "motion_model/clip_scene.hpp"
+#include "motion_model/live_output.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -166,6 +167,19 @@ TEST_CASE(
     for (int t = 1; t < 50; ++t)
       CHECK((got.channels.row(t) - got.channels.row(t - 1)).cwiseAbs().maxCoeff() < 60);
   });
+}
+
+TEST_CASE("live: a frame between two poses is between them") {
+  Skeleton skeleton;
+  skeleton.joints.push_back({"Hips", -1, {0, 0, 0}, {Channel::x_position}, {}});
+  LiveOutput output(30, 75);
+  std::vector<double> got;
+  for (const double at : {0.0, 10.0, 20.0})
+    for (const LiveFrame& frame : output.add(skeleton, RowVectorD::Constant(1, at), true))
+      got.push_back(frame.channels[0]);
+  REQUIRE(got.size() == 6);
+  for (std::size_t frame = 0; frame < 6; ++frame)
+    CHECK(got[frame] == doctest::Approx(4.0 * static_cast<double>(frame)));
 }
 
 TEST_CASE("live: a detector's keypoints as the whole clip has them, exchanged sides put right") {
