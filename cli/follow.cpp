@@ -65,11 +65,11 @@ class FrameOutput {
 /// A track on its way to frames.
 class Following {
  public:
-  Following(const Model& model, std::filesystem::path output, const ClipPlacement& placement,
+  Following(const Model& model, std::filesystem::path output, ClipPlacement placement,
             FollowOptions options)
       : model_(model),
         output_(std::move(output)),
-        placement_(placement),
+        placement_(std::move(placement)),
         options_(std::move(options)) {}
 
   void take(const TrackFrame& frame, const TrackLines& lines) {
