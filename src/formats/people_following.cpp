@@ -41,6 +41,7 @@ class Follower {
   std::vector<Followed> run() {
     for (std::size_t frame = 0; frame < frames_.size(); ++frame) add_frame(static_cast<int>(frame));
     std::vector<Followed> people;
+    people.reserve(paths_.size());
     for (Path& path : paths_) people.push_back(std::move(path.seen));
     return people;
   }
@@ -169,6 +170,7 @@ std::vector<Followed> by_number(const Frames& frames) {
       followed[frame] = static_cast<int>(person);
     }
   std::vector<Followed> result;
+  result.reserve(people.size());
   for (auto& [id, followed] : people) result.push_back(std::move(followed));
   return result;
 }
@@ -186,11 +188,13 @@ std::vector<Followed> follow_people(const Frames& frames, int patience) {
   std::vector<Followed> people =
       numbered(frames) ? by_number(frames) : Follower(frames, patience).run();
   std::vector<double> sizes;
+  sizes.reserve(people.size());
   for (const Followed& followed : people) sizes.push_back(size_of(followed, frames));
   std::vector<std::size_t> order(people.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return sizes[i]; });
   std::vector<Followed> sorted;
+  sorted.reserve(order.size());
   for (const std::size_t i : order) sorted.push_back(std::move(people[i]));
   return sorted;
 }
