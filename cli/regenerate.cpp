@@ -17,6 +17,7 @@
 #include "comparison/fitted_baseline.hpp"
 #include "default_model.hpp"
 #include "fit_option.hpp"
+#include "follow.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
@@ -40,6 +41,7 @@ struct RegenerateOptions {
   SeenByOptions seen_by;
   SamplingOptions sampling;
   std::string to = kToPose, fit, method = kModel;
+  FollowOptions following;
 };
 
 /// Options that mean nothing where a track is wanted. @throws ConfigError naming the first
@@ -67,6 +69,29 @@ void check_uncertainty(const RegenerateOptions& options) {
   if (options.uncertainty.empty()) return;
   if (options.sampling.samples.value_or(1) > 1)
     throw ConfigError("--uncertainty is that of a single answer: leave out --samples");
+}
+
+/// What a track that is still growing cannot have, and what only it may leave out.
+/// @throws ConfigError naming the first
+void check_follow(const RegenerateOptions& options) {
+  const FollowOptions& following = options.following;
+  if (!following.follow) {
+    if (options.input.empty() || options.output.empty())
+      throw ConfigError(fmt::format("{} is required", options.input.empty() ? "--input" : "-o"));
+    if (following.look_ahead || !following.frames.empty())
+      throw ConfigError("--look-ahead and --frames are for --follow");
+    return;
+  }
+  for (const auto& [said, flag] :
+       {std::pair{options.to == kToTrack, "--to track"},
+        std::pair{options.method != kModel, "--method"},
+        std::pair{!options.write_camera.empty(), "--write-camera"},
+        std::pair{!options.uncertainty.empty(), "--uncertainty"},
+        std::pair{options.sampling.samples.value_or(1) > 1, "--samples"},
+        std::pair{options.sampling.temperature.value_or(0) > 0, "--temperature"},
+        std::pair{!track_fit(options.fit), "--fit none"}})
+    if (said)
+      throw ConfigError(fmt::format("{} needs the whole track: leave it out, or --follow", flag));
 }
 
 void report(const std::filesystem::path& path, int frames, double fps) {
@@ -199,6 +224,16 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
   }
 }
 
+void follow(const Model& model, const RegenerateOptions& options,
+            const std::optional<Camera>& camera, std::uint64_t seed) {
+  TrackReadOptions reading = options.track;
+  if (camera && !reading.image_size) reading.image_size = {camera->width_px, camera->height_px};
+  if (model.network.sampling.always)
+    spdlog::info("frames are the model's mean answer: what it draws, it draws for whole tracks");
+  follow_track(model, options.input.empty() ? "-" : options.input, options.output, reading,
+               placement_of(options, camera, seed), options.following);
+}
+
 void regenerate_tracks(const Model& model, const RegenerateOptions& options,
                        const std::optional<Camera>& camera,
                        const RegenerationOptions& regeneration) {
@@ -214,12 +249,15 @@ void regenerate_tracks(const Model& model, const RegenerateOptions& options,
 void run_regenerate(const CommandContext& context, const RegenerateOptions& options) {
   check_direction(options);
   check_uncertainty(options);
+  check_follow(options);
   Device device = Device::open({context.platform, context.device});
   const Model model = load_model(device, model_or_default(options.model));
   const std::optional<Camera> camera = options.seen_by.camera();
   const RegenerationOptions regeneration =
       options.sampling.regeneration(model.network, context.seed);
-  if (options.to == kToTrack)
+  if (options.following.follow)
+    follow(model, options, camera, regeneration.seed);
+  else if (options.to == kToTrack)
     regenerate_tracks(model, options, camera, regeneration);
   else
     regenerate_poses(model, options, camera, regeneration);
@@ -235,12 +273,10 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
   command
       ->add_option("--input", options->input,
                    "2D track, a file or a folder; with --to track a BVH clip")
-      ->required()
       ->type_name("FILE");
   mark_output(command->add_option("-o,--output", options->output,
                                   "BVH file to write; with --to track a 2D track, CSV"),
               context)
-      ->required()
       ->type_name("FILE");
   command
       ->add_option("--to", options->to,
@@ -283,6 +319,7 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
   add_sampling_options(*command, options->sampling,
                        "Variations; several are written as out_01.bvh … (default: 1)");
   add_fit_option(*command, options->fit, "default: track");
+  add_follow_options(*command, options->following);
   add_seed_option(*command, context);
   add_device_options(*command, context);
   add_quiet_option(*command, context);

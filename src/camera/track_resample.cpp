@@ -35,6 +35,15 @@ void resample_joint(const Track2d& track, Eigen::Index joint, double at, double 
 
 }  // namespace
 
+Track2d frame_at(const Track2d& track, double at, double reach) {
+  Track2d frame = track;
+  for (MatrixD* values : {&frame.x_px, &frame.y_px, &frame.confidence})
+    values->resize(1, track.joint_count());
+  for (Eigen::Index joint = 0; joint < track.joint_count(); ++joint)
+    resample_joint(track, joint, at, reach, frame, 0);
+  return frame;
+}
+
 Track2d resample_track(const Track2d& track, double target_hz) {
   const Eigen::Index frames = frames_at_rate(track.frames(), track.fps, target_hz, 0, kSameRate);
   const double step = track.fps / target_hz;

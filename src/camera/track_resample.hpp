@@ -9,4 +9,9 @@ namespace mcdbn {
 /// A new frame is missing where all old ones that it draws on are. The same rate returns it as is.
 Track2d resample_track(const Track2d& track, double target_hz);
 
+/// One such new frame. @param at its time  @param reach of the triangle, both in frames of the
+/// track
+/// @return a track of that frame alone
+Track2d frame_at(const Track2d& track, double at, double reach);
+
 }  // namespace mcdbn

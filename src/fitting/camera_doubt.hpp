@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+
+#include "mcdbn/fitting/track_fit.hpp"
+
 namespace mcdbn {
 
 /// What pitch and roll of a camera are expected to be, as they differ from those that it is assumed
@@ -17,5 +21,10 @@ struct CameraDoubt {
   double log_focal = 0;  ///< expected
   double log_focal_deviation = 1;
 };
+
+/// What is not known of the camera, where the network sees and answers in a level view: nothing
+/// tells pitch and roll where it does not.
+std::optional<CameraDoubt> doubt_of(const KnownOfClip& known, const Modalities& modalities,
+                                    const Track2d& track, const TrackFitSettings& settings);
 
 }  // namespace mcdbn

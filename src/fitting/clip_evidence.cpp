@@ -152,10 +152,10 @@ Skeleton ClipEvidence::body(const PosteriorPoint& point) const {
   return body;
 }
 
-double ClipEvidence::usual_residual(const PosteriorPoint& point) const {
+double ClipEvidence::usual_residual(const PosteriorPoint& point, Eigen::Index frames) const {
   std::vector<double> residuals;
   const double magnified = std::exp(point.log_focal);
-  for (Eigen::Index t = 0; t < clip.frames(); ++t) {
+  for (Eigen::Index t = 0; t < frames; ++t) {
     const auto& seen = clip.seen[static_cast<std::size_t>(t)];
     for (std::size_t joint = 0; joint < seen.size(); ++joint) {
       if (!(seen[joint].confidence > 0)) continue;

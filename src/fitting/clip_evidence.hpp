@@ -36,9 +36,9 @@ class ClipEvidence {
   /// Its body. @return the answer's skeleton, bones as long as the point has them
   Skeleton body(const PosteriorPoint& point) const;
 
-  /// How far from the rays the joints are: 1.4826 times the median residual, x/z and y/z, times the
-  /// root of its confidence; 0 where nothing is seen.
-  double usual_residual(const PosteriorPoint& point) const;
+  /// How far from the rays the joints of the first frames are: 1.4826 times the median residual,
+  /// x/z and y/z, times the root of its confidence; 0 where nothing is seen.
+  double usual_residual(const PosteriorPoint& point, Eigen::Index frames) const;
   /// The root's usual distance from the camera, m on a 1.7 m body.
   double usual_depth_m() const;
 

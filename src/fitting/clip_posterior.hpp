@@ -6,6 +6,7 @@
 
 #include "fitting/camera_doubt.hpp"
 #include "fitting/lever.hpp"
+#include "fitting/marginal_prior.hpp"
 #include "mcdbn/base/matrices.hpp"
 #include "mcdbn/fitting/track_fit.hpp"
 
@@ -35,6 +36,9 @@ struct PosteriorClip {
   std::vector<int> grounds;      ///< by foot, which height it stands at: left and right the same
   Eigen::Vector3d up{0, -1, 0};  ///< against gravity, as the camera is assumed to stand
   std::optional<CameraDoubt> camera;  ///< unset: known
+  MatrixD mean_lean;  ///< [frames x 3] how the camera leaned that the prior's mean was seen by;
+                      ///< 0 x 0: as assumed
+  std::optional<MarginalPrior> past;  ///< of frames before the first
   bool body_unknown = false;
   double frame_time_s = 1;
 

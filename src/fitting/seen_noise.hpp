@@ -16,13 +16,16 @@ class SeenNoise {
   /// @param track_noise_px new in every frame, of x and y each
   /// @param depth_m of the person, on a 1.7 m body
   /// @param own_skeleton else the body is fitted
+  /// @param share of a usual detector's lasting part, as it was told before
   SeenNoise(double track_noise_px, const Camera& camera, double depth_m, bool own_skeleton,
-            const TrackFitSettings& settings);
+            const TrackFitSettings& settings, double share = 1);
 
   const RayNoise& rays() const { return rays_; }
   /// @param residual how far from the rays a solution's joints are, x/z and y/z each
   /// @return whether that makes another solution worth while
   bool learn(double residual);
+  /// What is told by now of a usual detector's lasting part.
+  double share() const { return rays_.lasting / usual_; }
 
  private:
   double measured_, usual_, least_;  ///< on the rays: of the track, of detectors, of both parts

@@ -16,9 +16,10 @@
 #include "fitting/rotation.hpp"
 #include "fitting/seen_noise.hpp"
 #include "fitting/track_smoothing.hpp"
+#include "fitting/tracked_joints.hpp"
+#include "fitting/upright.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
-#include "motion/foot_joints.hpp"
 
 namespace mcdbn {
 namespace {
@@ -30,14 +31,6 @@ constexpr double kVelocityError_m_s2 = 1.0;
 TrackFitSettings settings_of_draws(TrackFitSettings settings) {
   settings.noise_lasts_s = settings.draws_noise_lasts_s;
   return settings;
-}
-
-/// The joints that the model looks at: others, such as a node that stays on the floor, may move in
-/// the file unlike anything that a camera sees.
-std::vector<std::string> tracked_joints(const TrackFeatures& features) {
-  std::vector<std::string> names = features.joint_names();
-  names.push_back(features.root_name());
-  return names;
 }
 
 void check(const PosePrior& prior, const Modalities& features, const Track2d& track) {
@@ -54,26 +47,6 @@ void check(const PosePrior& prior, const Modalities& features, const Track2d& tr
   if (!prior.deviation.allFinite() || (prior.deviation.array() < 0).any()) {
     throw InputError("a prior's deviation is negative or not finite; give 0 or more");
   }
-}
-
-/// What is not known of the camera, where the network sees and answers in a level view: nothing
-/// tells pitch and roll where it does not.
-std::optional<CameraDoubt> doubt_of(const KnownOfClip& known, const Modalities& modalities,
-                                    const Track2d& track, const TrackFitSettings& settings) {
-  if (known.camera || !modalities.level_view) return {};
-  const Camera assumed = known.camera_of(track, modalities),
-               usual = modalities.assumed_camera(known.view, track.width_px, track.height_px);
-  const Eigen::Vector3d up = usual.camera_from_world.col(1),
-                        up_now = assumed.camera_from_world.col(1);
-  CameraDoubt doubt;
-  doubt.usual = {pitch_rad(up) - pitch_rad(up_now), roll_rad(up) - roll_rad(up_now),
-                 settings.pitch_deg * kRadiansPerDegree, settings.roll_deg * kRadiansPerDegree};
-  doubt.pitch_known = known.view.pitch_deg.has_value();
-  doubt.roll_known = known.view.roll_deg.has_value();
-  doubt.focal_known = known.view.field_of_view_deg.has_value();
-  doubt.log_focal = std::log(usual.fy_px / assumed.fy_px);
-  doubt.log_focal_deviation = settings.focal;
-  return doubt;
 }
 
 /// One clip on its way to its track.
@@ -121,7 +94,7 @@ class ClipFit {
       look_again(settings);
       rays_ = noise.rays();
       take(point_ = most_likely(clip, rays_, settings, std::move(point_)));
-      if (!noise.learn(evidence_->usual_residual(point_))) break;
+      if (!noise.learn(evidence_->usual_residual(point_, clip.frames()))) break;
     }
   }
 
@@ -200,8 +173,9 @@ class ClipFit {
     evidence_->find_planted(motion());
     point_.ground_m = evidence_->ground(point_);
     if (clip.camera)
-      clip.camera->balanced =
-          evidence_->balanced(upright(), settings.balance_deg * kRadiansPerDegree);
+      clip.camera->balanced = evidence_->balanced(
+          upright_in_camera(decoded(MatrixD::Zero(features_.rows(), 3)), camera_),
+          settings.balance_deg * kRadiansPerDegree);
   }
 
   /// Pose, root and, if it is unknown, body are what the point makes of the prior's mean. A single
@@ -230,20 +204,6 @@ class ClipFit {
     Camera camera = camera_;
     camera.translation += camera.camera_from_world * shift_.transpose();
     return camera;
-  }
-
-  /// From the feet to the body's middle, on average, camera axes.
-  Eigen::Vector3d upright() const {
-    const MatrixD positions = joint_positions(decoded(MatrixD::Zero(features_.rows(), 3)));
-    const Eigen::RowVectorXd mean = positions.colwise().mean();
-    const std::vector<int> feet = foot_joints(skeleton_);
-    if (feet.empty()) return camera_.camera_from_world.col(1);
-    Eigen::Vector3d upright(0, 0, 0);
-    for (int joint = 0; joint < skeleton_.joint_count(); ++joint)
-      upright += mean.segment<3>(3 * joint).transpose() / skeleton_.joint_count();
-    for (const int foot : feet)
-      upright -= mean.segment<3>(3 * foot).transpose() / static_cast<double>(feet.size());
-    return camera_.camera_from_world * upright;
   }
 
   /// [frames x 3] world axes, file units

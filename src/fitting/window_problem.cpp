@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 #include "base/interruption.hpp"
 #include "fitting/one_thread_solver.hpp"
@@ -15,13 +17,13 @@
 #include "fitting/terms/camera_lean.hpp"
 #include "fitting/terms/ground_contact.hpp"
 #include "fitting/terms/linear_term.hpp"
+#include "fitting/terms/normal_term.hpp"
 #include "fitting/terms/reprojection.hpp"
 #include "fitting/terms/standing_foot.hpp"
 
 namespace mcdbn {
 namespace {
 
-constexpr int kMostIterations = 25;
 /// A joint is seen as if it were no nearer to the camera than this share of the root's first depth.
 constexpr double kNearest = 0.1;
 /// What hardly stands is not worth an equation.
@@ -33,7 +35,8 @@ ceres::LossFunction* scaled(ceres::LossFunction* loss, double weight) {
   return new ceres::ScaledLoss(loss, weight, ceres::TAKE_OWNERSHIP);
 }
 
-void append(std::vector<double*>& to, const std::vector<double*>& more) {
+template <typename Block>
+void append(std::vector<Block>& to, const std::type_identity_t<std::vector<Block>>& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
 
@@ -53,10 +56,7 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
          from.ground_m,
          from.lean,
          from.log_focal} {
-  if (unknowns == Unknowns::all)
-    used_.assign(clip_.parents.size(), true);
-  else
-    find_used();
+  find_used(unknowns);
   add_rays();
   add_turns();
   add_root();
@@ -64,16 +64,19 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
   add_ground();
   if (clip_.camera) add_camera();
   if (clip_.body_unknown) add_lengths(unknowns);
+  if (clip_.past) add_past();
 }
 
-void WindowProblem::solve(bool shared_too, double small_gain) {
+void WindowProblem::solve(bool shared_too, double small_gain, int most_iterations) {
   check_interruption();
   if (!shared_too)
-    for (double* block : shared_blocks()) problem_.SetParameterBlockConstant(block);
+    for (const UnknownBlock& block : shared_blocks())
+      if (problem_.HasParameterBlock(block.unknown))
+        problem_.SetParameterBlockConstant(block.unknown);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-  options.max_num_iterations = kMostIterations;
+  options.max_num_iterations = most_iterations;
   // Half as many steps as Levenberg and Marquardt's.
   options.trust_region_strategy_type = ceres::DOGLEG;
   options.dogleg_type = ceres::SUBSPACE_DOGLEG;
@@ -117,16 +120,24 @@ Eigen::SparseMatrix<double> WindowProblem::derivatives() {
   return result;
 }
 
+/// @param first of the frames that it is about; whether a foot stands is told from the one before
+void WindowProblem::add(Eigen::Index first, ceres::CostFunction* cost, ceres::LossFunction* loss,
+                        const std::vector<double*>& blocks) {
+  terms_.emplace_back(problem_.AddResidualBlock(cost, loss, blocks), first);
+}
+
 const std::vector<SeenJoint>& WindowProblem::seen(Eigen::Index t) const {
   return clip_.seen[static_cast<std::size_t>(first_ + t)];
 }
 
-void WindowProblem::find_used() {
-  used_.assign(clip_.parents.size(), false);
+void WindowProblem::find_used(Unknowns unknowns) {
+  used_.assign(clip_.parents.size(), unknowns == Unknowns::all);
+  const auto use = [&](const SeenJoint& joint) {
+    for (const Lever& lever : joint.levers) used_[static_cast<std::size_t>(lever.turn)] = true;
+  };
   for (Eigen::Index t = 0; t < x_.turns.rows(); ++t)
     for (const SeenJoint& joint : seen(t))
-      if (joint.confidence > 0)
-        for (const Lever& lever : joint.levers) used_[static_cast<std::size_t>(lever.turn)] = true;
+      if (unknowns == Unknowns::tracked || joint.confidence > 0) use(joint);
   for (std::size_t turn = used_.size(); turn-- > 0;)
     if (used_[turn] && clip_.parents[turn] >= 0)
       used_[static_cast<std::size_t>(clip_.parents[turn])] = true;
@@ -170,7 +181,7 @@ void WindowProblem::add_rays() {
       std::vector<double*> blocks = moving_blocks(t, joint);
       append(blocks, length_blocks(joint));
       if (clip_.camera) blocks.push_back(&x_.log_focal);
-      problem_.AddResidualBlock(
+      add(t,
           new Reprojection(place(t, joint), kNearest * clip_.root(first_ + t, 2), at.ray,
                            std::sqrt((white + lasting) / at.confidence), clip_.camera.has_value()),
           scaled(new ceres::CauchyLoss(settings_.outlier), weight), blocks);
@@ -195,12 +206,15 @@ void WindowProblem::add_turns() {
         blocks.push_back(turn_at(t, parent));
         shares.push_back(-share);
       }
+      Eigen::Vector3d expected = zero;
       if (clip_.camera) {
         blocks.push_back(x_.lean.data());
         shares.push_back(share - 1);
+        if (clip_.mean_lean.rows() > 0)
+          expected = (share - 1) * clip_.mean_lean.row(first_ + t).transpose();
       }
-      problem_.AddResidualBlock(new LinearTerm(shares, zero, deviation / std::sqrt(process.point)),
-                                nullptr, blocks);
+      add(t, new LinearTerm(shares, expected, deviation / std::sqrt(process.point)), nullptr,
+          blocks);
       if (t == 0 || t + 1 == x_.turns.rows()) continue;
       blocks = {turn_at(t - 1, turn), turn_at(t, turn), turn_at(t + 1, turn)};
       shares = {1, -2, 1};
@@ -208,8 +222,8 @@ void WindowProblem::add_turns() {
         append(blocks, {turn_at(t - 1, parent), turn_at(t, parent), turn_at(t + 1, parent)});
         for (const double step : {1, -2, 1}) shares.push_back(-step * share);
       }
-      problem_.AddResidualBlock(new LinearTerm(shares, zero, deviation / std::sqrt(process.bend)),
-                                nullptr, blocks);
+      add(t - 1, new LinearTerm(shares, zero, deviation / std::sqrt(process.bend)), nullptr,
+          blocks);
     }
   }
 }
@@ -221,8 +235,8 @@ void WindowProblem::add_root() {
     const MatrixD otherwise =
         clip_.travelled.middleRows(first_ + t - 1, 3) - clip_.root.middleRows(first_ + t - 1, 3);
     const Eigen::Vector3d wanted = otherwise.row(0) - 2 * otherwise.row(1) + otherwise.row(2);
-    problem_.AddResidualBlock(new LinearTerm({1, -2, 1}, wanted, bend_m), nullptr,
-                              {shift_at(t - 1), shift_at(t), shift_at(t + 1)});
+    add(t - 1, new LinearTerm({1, -2, 1}, wanted, bend_m), nullptr,
+        {shift_at(t - 1), shift_at(t), shift_at(t + 1)});
   }
 }
 
@@ -236,8 +250,8 @@ void WindowProblem::add_feet() {
       append(blocks, moving_blocks(t, foot));
       append(blocks, length_blocks(foot));
       const double deviation_m = settings_.footing_m_s * clip_.frame_time_s / std::sqrt(surely);
-      problem_.AddResidualBlock(new StandingFoot(place(t - 1, foot), place(t, foot), deviation_m),
-                                new ceres::HuberLoss(kSlips), blocks);
+      add(t - 1, new StandingFoot(place(t - 1, foot), place(t, foot), deviation_m),
+          new ceres::HuberLoss(kSlips), blocks);
     }
   }
 }
@@ -255,7 +269,7 @@ void WindowProblem::add_ground() {
       append(blocks, length_blocks(foot));
       blocks.push_back(height);
       if (clip_.camera) blocks.push_back(x_.lean.data());
-      problem_.AddResidualBlock(
+      add(t - 1,
           new GroundContact(place(t, foot), clip_.up, settings_.ground_m, clip_.camera.has_value()),
           scaled(new ceres::CauchyLoss(kCauchy), surely * weight), blocks);
     }
@@ -280,18 +294,61 @@ void WindowProblem::add_camera() {
   if (camera.focal_known) problem_.SetParameterBlockConstant(&x_.log_focal);
 }
 
-std::vector<double*> WindowProblem::shared_blocks() {
-  std::vector<double*> blocks;
-  for (double& length : x_.log_lengths) blocks.push_back(&length);
-  for (double& height : x_.ground_m) blocks.push_back(&height);
-  append(blocks, {x_.lean.data(), &x_.log_focal});
-  std::erase_if(blocks, [&](double* block) { return !problem_.HasParameterBlock(block); });
+std::vector<UnknownBlock> WindowProblem::shared_blocks() {
+  std::vector<UnknownBlock> blocks;
+  if (clip_.body_unknown)
+    for (double& length : x_.log_lengths) blocks.push_back({&length, 1});
+  for (double& height : x_.ground_m) blocks.push_back({&height, 1});
+  if (clip_.camera) append(blocks, {{x_.lean.data(), 3}, {&x_.log_focal, 1}});
   return blocks;
+}
+
+Eigen::Index WindowProblem::numbers_of_frame() const {
+  return 3 * std::ranges::count(used_, true) + 3;
+}
+
+std::vector<UnknownBlock> WindowProblem::blocks_of_frames(Eigen::Index first, Eigen::Index count) {
+  std::vector<UnknownBlock> blocks;
+  for (Eigen::Index t = first; t < first + count; ++t) {
+    for (int turn = 0; turn < turns_; ++turn)
+      if (used_[static_cast<std::size_t>(turn)]) blocks.push_back({turn_at(t, turn), 3});
+    blocks.push_back({shift_at(t), 3});
+  }
+  return blocks;
+}
+
+void WindowProblem::add_past() {
+  std::vector<double*> unknowns;
+  std::vector<int> sizes;
+  std::vector<UnknownBlock> blocks = blocks_of_frames(0, MarginalPrior::kReach);
+  append(blocks, shared_blocks());
+  for (const UnknownBlock& block : blocks) {
+    unknowns.push_back(block.unknown);
+    sizes.push_back(block.size);
+  }
+  const MarginalPrior& past = *clip_.past;
+  Eigen::VectorXd at = past.at;
+  for (Eigen::Index t = 0; t < MarginalPrior::kReach; ++t)
+    at.segment<3>((t + 1) * numbers_of_frame() - 3) -= clip_.root.row(first_ + t).transpose();
+  add(0, new NormalTerm(past.factor, std::move(at), past.residual, sizes), nullptr, unknowns);
+}
+
+MarginalPrior WindowProblem::without_first(Eigen::Index frames) {
+  std::vector<UnknownBlock> blocks = blocks_of_frames(0, frames + MarginalPrior::kReach);
+  append(blocks, shared_blocks());
+  QuadraticEnergy energy(blocks);
+  for (const auto& [term, first] : terms_)
+    if (first < frames) energy.add(problem_, term);
+  const Eigen::Index of_frame = numbers_of_frame();
+  MarginalPrior past = energy.without_first(frames * of_frame);
+  for (Eigen::Index t = 0; t < MarginalPrior::kReach; ++t)
+    past.at.segment<3>((t + 1) * of_frame - 3) += clip_.root.row(first_ + frames + t).transpose();
+  return past;
 }
 
 void WindowProblem::add_lengths(Unknowns unknowns) {
   for (double& length : x_.log_lengths)
-    if (unknowns == Unknowns::all || problem_.HasParameterBlock(&length))
+    if (unknowns != Unknowns::seen || problem_.HasParameterBlock(&length))
       problem_.AddResidualBlock(
           new LinearTerm({1}, Eigen::VectorXd::Zero(1), settings_.proportions), nullptr, &length);
 }

@@ -3,16 +3,19 @@
 #include <ceres/problem.h>
 
 #include <Eigen/SparseCore>
+#include <utility>
 #include <vector>
 
 #include "fitting/clip_posterior.hpp"
+#include "fitting/quadratic_energy.hpp"
 #include "fitting/terms/joint_place.hpp"
 
 namespace mcdbn {
 
-/// What a problem asks for: the orientations and lengths that move a joint which is seen, or also
-/// those of which only the prior tells.
-enum class Unknowns { seen, all };
+/// What a problem asks for: the orientations and lengths that move a joint which is seen in its
+/// frames, one that the track has, whether or not these frames see it, or also those of which only
+/// the prior tells.
+enum class Unknowns { seen, tracked, all };
 
 /// The posterior of some frames of a clip as a problem for Ceres. Unknown are, by frame, a turn of
 /// the orientations and a shift of the root; and the lengths.
@@ -23,20 +26,26 @@ class WindowProblem {
                 const PosteriorPoint& from, Eigen::Index first, Eigen::Index frames,
                 Unknowns unknowns = Unknowns::seen);
 
+  static constexpr int kMostIterations = 25;
+
   /// @param shared_too else what all frames share, body, ground and camera, stays as it is
   /// @param small_gain a step that lowers the energy by less than this share is the last one
-  void solve(bool shared_too, double small_gain);
+  void solve(bool shared_too, double small_gain, int most_iterations = kMostIterations);
 
   /// Derivatives of the residuals, as their losses weigh them, at the point where the problem is.
   /// @return [residuals x frames·(3·orientations + 3) + lengths]: frame by frame its turns and its
   ///         shift, then the lengths; 0 in the column of what nothing depends on
   Eigen::SparseMatrix<double> derivatives();
 
+  /// What the first so many frames, and those before them, tell of those behind, near the point
+  /// where the problem is. It has to be one of tracked or all unknowns, and of kReach frames more.
+  MarginalPrior without_first(Eigen::Index frames);
+
   /// Of these frames. What moves no seen joint turns as its parent makes likely.
   const PosteriorPoint& solution() const { return x_; }
 
  private:
-  void find_used();
+  void find_used(Unknowns unknowns);
   void add_rays();
   void add_turns();
   void add_root();
@@ -44,6 +53,9 @@ class WindowProblem {
   void add_ground();
   void add_camera();
   void add_lengths(Unknowns unknowns);
+  void add_past();
+  void add(Eigen::Index first, ceres::CostFunction* cost, ceres::LossFunction* loss,
+           const std::vector<double*>& blocks);
   void turn_unused();
 
   const std::vector<SeenJoint>& seen(Eigen::Index t) const;
@@ -51,7 +63,10 @@ class WindowProblem {
   double share_of_parent(Eigen::Index t, int turn) const;
   double* turn_at(Eigen::Index t, int turn) { return x_.turns.row(t).data() + 3 * turn; }
   /// The unknowns that all frames share, as far as the problem has them.
-  std::vector<double*> shared_blocks();
+  std::vector<UnknownBlock> shared_blocks();
+  /// Unknowns of one frame: the turns that the problem has, and the root.
+  Eigen::Index numbers_of_frame() const;
+  std::vector<UnknownBlock> blocks_of_frames(Eigen::Index first, Eigen::Index count);
   double* shift_at(Eigen::Index t) { return x_.shift.row(t).data(); }
   JointPlace place(Eigen::Index t, std::size_t joint) const;
   std::vector<double*> moving_blocks(Eigen::Index t, std::size_t joint);
@@ -65,6 +80,8 @@ class WindowProblem {
   std::vector<bool> used_;
   PosteriorPoint x_;
   ceres::Problem problem_;
+  /// What is said of some frames, and the first of them.
+  std::vector<std::pair<ceres::ResidualBlockId, Eigen::Index>> terms_;
 };
 
 }  // namespace mcdbn

@@ -4,6 +4,7 @@
 
 #include "base/interruption.hpp"
 #include "base/text_file.hpp"
+#include "formats/bvh_header.hpp"
 #include "formats/bvh_parser.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
@@ -14,7 +15,8 @@ namespace {
 /// Writes a hierarchy joint by joint with its own stack of open joints.
 class HierarchyWriter {
  public:
-  explicit HierarchyWriter(const Skeleton& skeleton) : skeleton_(skeleton) {}
+  explicit HierarchyWriter(const Skeleton& skeleton, bool fixed_width = false)
+      : skeleton_(skeleton), fixed_width_(fixed_width) {}
 
   std::string write() {
     text_ = "HIERARCHY\n";
@@ -56,7 +58,9 @@ class HierarchyWriter {
     }
   }
 
-  static std::string offset_text(const Eigen::Vector3d& offset) {
+  std::string offset_text(const Eigen::Vector3d& offset) const {
+    if (fixed_width_)
+      return fmt::format("OFFSET {:14.6f} {:14.6f} {:14.6f}", offset.x(), offset.y(), offset.z());
     return fmt::format("OFFSET {} {} {}", offset.x(), offset.y(), offset.z());
   }
 
@@ -65,6 +69,7 @@ class HierarchyWriter {
   }
 
   const Skeleton& skeleton_;
+  bool fixed_width_;
   std::string text_;
   std::vector<int> open_;
 };
@@ -73,6 +78,10 @@ class HierarchyWriter {
 
 std::string bvh_header_text(const Skeleton& skeleton) {
   return HierarchyWriter(skeleton).write();
+}
+
+std::string bvh_header_text_of_fixed_width(const Skeleton& skeleton) {
+  return HierarchyWriter(skeleton, true).write();
 }
 
 std::string bvh_text(const Motion& motion) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "formats/assignment.hpp"
+#include "formats/person_box.hpp"
 
 namespace mcdbn {
 namespace {
@@ -26,28 +27,7 @@ constexpr double kOverlapWeight = 0.5, kJointWeight = 0.5;
 constexpr double kYouth = 0.3;
 constexpr int kFewFrames = 5;
 
-struct Box {
-  Point least, most;
-  double area() const { return (most - least).prod(); }
-  double diagonal() const { return (most - least).norm(); }
-  Point centre() const { return (least + most) / 2; }
-};
-
-/// Of the joints that were seen; of none at the origin, without extent.
-Box box_of(const SeenPerson& person) {
-  Box box{Point::Constant(1e300), Point::Constant(-1e300)};
-  bool seen = false;
-  for (std::size_t joint = 0; joint < person.x_px.size(); ++joint) {
-    const Point at(person.x_px[joint], person.y_px[joint]);
-    if (!(person.confidence[joint] > 0)) continue;
-    box.least = box.least.cwiseMin(at);
-    box.most = box.most.cwiseMax(at);
-    seen = true;
-  }
-  return seen ? box : Box{Point::Zero(), Point::Zero()};
-}
-
-double overlap(const Box& a, const Box& b) {
+double overlap(const PersonBox& a, const PersonBox& b) {
   const Point extent =
       (a.most.cwiseMin(b.most) - a.least.cwiseMax(b.least)).cwiseMax(Point::Zero());
   const double both = extent.prod(), either = a.area() + b.area() - both;
@@ -61,6 +41,7 @@ class Follower {
   std::vector<Followed> run() {
     for (std::size_t frame = 0; frame < frames_.size(); ++frame) add_frame(static_cast<int>(frame));
     std::vector<Followed> people;
+    people.reserve(paths_.size());
     for (Path& path : paths_) people.push_back(std::move(path.seen));
     return people;
   }
@@ -132,8 +113,8 @@ class Follower {
   static double cost(const Path& path, const SeenPerson& candidate, int frame) {
     const int gap = frame - path.last_frame;
     const Point moved = path.step * gap;
-    Box awaited = box_of(path.pose);
-    const Box found = box_of(candidate);
+    PersonBox awaited = box_of(path.pose);
+    const PersonBox found = box_of(candidate);
     awaited.least += moved;
     awaited.most += moved;
     const double size = std::max(awaited.diagonal(), found.diagonal());
@@ -189,6 +170,7 @@ std::vector<Followed> by_number(const Frames& frames) {
       followed[frame] = static_cast<int>(person);
     }
   std::vector<Followed> result;
+  result.reserve(people.size());
   for (auto& [id, followed] : people) result.push_back(std::move(followed));
   return result;
 }
@@ -206,11 +188,13 @@ std::vector<Followed> follow_people(const Frames& frames, int patience) {
   std::vector<Followed> people =
       numbered(frames) ? by_number(frames) : Follower(frames, patience).run();
   std::vector<double> sizes;
+  sizes.reserve(people.size());
   for (const Followed& followed : people) sizes.push_back(size_of(followed, frames));
   std::vector<std::size_t> order(people.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return sizes[i]; });
   std::vector<Followed> sorted;
+  sorted.reserve(order.size());
   for (const std::size_t i : order) sorted.push_back(std::move(people[i]));
   return sorted;
 }

@@ -32,7 +32,9 @@ struct Column {
 
 class TrackReader {
  public:
-  explicit TrackReader(std::string name) : name_(std::move(name)) {}
+  /// @param lines_before the text, which messages count
+  explicit TrackReader(std::string name, int lines_before = 0)
+      : name_(std::move(name)), line_(lines_before) {}
 
   Track2d read(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -217,7 +219,7 @@ class TrackReader {
   }
 
   std::string name_;
-  int line_ = 0;
+  int line_;
   bool says_fps_ = false, says_width_ = false, says_height_ = false;
   Track2d track_;
   std::vector<Column> columns_;
@@ -254,7 +256,7 @@ bool are_a_detectors(const std::vector<std::string>& names) {
 }
 
 SeenPeople read(const TrackSource& source) {
-  TrackReader reader(source.name());
+  TrackReader reader(source.name(), source.lines_before());
   const Track2d track = reader.read(source.text());
   SeenPeople people;
   people.in_pixels = true;

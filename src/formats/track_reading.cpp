@@ -20,12 +20,7 @@ namespace {
 
 using Frames = std::vector<std::vector<SeenPerson>>;
 
-constexpr double kUsualFps = 30.0;
 constexpr ImageSize kUsualImage{1920, 1080};
-/// Coordinates up to here are shares of the image: no body in pixels is that small.
-constexpr double kLargestShare = 3.0;
-constexpr double kFarthest_px = 1e6;
-constexpr double kPatience_s = 1.5;
 /// Frames by number may be so many times those that are there; beyond, the numbers are no time.
 constexpr long long kSparse = 10, kFewFrames = 100;
 

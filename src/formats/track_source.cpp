@@ -28,6 +28,12 @@ TrackSource::TrackSource(fs::path path) : path_(std::move(path)) {
   std::ranges::sort(json_files_);
 }
 
+TrackSource::TrackSource(std::string text, std::string name, int lines_before)
+    : path_(std::move(name)),
+      lines_before_(lines_before),
+      json_files_({path_}),
+      text_(std::move(text)) {}
+
 const std::string& TrackSource::text() const {
   if (!text_) text_ = read_text_file(path_);
   return *text_;

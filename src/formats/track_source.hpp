@@ -17,9 +17,13 @@ class TrackSource {
  public:
   /// @throws InputError if there is no such file or folder
   explicit TrackSource(std::filesystem::path path);
+  /// Text that stands in no file. @param name for messages  @param lines_before it, which they
+  /// count
+  TrackSource(std::string text, std::string name, int lines_before = 0);
 
   const std::filesystem::path& path() const { return path_; }
   std::string name() const { return path_.string(); }
+  int lines_before() const { return lines_before_; }
   bool is_folder() const { return is_folder_; }
   /// The .json files of a folder, sorted by name; of a file it alone.
   const std::vector<std::filesystem::path>& json_files() const { return json_files_; }
@@ -40,6 +44,7 @@ class TrackSource {
  private:
   std::filesystem::path path_;
   bool is_folder_ = false;
+  int lines_before_ = 0;
   std::vector<std::filesystem::path> json_files_;
   mutable std::optional<std::string> text_;
   mutable std::optional<nlohmann::json> json_, first_json_;

@@ -5,6 +5,7 @@
 #include "camera/confidence_weights.hpp"
 #include "camera/keypoint_map.hpp"
 #include "fitting/track_smoothing.hpp"
+#include "motion_model/keypoint_columns.hpp"
 
 namespace mcdbn {
 namespace {
@@ -20,7 +21,12 @@ ClipPlacement roughly(ClipPlacement placement) {
   return placement;
 }
 
-/// What the columns show: what their file says, else what their names tell of joints.
+}  // namespace
+
+MatrixF where_known(const MatrixF& features, const MatrixF& otherwise) {
+  return features.array().isNaN().select(otherwise, features);
+}
+
 std::vector<Keypoint> keypoints_of_columns(const Track2d& track) {
   if (!track.keypoints.empty()) return track.keypoints;
   Skeleton named;
@@ -38,12 +44,6 @@ std::vector<Keypoint> keypoints_of_columns(const Track2d& track) {
   }
   return keypoints;
 }
-
-MatrixF where_known(const MatrixF& features, const MatrixF& otherwise) {
-  return features.array().isNaN().select(otherwise, features);
-}
-
-}  // namespace
 
 MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const Track2d& track,
                   const ClipPlacement& placement, const PoseAnswer& answer) {

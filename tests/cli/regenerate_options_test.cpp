@@ -215,6 +215,15 @@ TEST_CASE("regenerate: every option changes what its help says") {
          CHECK(run_cli(call + " --method nobody").exit_code == 2);
          CHECK(run_cli(call + " --to track --method mean_pose").exit_code == 2);
        }});
+  // follow_test.cpp has what they do.
+  for (const char* option : {"--follow", "--look-ahead", "--frames"})
+    rows.push_back(
+        {option, [=, &folder] {
+           const std::string said = std::string(option) == "--look-ahead" ? " 1"
+                                    : std::string(option) == "--frames"   ? " csv"
+                                                                          : "";
+           CHECK(run_cli(one.arguments(folder / "live.bvh") + " " + option + said).exit_code == 2);
+         }});
   rows.push_back({"--write-camera", [&] {
                     const fs::path written = folder / "written.yaml";
                     REQUIRE(

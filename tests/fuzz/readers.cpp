@@ -22,6 +22,7 @@
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/joint_map.hpp"
 #include "mcdbn/formats/track_file.hpp"
+#include "mcdbn/formats/track_lines.hpp"
 #include "mcdbn/motion/frame_rate.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "motion_model/modalities_json.hpp"
@@ -66,6 +67,20 @@ void read_all_tracks(const fs::path& path, const std::string& format) {
         Camera::kImage_px.contains(track.width_px) && Camera::kImage_px.contains(track.height_px),
         "an image size that is none");
     require((track.x_px.array().isNaN() == (track.confidence.array() == 0)).all(),
+            "a joint that is seen nowhere");
+  }
+}
+
+/// Line by line, up to the first that is broken.
+void read_track_lines(const fs::path& path) {
+  TrackLines lines(path.string(), {.image_size = ImageSize{1280, 720}});
+  std::ifstream file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line);) {
+    const std::optional<TrackFrame> frame = lines.read(line);
+    if (!frame) continue;
+    require(frame->joints() == (lines.knows_joints() ? lines.like().joint_count() : 0),
+            "a frame of other joints");
+    require((frame->x_px.array().isNaN() == (frame->confidence.array() == 0)).all(),
             "a joint that is seen nowhere");
   }
 }
@@ -123,6 +138,7 @@ std::vector<Reader> all_readers() {
       {"checkpoint", ".safetensors", read_all_of_checkpoint},
       {"run", ".json", [](const fs::path& path) { read_run_record(path); }},
       {"track", "", [](const fs::path& path) { read_all_tracks(path, {}); }},
+      {"track-lines", "", read_track_lines},
   };
   for (const TrackFormat& format : track_formats())
     all.push_back({"track-" + format.name, "",

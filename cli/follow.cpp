@@ -1,0 +1,169 @@
+#include "follow.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "base/interruption.hpp"
+#include "line_source.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/frame_stream.hpp"
+#include "mcdbn/formats/track_lines.hpp"
+#include "setting_flags.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+constexpr const char *kBvh = "bvh", *kCsv = "csv", *kJson = "json";
+constexpr const char* kGroup = "Track that is still growing";
+
+/// Where frames go: a file that is there to be read while it grows, or standard output.
+class FrameOutput {
+ public:
+  FrameOutput(const std::filesystem::path& path, const std::string& frames, double fps) {
+    const std::string ending = path.extension().string();
+    const std::string format = !frames.empty()                           ? frames
+                               : ending == ".csv"                        ? kCsv
+                               : ending == ".json" || ending == ".jsonl" ? kJson
+                                                                         : kBvh;
+    if (!path.empty()) {
+      file_.open(path, std::ios::binary | std::ios::trunc);
+      if (!file_) throw InputError(fmt::format("{}: cannot be written", path.string()));
+    }
+    std::ostream& out = path.empty() ? std::cout : file_;
+    stream_ = format == kCsv    ? csv_stream(out, fps)
+              : format == kJson ? json_stream(out, fps)
+                                : bvh_stream(out, fps, !path.empty());
+  }
+  ~FrameOutput() {
+    try {
+      stream_->finish();  // what there is, is whole
+    } catch (const Error& error) {
+      spdlog::error("{}", error.what());
+    }
+  }
+  FrameOutput(const FrameOutput&) = delete;
+  FrameOutput& operator=(const FrameOutput&) = delete;
+
+  void write(const Skeleton& skeleton, const std::vector<LiveFrame>& frames) {
+    for (const LiveFrame& frame : frames) stream_->write(skeleton, frame.channels);
+    written_ += frames.size();
+  }
+  std::size_t written() const { return written_; }
+
+ private:
+  std::ofstream file_;
+  std::unique_ptr<FrameStream> stream_;
+  std::size_t written_ = 0;
+};
+
+/// A track on its way to frames.
+class Following {
+ public:
+  Following(const Model& model, std::filesystem::path output, ClipPlacement placement,
+            FollowOptions options)
+      : model_(model),
+        output_(std::move(output)),
+        placement_(std::move(placement)),
+        options_(std::move(options)) {}
+
+  void take(const TrackFrame& frame, const TrackLines& lines) {
+    if (!lines.knows_joints()) {
+      ++before_;
+      return;
+    }
+    if (!live_) begin(lines.like());
+    push(frame);
+  }
+
+  void take_broken() { push(TrackFrame::unseen(joints_)); }
+  bool has_begun() const { return live_ != nullptr; }
+
+  /// @return frames written
+  std::size_t finish() {
+    if (!live_) return 0;
+    frames_->write(live_->skeleton(), live_->finish());
+    return frames_->written();
+  }
+
+ private:
+  void begin(const Track2d& like) {
+    joints_ = like.joint_count();
+    live_ = std::make_unique<LiveRegeneration>(model_, like, placement_, options_.look_ahead);
+    frames_ = std::make_unique<FrameOutput>(output_, options_.frames, like.fps);
+    spdlog::info("frames come back {} frames of {:g} a second later at most",
+                 live_->latency_frames(), model_.modalities.fps);
+    for (; before_ > 0; --before_) push(TrackFrame::unseen(joints_));
+  }
+  void push(const TrackFrame& frame) {
+    const std::vector<LiveFrame> finished = live_->push(frame);
+    frames_->write(live_->skeleton(), finished);
+  }
+
+  const Model& model_;
+  std::filesystem::path output_;
+  ClipPlacement placement_;
+  FollowOptions options_;
+  long long before_ = 0;  ///< frames before the joints were known
+  Eigen::Index joints_ = 0;
+  std::unique_ptr<LiveRegeneration> live_;
+  std::unique_ptr<FrameOutput> frames_;
+};
+
+}  // namespace
+
+void add_follow_options(CLI::App& command, FollowOptions& options) {
+  command
+      .add_flag("--follow", options.follow,
+                "Read the track line by line while it is written, from --input or standard input: "
+                "one frame a line, JSON or our CSV; write frames as they are finished, to -o or "
+                "standard output. Ctrl-C ends it, and what there is, is whole")
+      ->group(kGroup);
+  command
+      .add_option_function<std::size_t>(
+          "--look-ahead", [&options](std::size_t frames) { options.look_ahead = frames; },
+          "Frames that an answer waits for, of the model's rate, at most the model's own; 3 more "
+          "follow for the fit. A model that was trained with more sees the track carried on "
+          "(default: the model's)")
+      ->check(CLI::Range(0, 1000))
+      ->type_name("FRAMES")
+      ->group(kGroup);
+  command
+      .add_option("--frames", options.frames,
+                  "How frames are written: bvh; csv, joints' places; json, a line for each with "
+                  "channels and places (default: by the output's ending, else bvh)")
+      ->check(CLI::IsMember({kBvh, kCsv, kJson}))
+      ->group(kGroup);
+}
+
+void follow_track(const Model& model, const std::filesystem::path& input,
+                  const std::filesystem::path& output, const TrackReadOptions& reading,
+                  const ClipPlacement& placement, const FollowOptions& options) {
+  TrackLines lines(input == "-" ? "standard input" : input.string(), reading);
+  LineSource source(input);
+  Following following(model, output, placement, options);
+  // Whoever asks to stop gets the frames that are on their way.
+  const InterruptionDeferred until_the_end;
+  while (const std::optional<std::string> line = source.next()) {
+    try {
+      if (const auto frame = lines.read(*line)) following.take(*frame, lines);
+    } catch (const InputError& error) {
+      if (!following.has_begun()) throw;
+      spdlog::warn("{}: taken as a frame in which nobody was seen", error.what());
+      following.take_broken();
+    }
+    for (const std::string& notice : lines.take_notices()) spdlog::warn("{}", with_flags(notice));
+  }
+  const std::size_t written = following.finish();
+  if (written == 0)
+    throw InputError(fmt::format("{}: no frame that shows somebody",
+                                 input == "-" ? "standard input" : input.string()));
+  spdlog::info("{}: {} frames", output.empty() ? "standard output" : output.string(), written);
+}
+
+}  // namespace mcdbn::cli

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "mcdbn/camera/track_frame.hpp"
+#include "mcdbn/motion_model/clip_regeneration.hpp"
+
+namespace mcdbn {
+
+/// One frame of regenerated motion.
+struct LiveFrame {
+  RowVectorD channels;  ///< of LiveRegeneration::skeleton(), degrees and file units
+  bool seen = true;     ///< false: nobody has been seen yet, and this is the model's mean pose
+};
+
+/// 3D motion from a 2D track that is still growing: regenerate_clip for those who cannot wait for
+/// the end. Frames come back in order, each once, at most latency_frames() frames of the model's
+/// rate after they were pushed; memory and time of a frame do not grow. The past is settled: what
+/// has come back is not changed any more, so that it differs a little from what the whole clip
+/// tells (docs/concepts.md, Live). Clips are independent: one object each.
+class LiveRegeneration {
+ public:
+  /// Frames that an answer waits for beside the model's look-ahead, so that the fit sees how the
+  /// track goes on.
+  static constexpr int kMoreFrames = 3;
+
+  /// @param model has to outlive this
+  /// @param like a track without frames: its joints, rate and image size
+  /// @param placement as for regenerate_clip; a fit is needed
+  /// @param look_ahead frames of the model's rate that an answer waits for, at most and by default
+  ///        the model's own; with fewer the network sees the track carried on instead
+  /// @throws ConfigError without a fit, for a look-ahead beyond the model's, or a skeleton of other
+  ///         joints than the model's; InputError if the track shows too little of the model's
+  ///         joints
+  LiveRegeneration(const Model& model, const Track2d& like, const ClipPlacement& placement,
+                   std::optional<std::size_t> look_ahead = {});
+  ~LiveRegeneration();
+  LiveRegeneration(const LiveRegeneration&) = delete;
+  LiveRegeneration& operator=(const LiveRegeneration&) = delete;
+
+  /// The next frame of the track. @return those that are finished now, at the track's rate
+  /// @throws ShapeError if it has other joints
+  std::vector<LiveFrame> push(const TrackFrame& frame);
+  /// The track has ended. @return the rest; frames pushed and frames returned are as many
+  std::vector<LiveFrame> finish();
+
+  int latency_frames() const { return latency_frames_; }  ///< at most, of the model's rate
+  /// The person's own, or the model's with bones as long as they are estimated by now.
+  const Skeleton& skeleton() const;
+  double fps() const;     ///< of the frames, the track's
+  Camera camera() const;  ///< that sees the motion as the track shows it, in its file units
+
+ private:
+  int latency_frames_;
+  class Frames;
+  std::unique_ptr<Frames> frames_;
+};
+
+}  // namespace mcdbn

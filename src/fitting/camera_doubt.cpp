@@ -1,0 +1,28 @@
+#include "fitting/camera_doubt.hpp"
+
+#include <cmath>
+
+#include "base/numbers.hpp"
+#include "fitting/camera_angles.hpp"
+
+namespace mcdbn {
+
+std::optional<CameraDoubt> doubt_of(const KnownOfClip& known, const Modalities& modalities,
+                                    const Track2d& track, const TrackFitSettings& settings) {
+  if (known.camera || !modalities.level_view) return {};
+  const Camera assumed = known.camera_of(track, modalities),
+               usual = modalities.assumed_camera(known.view, track.width_px, track.height_px);
+  const Eigen::Vector3d up = usual.camera_from_world.col(1),
+                        up_now = assumed.camera_from_world.col(1);
+  CameraDoubt doubt;
+  doubt.usual = {pitch_rad(up) - pitch_rad(up_now), roll_rad(up) - roll_rad(up_now),
+                 settings.pitch_deg * kRadiansPerDegree, settings.roll_deg * kRadiansPerDegree};
+  doubt.pitch_known = known.view.pitch_deg.has_value();
+  doubt.roll_known = known.view.roll_deg.has_value();
+  doubt.focal_known = known.view.field_of_view_deg.has_value();
+  doubt.log_focal = std::log(usual.fy_px / assumed.fy_px);
+  doubt.log_focal_deviation = settings.focal;
+  return doubt;
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fitting/clip_evidence.hpp"
+#include "fitting/seen_noise.hpp"
+#include "fitting/window_problem.hpp"
+#include "mcdbn/fitting/track_fit.hpp"
+
+namespace mcdbn {
+
+/// The fit of a clip that is still growing: fit_to_track's problem for its last frames, solved anew
+/// with every frame, from the prior's mean. Its newest frames are open; of those
+/// before, which have settled, the last are held: they are solved, too, but nobody asks for them
+/// again. What still earlier frames tell of these, of the body, the ground and the camera is kept
+/// as a normal distribution (MarginalPrior).
+class SlidingFit {
+ public:
+  /// Settled frames that the problem holds at most. They are at least those that a dropped frame
+  /// says something of.
+  static constexpr Eigen::Index kHeld = 4;
+
+  /// @param modalities has to outlive this  @param known as for fit_to_track
+  /// @param like a track of the same image
+  SlidingFit(const Modalities& modalities, const KnownOfClip& known, const Track2d& like,
+             const TrackFitSettings& settings);
+
+  /// Some steps towards the likeliest motion of the held and the open frames.
+  /// @param prior of the open frames, as fit_to_track takes it, seen by camera()
+  /// @param track of the held and the open frames: those of the solution before that were not
+  ///        dropped, and new ones behind them  @param track_noise_px new in every frame
+  /// @throws InputError if nobody is seen well enough to be placed, until somebody was
+  void solve(const PosePrior& prior, const Track2d& track, double track_noise_px);
+
+  /// The first of the open frames are not asked for any more.
+  /// @return how many frames are not held any more: the next solution is not of them
+  Eigen::Index settle(Eigen::Index frames);
+  /// Frames of the last solution that are settled and held.
+  Eigen::Index held() const { return held_; }
+  /// Of the last solution: held and open frames, on the body as it is estimated by now.
+  const Motion& motion() const { return motion_; }
+  /// Its joints as the camera sees them.
+  const Track2d& shown() const { return shown_; }
+  /// In the skeleton's file units. One that nobody knows is as it was found by now, above the first
+  /// frame's root.
+  const Camera& camera() const { return camera_; }
+  const Skeleton& body() const { return body_; }
+
+ private:
+  Motion decoded(const MatrixD& features, const Skeleton& skeleton, const Camera& camera,
+                 const MatrixD& root) const;
+  void take_prior(const PosePrior& prior);
+  void place_root(const Track2d& track, const MatrixD& velocity_m_s, double velocity_error_m_s2);
+  MatrixD placed_root(const Track2d& track, const MatrixD& velocity_m_s,
+                      double velocity_error_m_s2) const;
+  void learn(SeenNoise& noise);
+  void take(const PosteriorPoint& point);
+  void look_as(const PosteriorPoint& point, const Eigen::Vector3d& first_root);
+  Eigen::Vector3d upright() const;
+
+  const Modalities& modalities_;
+  TrackFitSettings settings_;
+  Skeleton skeleton_, body_;  ///< as it was given, and as it is estimated
+  bool body_unknown_, camera_known_;
+  double units_per_m_;
+  Camera assumed_, camera_;  ///< at first, and as it was found
+  std::optional<CameraDoubt> doubt_;
+  std::vector<std::string> names_;
+  double lasting_noise_ = 1;       ///< as a share of a usual detector's
+  std::size_t learned_ = 0;        ///< how often it was estimated
+  std::vector<double> residuals_;  ///< what solutions since left
+  // Of the frames of the last solution, held and open:
+  Eigen::Index held_ = 0;
+  PosePrior prior_;
+  MatrixD mean_;       ///< the prior's, along the camera's axes
+  MatrixD mean_lean_;  ///< [frames x 3] how the camera leaned that it was seen by
+  MatrixD root_m_;     ///< [frames x 3] camera axes, metres of a 1.7 m body
+  PosteriorPoint point_;
+  std::unique_ptr<ClipEvidence> evidence_;
+  std::unique_ptr<WindowProblem> problem_;
+  std::optional<MarginalPrior> past_;  ///< by frames before
+  // Of all frames that have settled, along the camera's axes, file units:
+  Eigen::Vector3d upright_sum_{0, 0, 0};
+  long long settled_ = 0;
+  Eigen::Vector3d first_root_{0, 0, 0};
+  double first_height_ = 0;  ///< of that root above the ground, as the prior has it
+  Motion motion_;
+  Track2d shown_;
+};
+
+}  // namespace mcdbn

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "formats/seen_people.hpp"
+
+namespace mcdbn {
+
+/// Of a person's joints, in one frame.
+struct PersonBox {
+  Eigen::Vector2d least, most;
+  double area() const { return (most - least).prod(); }
+  double diagonal() const { return (most - least).norm(); }
+  Eigen::Vector2d centre() const { return (least + most) / 2; }
+};
+
+/// Of the joints that were seen; of none at the origin, without extent.
+PersonBox box_of(const SeenPerson& person);
+
+}  // namespace mcdbn

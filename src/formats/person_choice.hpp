@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/seen_people.hpp"
+
+namespace mcdbn {
+
+/// Follows one person from frame to frame, without knowing those that come: by the file's number of
+/// the person, else whoever is nearest to where the person was seen last, within half a body, more
+/// the longer ago that is. Someone who is out of sight for longer than 1.5 s is given up, and the
+/// choice is made anew.
+class PersonChoice {
+ public:
+  /// @param person largest, or a number: 1 is the largest of the first frame that shows so many
+  /// @throws ConfigError if it is neither
+  explicit PersonChoice(const std::string& person);
+
+  /// @param patience frames that somebody may be out of sight  @return none: not in this frame
+  std::optional<std::size_t> choose(const std::vector<SeenPerson>& people, double patience);
+
+ private:
+  std::size_t number_ = 1;
+  std::optional<SeenPerson> last_;
+  double size_px_ = 0;  ///< the largest box that was seen of them
+  int away_ = 0;        ///< frames since
+};
+
+}  // namespace mcdbn

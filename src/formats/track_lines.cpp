@@ -1,0 +1,180 @@
+#include "mcdbn/formats/track_lines.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/shown.hpp"
+#include "formats/csv_text.hpp"
+#include "formats/joint_naming.hpp"
+#include "formats/person_choice.hpp"
+#include "formats/track_formats.hpp"
+#include "formats/track_reading.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion/frame_rate.hpp"
+
+namespace mcdbn {
+namespace {
+
+bool is_json(std::string_view line) {
+  return line.starts_with('{') || line.starts_with('[');
+}
+
+double farthest(const std::vector<SeenPerson>& people) {
+  double most = 0;
+  for (const SeenPerson& person : people)
+    for (std::size_t joint = 0; joint < person.x_px.size(); ++joint)
+      if (person.confidence[joint] > 0)
+        most = std::max({most, std::abs(person.x_px[joint]), std::abs(person.y_px[joint])});
+  return most;
+}
+
+}  // namespace
+
+class TrackLines::Reader {
+ public:
+  Reader(std::string name, const TrackReadOptions& options)
+      : name_(std::move(name)), options_(options), choice_(options.person) {
+    if (options.fps) check_range("`fps`", kFrameRate_hz, *options.fps);
+  }
+
+  std::optional<TrackFrame> read(std::string_view line) {
+    ++line_;
+    if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    line = trimmed(line);
+    if (line.empty()) {
+      if (!is_known_) header_ += '\n';  // lines are counted
+      return {};
+    }
+    if (!is_known_ && header_.find_first_not_of('\n') == std::string::npos) json_ = is_json(line);
+    if (json_) return frame_of(people_of_json(line));
+    if (line.front() == '#' || !has_header_) {
+      // Comments are asked as long as no frame was read.
+      if (!is_known_) header_ += fmt::format("{}\n", line);
+      has_header_ = has_header_ || line.front() != '#';
+      return {};
+    }
+    return frame_of(people_of_row(line));
+  }
+
+  bool knows_joints() const { return is_known_; }
+  const Track2d& like() const { return like_; }
+  std::vector<std::string> take_notices() { return std::exchange(notices_, {}); }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}", name_, line_, what));
+  }
+
+  /// A JSON line is an entry of a list of frames, as in a file of such lines.
+  SeenPeople people_of_json(std::string_view line) {
+    const TrackSource source(fmt::format("[{}]", line), fmt::format("{}:{}", name_, line_));
+    source.json();  // says what is wrong with it
+    if (!format_) {
+      if (!options_.format.empty()) format_ = &track_format(options_.format);
+      for (const TrackFormat& format : track_formats())
+        if (!format_ && format.recognises(source)) format_ = &format;
+      if (!format_) fail("not a frame of a 2D track in a known format");
+    }
+    try {
+      SeenPeople people = format_->read(source);
+      if (people.frames.size() > 1) fail("more than one frame in a line");
+      return people;
+    } catch (const NobodySeen&) {
+      return {};
+    }
+  }
+
+  SeenPeople people_of_row(std::string_view line) {
+    const auto lines = static_cast<int>(std::ranges::count(header_, '\n'));
+    return track_csv_format().read(
+        TrackSource(fmt::format("{}{}", header_, line), name_, line_ - lines - 1));
+  }
+
+  TrackFrame frame_of(SeenPeople seen) {
+    std::vector<SeenPerson> people;
+    if (!seen.frames.empty()) people = std::move(seen.frames.begin()->second);
+    const double far = farthest(people);
+    if (far > kFarthest_px) fail(fmt::format("a coordinate of {:.3g}, which is no pixel", far));
+    const bool somebody = far > 0;
+    // A CSV's header says the joints, a JSON frame that shows somebody.
+    if (!is_known_ && (!json_ || somebody)) learn(seen, people);
+    if (!is_known_) return TrackFrame::unseen(0);
+    TrackFrame frame = TrackFrame::unseen(like_.joint_count());
+    // Rows are of one person.
+    const auto chosen = !json_ && !people.empty() ? std::optional<std::size_t>(0)
+                                                  : choice_.choose(people, kPatience_s * like_.fps);
+    if (!chosen) return frame;
+    const SeenPerson& person = people[*chosen];
+    if (static_cast<Eigen::Index>(person.x_px.size()) != frame.joints())
+      fail(fmt::format("{} joints, in the frames before {}", person.x_px.size(), frame.joints()));
+    for (Eigen::Index joint = 0; joint < frame.joints(); ++joint) {
+      const auto at = static_cast<std::size_t>(joint);
+      if (!(person.confidence[at] > 0)) continue;
+      frame.x_px[joint] = person.x_px[at] * (shares_ ? like_.width_px : 1);
+      frame.y_px[joint] = person.y_px[at] * (shares_ ? like_.height_px : 1);
+      frame.confidence[joint] = std::min(person.confidence[at], 1.0);
+    }
+    return frame;
+  }
+
+  void learn(const SeenPeople& seen, const std::vector<SeenPerson>& people) {
+    const std::optional<ImageSize> size =
+        options_.image_size ? options_.image_size : seen.image_size;
+    if (!size) fail("a frame does not say how large the image is: say it by `image-size`");
+    if (!options_.image_size && !seen.image_size_is_said)
+      notices_.push_back(fmt::format(
+          "the track does not say the image's size: {} x {} px are taken; say it by `image-size`",
+          size->width_px, size->height_px));
+    if (!options_.fps && !seen.fps)
+      notices_.push_back(fmt::format(
+          "the track does not say its rate: {} frames a second are taken; say it by `fps`",
+          kUsualFps));
+    shares_ = !seen.in_pixels && farthest(people) <= kLargestShare;
+    if (shares_)
+      notices_.push_back(fmt::format("coordinates are shares of the image, taken as {} x {} px",
+                                     size->width_px, size->height_px));
+    notices_.insert(notices_.end(), seen.notices.begin(), seen.notices.end());
+    like_.joint_names = seen.joint_names;
+    like_.keypoints = seen.keypoints;
+    like_.fps = options_.fps.value_or(seen.fps.value_or(kUsualFps));
+    like_.width_px = size->width_px;
+    like_.height_px = size->height_px;
+    for (MatrixD* values : {&like_.x_px, &like_.y_px, &like_.confidence})
+      values->resize(0, like_.joint_count());
+    is_known_ = true;
+  }
+
+  std::string name_;
+  TrackReadOptions options_;
+  PersonChoice choice_;
+  int line_ = 0;
+  bool json_ = false, has_header_ = false, is_known_ = false, shares_ = false;
+  std::string header_;  ///< of a CSV, with the comments and empty lines around it
+  const TrackFormat* format_ = nullptr;
+  Track2d like_;
+  std::vector<std::string> notices_;
+};
+
+TrackLines::TrackLines(std::string name, const TrackReadOptions& options)
+    : reader_(std::make_unique<Reader>(std::move(name), options)) {}
+TrackLines::~TrackLines() = default;
+TrackLines::TrackLines(TrackLines&&) noexcept = default;
+TrackLines& TrackLines::operator=(TrackLines&&) noexcept = default;
+
+std::optional<TrackFrame> TrackLines::read(std::string_view line) {
+  return reader_->read(line);
+}
+bool TrackLines::knows_joints() const {
+  return reader_->knows_joints();
+}
+const Track2d& TrackLines::like() const {
+  return reader_->like();
+}
+std::vector<std::string> TrackLines::take_notices() {
+  return reader_->take_notices();
+}
+
+}  // namespace mcdbn

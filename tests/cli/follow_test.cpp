@@ -1,0 +1,170 @@
+// regenerate --follow: a track that is still being written, and frames as they are finished.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/text_file.hpp"
+#include "library_calls.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/camera_file.hpp"
+#include "mcdbn/formats/frame_stream.hpp"
+#include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/motion_model/live_regeneration.hpp"
+#include "tiny_pipeline.hpp"
+
+using namespace mcdbn::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Scene {
+  ScratchFolder folder;
+  fs::path track = folder / "track.csv", camera = folder / "camera.yaml";
+
+  Scene() {
+    REQUIRE(run_cli(fmt::format("project '{}' -o '{}' --write-camera '{}' --noise-px 1",
+                                (TinyPipeline::instance().motion() / "walk_s02_01.bvh").string(),
+                                track.string(), camera.string()))
+                .exit_code == 0);
+  }
+  std::string call(const std::string& options) const {
+    return fmt::format("regenerate --follow --model '{}' --camera '{}' {}",
+                       TinyPipeline::instance().model().string(), camera.string(), options);
+  }
+  /// With the track at its standard input.
+  CliResult follow(const std::string& options, const fs::path& input) const {
+    return run_program("/bin/bash", fmt::format("-c \"cat '{}' | '{}' {}\"", input.string(),
+                                                MCDBN_CLI, call(options)));
+  }
+};
+
+/// What the library makes of the track, as that stream writes it.
+std::string by_library(const Scene& scene, const std::string& frames,
+                       std::optional<std::size_t> look_ahead = {}) {
+  const mcdbn::Model model = load_model(usual_device(), TinyPipeline::instance().model());
+  mcdbn::ClipPlacement placement;
+  placement.camera = mcdbn::read_camera(scene.camera);
+  const mcdbn::Track2d track = mcdbn::read_track_csv(scene.track);
+  mcdbn::LiveRegeneration live(model, track, placement, look_ahead);
+  std::stringstream out;
+  const auto stream = frames == "csv"    ? mcdbn::csv_stream(out, track.fps)
+                      : frames == "json" ? mcdbn::json_stream(out, track.fps)
+                                         : mcdbn::bvh_stream(out, track.fps, true);
+  const auto write = [&](const std::vector<mcdbn::LiveFrame>& finished) {
+    for (const mcdbn::LiveFrame& frame : finished) stream->write(live.skeleton(), frame.channels);
+  };
+  for (int t = 0; t < track.frames(); ++t)
+    write(live.push({track.x_px.row(t), track.y_px.row(t), track.confidence.row(t)}));
+  write(live.finish());
+  stream->finish();
+  return out.str();
+}
+
+}  // namespace
+
+TEST_CASE("regenerate --follow: a piped track as the library follows it, in every form of frames") {
+  if (!have_device()) return;
+  const Scene scene;
+  const fs::path out = scene.folder / "out.bvh";
+  const CliResult result = scene.follow(fmt::format("-o '{}'", out.string()), scene.track);
+  CAPTURE(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  CHECK(result.standard_output.empty());
+  CHECK(mcdbn::read_text_file(out) == by_library(scene, "bvh"));
+  CHECK(mcdbn::read_bvh(out).frames() == mcdbn::read_track_csv(scene.track).frames());
+  CHECK(scene.follow("--quiet --frames csv", scene.track).standard_output ==
+        by_library(scene, "csv"));
+  const CliResult causal = run_cli(scene.call(
+      fmt::format("--quiet --frames json --look-ahead 0 --input '{}'", scene.track.string())));
+  CHECK(causal.standard_output == by_library(scene, "json", 0));
+  CHECK(causal.standard_output != by_library(scene, "json"));
+  // By the ending, too.
+  REQUIRE(scene.follow(fmt::format("-o '{}'", (scene.folder / "out.jsonl").string()), scene.track)
+              .exit_code == 0);
+  CHECK(mcdbn::read_text_file(scene.folder / "out.jsonl") == by_library(scene, "json"));
+}
+
+TEST_CASE(
+    "regenerate --follow: frames come while the track is written; Ctrl-C leaves a whole file") {
+  if (!have_device()) return;
+  const Scene scene;
+  const fs::path out = scene.folder / "out.bvh";
+  // 30 frames, then nothing until all but the last 8 are there (look-ahead and 3), then Ctrl-C.
+  const fs::path script = scene.folder.write(
+      "follow.sh",
+      fmt::format("mkfifo '{0}/pipe'\n'{1}' {2} --input '{0}/pipe' -o '{3}' & program=$!\n"
+                  "exec 3>'{0}/pipe'\nhead -n 32 '{4}' >&3\n"
+                  "for ((i = 0; i < 3000; ++i)); do\n"
+                  "  lines=$(sed '1,/Frame Time/d' '{3}' 2>/dev/null | wc -l)\n"
+                  "  (( lines >= 22 )) && {{ echo came; break; }}; sleep 0.02\ndone\n"
+                  "kill -INT $program\nwait $program\nexit $?\n",
+                  (scene.folder / ".").string(), MCDBN_CLI, scene.call(""), out.string(),
+                  scene.track.string()));
+  const CliResult result = run_program("/bin/bash", fmt::format("'{}'", script.string()));
+  CAPTURE(result.standard_error);
+  CHECK(result.exit_code == 0);
+  CHECK(result.standard_output == "came\n");
+  std::vector<std::string> warnings;
+  const mcdbn::Motion motion = mcdbn::read_bvh(out, &warnings);
+  CHECK(motion.frames() == 30);
+  CHECK(warnings.empty());
+}
+
+TEST_CASE("regenerate --follow: a broken line is named and counts as a frame without anybody") {
+  if (!have_device()) return;
+  const Scene scene;
+  std::string text = mcdbn::read_text_file(scene.track);
+  std::size_t at = 0;
+  for (int line = 1; line < 12; ++line) at = text.find('\n', at) + 1;
+  text.insert(at, "1,2,three\n");
+  const fs::path broken = scene.folder.write("broken.csv", text);
+  const CliResult result = scene.follow("--frames csv", broken);
+  CHECK(result.exit_code == 0);
+  CHECK(result.standard_error.find("standard input:12: 3 cells") != std::string::npos);
+  // The frame that was broken, and the header.
+  CHECK(count_lines(result.standard_output) == mcdbn::read_track_csv(scene.track).frames() + 2);
+}
+
+TEST_CASE("regenerate --follow: a reader that closes the pipe ends it") {
+  if (!have_device()) return;
+  const Scene scene;
+  // The track goes on for as long as somebody reads.
+  const fs::path script = scene.folder.write(
+      "closed.sh",
+      fmt::format("(head -n 2 '{0}'; while tail -n +3 '{0}' 2>/dev/null; do :; done) |\n"
+                  "  '{1}' {2} --quiet --frames csv | head -n 3 | wc -l\n"
+                  "exit ${{PIPESTATUS[1]}}\n",
+                  scene.track.string(), MCDBN_CLI, scene.call("")));
+  const CliResult result = run_program("/bin/bash", fmt::format("'{}'", script.string()));
+  CAPTURE(result.standard_error);
+  CHECK(result.standard_output == "3\n");
+  CHECK(result.exit_code == 128 + SIGPIPE);
+  CHECK(result.standard_error.find("error") == std::string::npos);
+}
+
+TEST_CASE("regenerate --follow: what cannot be followed") {
+  if (!have_device()) return;
+  const Scene scene;
+  for (const char* other : {"--samples 2", "--fit none", "--to track", "--method mean_pose",
+                            "--write-camera c.yml", "--uncertainty u.csv", "--temperature 0.5",
+                            "--look-ahead 100", "--person all", "--frames film"}) {
+    CAPTURE(other);
+    CHECK(scene.follow(other, scene.track).exit_code == 2);
+  }
+  const std::string plain = fmt::format("regenerate --model '{}' --input '{}' -o '{}'",
+                                        TinyPipeline::instance().model().string(),
+                                        scene.track.string(), (scene.folder / "o.bvh").string());
+  CHECK(run_cli(plain + " --look-ahead 0").exit_code == 2);
+  CHECK(run_cli(plain + " --frames csv").exit_code == 2);
+  const CliResult empty = scene.follow("", scene.folder.write("empty.csv", ""));
+  CHECK(empty.exit_code == 3);
+  CHECK(empty.standard_error.find("no frame that shows somebody") != std::string::npos);
+  const CliResult header = scene.follow("", scene.folder.write("bad.csv", "1,2,3\n4,5,6\n"));
+  CHECK(header.exit_code == 3);
+  CHECK(header.standard_error.find("standard input:1: numbers where the header is expected") !=
+        std::string::npos);
+}

@@ -1,0 +1,223 @@
+// The fit of a clip that is still growing, beside that of the whole.
+
+#include "fitting/sliding_fit.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+
+#include "fitting/quadratic_energy.hpp"
+#include "fitting/terms/normal_term.hpp"
+#include "fitting/track_smoothing.hpp"
+#include "fitting/walk_scene.hpp"
+#include "fitting/window_problem.hpp"
+#include "motion/body_size.hpp"
+
+// Ceres includes glog, which has a CHECK of its own.
+#undef CHECK
+#define CHECK DOCTEST_CHECK
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+PosePrior some_rows(const PosePrior& prior, Eigen::Index first, Eigen::Index count) {
+  return MatrixF(prior.mean.middleRows(first, count));
+}
+
+Track2d some_rows(const Track2d& track, Eigen::Index first, Eigen::Index count) {
+  Track2d part = track;
+  part.x_px = track.x_px.middleRows(first, count);
+  part.y_px = track.y_px.middleRows(first, count);
+  part.confidence = track.confidence.middleRows(first, count);
+  return part;
+}
+
+/// Frame after frame, each settled when `lag` more have come. @return the channels as they settled
+struct Slid {
+  MatrixD channels;
+  Skeleton body;
+};
+Slid slid(const Scene& scene, const std::optional<Skeleton>& skeleton, Eigen::Index lag,
+          const TrackFitSettings& settings = {}) {
+  SlidingFit fit(scene.modalities, {scene.known.camera, skeleton}, scene.track, settings);
+  const Eigen::Index frames = scene.track.frames();
+  Slid result{MatrixD(frames, scene.truth.channels.cols()), {}};
+  Eigen::Index first = 0, settled = 0;
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    const Eigen::Index count = t + 1 - first;
+    fit.solve(some_rows(PosePrior(scene.mean), first + fit.held(), count - fit.held()),
+              some_rows(scene.track, first, count),
+              track_noise_px(some_rows(scene.track, 0, t + 1)));
+    const Eigen::Index done = (t + 1 == frames ? frames : t + 1 - lag) - settled;
+    if (done <= 0) continue;
+    result.channels.middleRows(settled, done) = fit.motion().channels.middleRows(fit.held(), done);
+    settled += done;
+    first += fit.settle(done);
+    CHECK(fit.held() <= SlidingFit::kHeld);
+    CHECK(fit.motion().frames() == t + 1 - first);
+  }
+  result.body = fit.body();
+  return result;
+}
+
+/// Mean distance from the root, mm of a 1.7 m body.
+double apart_mm(const Motion& one, const Motion& other, const Modalities& modalities) {
+  const auto names = modalities.track_features.joint_names();
+  const auto places = [&](const Motion& motion) -> MatrixD {
+    return 1000 / file_units_per_metre(motion.skeleton) *
+           joints_about(motion, names, modalities.root_name());
+  };
+  const MatrixD off = places(one) - places(other);
+  double sum = 0;
+  for (Eigen::Index column = 0; column < off.cols(); column += 3)
+    sum += off.middleCols<3>(column).rowwise().norm().mean();
+  return 3 * sum / static_cast<double>(off.cols());
+}
+
+}  // namespace
+
+TEST_CASE("a sliding fit: eight frames later it is where the whole clip's fit is") {
+  const Scene scene = make_scene();
+  TrackFitSettings settings;
+  settings.solutions = 1;  // how exact the track is, either would learn at its own pace
+  const Slid got = slid(scene, scene.truth.skeleton, 8, settings);
+  const Motion motion{scene.truth.skeleton, scene.truth.frame_time_s, got.channels},
+      whole = scene.fit(scene.track, settings);
+  const double from_whole = apart_mm(motion, whole, scene.modalities),
+               from_truth = apart_mm(motion, scene.truth, scene.modalities),
+               whole_from_truth = apart_mm(whole, scene.truth, scene.modalities),
+               unfitted = apart_mm(scene.unfitted(), scene.truth, scene.modalities);
+  CAPTURE(from_whole);
+  CAPTURE(from_truth);
+  CAPTURE(whole_from_truth);
+  CHECK(from_whole < 10);
+  CHECK(from_truth < whole_from_truth + 5);
+  CHECK(from_truth < 0.5 * unfitted);
+}
+
+TEST_CASE("a sliding fit: that a track is exact shows within a second") {
+  const Scene scene = make_scene();
+  TrackFitSettings unlearned;
+  unlearned.solutions = 1;
+  const auto off_mm = [&](const TrackFitSettings& settings) {
+    const Slid got = slid(scene, scene.truth.skeleton, 8, settings);
+    Motion second{scene.truth.skeleton, scene.truth.frame_time_s, got.channels.bottomRows(30)};
+    Motion truth = scene.truth;
+    truth.channels = MatrixD(scene.truth.channels.bottomRows(30));
+    return apart_mm(second, truth, scene.modalities);
+  };
+  const double learned = off_mm({}), otherwise = off_mm(unlearned);
+  CAPTURE(learned);
+  CAPTURE(otherwise);
+  CHECK(learned < 0.8 * otherwise);
+}
+
+TEST_CASE("a sliding fit: the person's bones are found as frames come") {
+  Scene scene = make_scene();
+  Skeleton model = scene.truth.skeleton;
+  for (Joint& joint : model.joints)
+    if (joint.name.find("Leg") != std::string::npos || joint.name.find("Foot") != std::string::npos)
+      joint.offset *= 1.15;
+  const auto ratio = [](const Skeleton& body) {
+    const auto length = [&](const char* name) {
+      return body.joints[static_cast<std::size_t>(body.find(name))].offset.norm();
+    };
+    return length("LeftFoot") / length("LeftForeArm");
+  };
+  REQUIRE(ratio(model) > 1.1 * ratio(scene.truth.skeleton));
+  Scene longer = scene;
+  longer.modalities.pose_features = PoseFeatures::restored(
+      model, scene.modalities.pose_features.root(), scene.modalities.pose_features.joints(),
+      scene.modalities.pose_features.fixed_channels());
+  const Slid got = slid(longer, {}, 8);
+  CHECK(std::abs(std::log(ratio(got.body) / ratio(scene.truth.skeleton))) <
+        0.5 * std::log(ratio(model) / ratio(scene.truth.skeleton)));
+}
+
+TEST_CASE("a sliding fit: what dropped frames tell leaves the others where all frames put them") {
+  const Scene scene = make_scene(1, 14);
+  const Skeleton& model = scene.truth.skeleton;
+  const std::vector<std::string> names = scene.modalities.track_features.joint_names();
+  const TrackRays rays = track_rays(names, scene.track, *scene.known.camera);
+  const PoseFeatures& features = scene.modalities.pose_features;
+  const MatrixD mean =
+      scene.modalities.pose_in_camera(scene.mean, scene.known.camera->camera_from_world);
+  const MatrixD root = joint_positions(scene.truth).leftCols(3);
+  const Motion answer = features.decode(mean, scene.known.camera->camera_from_world, model,
+                                        scene.modalities.fps, root);
+  const auto clip_of = [&](Eigen::Index first) {
+    Motion part = answer;
+    part.channels = MatrixD(answer.channels.bottomRows(answer.frames() - first));
+    TrackRays seen = rays;
+    seen.rays = MatrixD(rays.rays.bottomRows(part.frames()));
+    seen.confidence = MatrixD(rays.confidence.bottomRows(part.frames()));
+    ClipEvidence evidence(features, part, MatrixD::Zero(part.frames(), 3), seen,
+                          *scene.known.camera);
+    evidence.clip.turn_deviation_rad =
+        MatrixD::Constant(part.frames(), std::ssize(evidence.clip.parents), 0.15);
+    evidence.clip.body_unknown = true;
+    evidence.find_planted(part);
+    return evidence.clip;
+  };
+  constexpr Eigen::Index kDropped = 5;
+  const RayNoise noise{1e-3, 2e-3};
+  const TrackFitSettings settings;
+  const PosteriorClip whole = clip_of(0);
+  WindowProblem problem(whole, noise, settings, PosteriorPoint::zero(whole), 0, 14, Unknowns::all);
+  // To the very end, so that the energy is level there.
+  for (int round = 0; round < 40; ++round) problem.solve(true, 1e-12, 100);
+  PosteriorClip rest = clip_of(kDropped);
+  PosteriorPoint want = problem.solution();
+  for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
+    want.*rows = MatrixD((want.*rows).bottomRows(14 - kDropped));
+  const auto apart = [&] {
+    WindowProblem behind(rest, noise, settings, want, 0, 14 - kDropped, Unknowns::all);
+    for (int round = 0; round < 40; ++round) behind.solve(true, 1e-12, 100);
+    const PosteriorPoint& found = behind.solution();
+    return std::max((found.turns - want.turns).cwiseAbs().maxCoeff(),
+                    (found.log_lengths - want.log_lengths).cwiseAbs().maxCoeff());
+  };
+  const double alone = apart();
+  rest.past = problem.without_first(kDropped);
+  const double marginal = apart();
+  CAPTURE(alone);
+  CAPTURE(marginal);
+  CHECK(marginal < 0.003);
+  CHECK(marginal < 0.1 * alone);
+}
+
+TEST_CASE("normal term: the energy is that of its distribution, derivatives right") {
+  Eigen::MatrixXd factor(3, 3);
+  factor << 2, 0.5, -1, 0, 3, 0.2, 0, 0, 0.7;
+  const Eigen::Vector3d centre(0.1, -0.2, 0.05), at(0.3, 0.1, -0.4), residual(1, 2, 3);
+  const NormalTerm term(factor, centre, residual, {1, 2});
+  const double* blocks[] = {&at[0], &at[1]};
+  Eigen::Vector3d residuals, first;
+  Eigen::Matrix<double, 3, 2, Eigen::RowMajor> second;
+  double* jacobians[] = {first.data(), second.data()};
+  REQUIRE(term.Evaluate(blocks, residuals.data(), jacobians));
+  CHECK((residuals - factor * (at - centre) - residual).norm() < 1e-12);
+  Eigen::Matrix3d jacobian;
+  jacobian << first, second;
+  CHECK(jacobian == factor);
+}
+
+TEST_CASE("a quadratic energy without some unknowns: as the inverse of a dense covariance has it") {
+  const Eigen::MatrixXd factor = Eigen::MatrixXd::Random(9, 9);
+  const Eigen::VectorXd off = Eigen::VectorXd::Random(9);
+  std::vector<double> x(9, 0.25);
+  ceres::Problem problem;
+  const auto* term = problem.AddResidualBlock(
+      new NormalTerm(factor, Eigen::VectorXd::Zero(9), off, {4, 5}), nullptr, {&x[0], &x[4]});
+  QuadraticEnergy energy({{&x[0], 4}, {&x[4], 5}});
+  energy.add(problem, const_cast<ceres::ResidualBlockId>(term));
+  const MarginalPrior marginal = energy.without_first(4);
+  const Eigen::MatrixXd all = factor.transpose() * factor;
+  const Eigen::MatrixXd want = all.inverse().bottomRightCorner(5, 5).inverse();
+  CHECK((marginal.factor.transpose() * marginal.factor - want).cwiseAbs().maxCoeff() < 1e-9);
+  // Both energies are least at the same place.
+  const Eigen::VectorXd least = -factor.lu().solve(off);
+  CHECK((marginal.factor * (least.tail(5) - marginal.at) + marginal.residual).norm() < 1e-8);
+}

@@ -1,0 +1,210 @@
+// A track line by line, as it is written: what a whole file is read as, one frame at a time.
+
+#include "mcdbn/formats/track_lines.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "formats/csv_text.hpp"
+#include "formats/figure_track.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/track_csv.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+constexpr const char* kCsv =
+    "# fps=25 width_px=640 height_px=480\n"
+    "Hips_x_px,Hips_y_px,Hips_confidence,Foot_x_px,Foot_y_px\n"
+    "10,20,0.5,30,40\n"
+    "\n"
+    "11,21,1,,\n";
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (const std::string_view line : split(text, '\n')) lines.emplace_back(line);
+  if (lines.back().empty()) lines.pop_back();
+  return lines;
+}
+
+std::vector<TrackFrame> read_all(TrackLines& lines, const std::string& text) {
+  std::vector<TrackFrame> frames;
+  for (const std::string& line : lines_of(text))
+    if (auto frame = lines.read(line)) frames.push_back(std::move(*frame));
+  return frames;
+}
+
+std::string message_of(TrackLines& lines, const std::string& line) {
+  try {
+    (void)lines.read(line);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A person of 17 joints around a place, as rtmlib answers.
+std::string people_line(const std::vector<double>& at_px) {
+  std::string keypoints, scores;
+  for (const double at : at_px) {
+    std::string one, sure;
+    for (int joint = 0; joint < 17; ++joint) {
+      one += fmt::format("{}[{},{}]", joint ? "," : "", at + 10 * (joint % 3), 100 + 12 * joint);
+      sure += fmt::format("{}0.9", joint ? "," : "");
+    }
+    keypoints += fmt::format("{}[{}]", keypoints.empty() ? "" : ",", one);
+    scores += fmt::format("{}[{}]", scores.empty() ? "" : ",", sure);
+  }
+  return fmt::format("{{\"keypoints\":[{}],\"scores\":[{}]}}", keypoints, scores);
+}
+
+TrackReadOptions of_image() {
+  TrackReadOptions options;
+  options.image_size = {1280, 720};
+  options.fps = 60;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("track lines: our CSV, its header first, gaps missing") {
+  TrackLines lines("pipe");
+  const auto frames = read_all(lines, kCsv);
+  REQUIRE(frames.size() == 2);
+  CHECK(lines.knows_joints());
+  CHECK(lines.like().joint_names == std::vector<std::string>{"Hips", "Foot"});
+  CHECK(lines.like().fps == 25);
+  CHECK(lines.like().width_px == 640);
+  CHECK(lines.like().height_px == 480);
+  CHECK(lines.like().frames() == 0);
+  CHECK(frames[0].x_px[1] == 30);
+  CHECK(frames[0].confidence[0] == 0.5);
+  CHECK(frames[1].y_px[0] == 21);
+  CHECK(std::isnan(frames[1].x_px[1]));
+  CHECK(frames[1].confidence[1] == 0);
+  CHECK(lines.take_notices().empty());
+}
+
+TEST_CASE("track lines: every JSON format's frames are what its file is read as") {
+  const ScratchFolder folder;
+  for (const char* format : {"openpose", "mmpose"}) {
+    CAPTURE(format);
+    const Track2d track = figure_track(track_format(format), 5);
+    // A frame a line, as programs that write one after the other do.
+    std::string text;
+    for (int frame = 0; frame < track.frames(); ++frame) {
+      nlohmann::json keypoints = nlohmann::json::array(), scores = keypoints, flat = keypoints;
+      for (int joint = 0; joint < track.joint_count(); ++joint) {
+        const bool seen = track.confidence(frame, joint) > 0;
+        const double x = seen ? track.x_px(frame, joint) : 0,
+                     y = seen ? track.y_px(frame, joint) : 0;
+        keypoints.push_back({x, y});
+        scores.push_back(track.confidence(frame, joint));
+        for (const double value : {x, y, track.confidence(frame, joint)}) flat.push_back(value);
+      }
+      const nlohmann::json line =
+          std::string(format) == "openpose"
+              ? nlohmann::json{{"people", {{{"pose_keypoints_2d", flat}}}}}
+              : nlohmann::json{
+                    {"keypoints", keypoints}, {"keypoint_scores", scores}, {"frame_id", frame}};
+      text += line.dump() + "\n";
+    }
+    const Track2d whole = read_track(folder.write("track.json", text), of_image());
+    TrackLines lines("pipe", of_image());
+    const auto frames = read_all(lines, text);
+    REQUIRE(static_cast<int>(frames.size()) == whole.frames());
+    CHECK(lines.like().joint_names == whole.joint_names);
+    CHECK(lines.like().keypoints.size() == whole.keypoints.size());
+    CHECK(lines.like().fps == 60);
+    for (int frame = 0; frame < whole.frames(); ++frame)
+      for (int joint = 0; joint < whole.joint_count(); ++joint) {
+        const bool seen = whole.confidence(frame, joint) > 0;
+        const TrackFrame& got = frames[static_cast<std::size_t>(frame)];
+        CHECK((got.confidence[joint] > 0) == seen);
+        if (seen) CHECK(got.x_px[joint] == doctest::Approx(whole.x_px(frame, joint)));
+      }
+  }
+}
+
+TEST_CASE("track lines: nobody, then several people, of whom one is followed") {
+  TrackLines lines("pipe", of_image());
+  auto frame = lines.read(people_line({}));
+  REQUIRE(frame);
+  CHECK(frame->joints() == 0);
+  CHECK(!lines.knows_joints());
+  CHECK(lines.read(people_line({300}))->x_px[0] == 300);
+  CHECK(lines.knows_joints());
+  // Another comes in, listed first; then the first is gone, and comes back.
+  CHECK(lines.read(people_line({700, 310}))->x_px[0] == 310);
+  CHECK(lines.read(people_line({700}))->confidence.sum() == 0);
+  CHECK(lines.read(people_line({}))->joints() == 17);
+  CHECK(lines.read(people_line({700, 330}))->x_px[0] == 330);
+  // After a second and a half whoever is there is taken.
+  for (int t = 0; t < 90; ++t) CHECK(lines.read(people_line({700}))->confidence.sum() == 0);
+  CHECK(lines.read(people_line({700}))->x_px[0] == 700);
+}
+
+TEST_CASE("track lines: a person whom the file numbers is followed however far") {
+  const auto line = [](const std::vector<std::pair<int, int>>& people) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const auto& [number, at_px] : people) {
+      nlohmann::json numbers = nlohmann::json::array();
+      for (int joint = 0; joint < 25; ++joint)
+        for (const double value : {at_px + 10.0 * (joint % 3), 100.0 + 12 * joint, 0.9})
+          numbers.push_back(value);
+      list.push_back({{"person_id", {number}}, {"pose_keypoints_2d", numbers}});
+    }
+    return nlohmann::json{{"people", list}}.dump();
+  };
+  TrackLines lines("pipe", of_image());
+  CHECK(lines.read(line({{4, 300}}))->x_px[0] == 300);
+  CHECK(lines.read(line({{7, 300}, {4, 900}}))->x_px[0] == 900);
+  CHECK(lines.read(line({{7, 900}}))->confidence.sum() == 0);
+  // A number that several have does not tell them apart.
+  CHECK(lines.read(line({{4, 300}, {4, 890}}))->x_px[0] == 890);
+}
+
+TEST_CASE("track lines: a broken line is named, and the next is read") {
+  TrackLines lines("pipe");
+  (void)read_all(lines, kCsv);
+  CHECK(message_of(lines, "1,2,3").starts_with("pipe:6: 3 cells"));
+  CHECK(message_of(lines, "1,2,x,4,5").starts_with("pipe:7: "));
+  CHECK(lines.read("12,22,1,32,42")->x_px[0] == 12);
+
+  TrackLines json("pipe", of_image());
+  CHECK(json.read(people_line({300}))->joints() == 17);
+  CHECK(message_of(json, "{\"keypoints\":[[[1,2]").starts_with("pipe:2"));
+  CHECK(message_of(json, people_line({3e6})).find("no pixel") != std::string::npos);
+  // Nobody who was seen before.
+  CHECK(json.read("{\"keypoints\":[[[1,2]]],\"scores\":[[1]]}")->confidence.sum() == 0);
+  CHECK(json.read(people_line({302}))->x_px[0] == 302);
+}
+
+TEST_CASE("track lines: what has to be said is asked for") {
+  TrackLines nameless("pipe");
+  CHECK(message_of(nameless, people_line({300})).find("`image-size`") != std::string::npos);
+  TrackLines headless("pipe");
+  CHECK(headless.read("1,2,3") == std::nullopt);  // the header, which it is not
+  CHECK(message_of(headless, "4,5,6").find("numbers where the header is expected") !=
+        std::string::npos);
+  TrackLines other("pipe", of_image());
+  CHECK(message_of(other, "{\"what\": 1}").starts_with("pipe:1: not a frame"));
+  TrackReadOptions all = of_image();
+  all.person = "all";
+  CHECK_THROWS_AS(TrackLines("pipe", all), ConfigError);
+  TrackReadOptions shares = of_image();
+  TrackLines small("pipe", shares);
+  const auto frame = small.read("{\"keypoints\":[[[0.25,0.5],[0.5,0.5]]],\"scores\":[[1,1.2]]}");
+  REQUIRE(frame);
+  CHECK(frame->x_px[0] == 0.25 * 1280);
+  CHECK(frame->y_px[0] == 0.5 * 720);
+  CHECK(frame->confidence[1] == 1);
+}

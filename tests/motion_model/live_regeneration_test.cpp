@@ -1,0 +1,322 @@
+// A track frame by frame: what comes back, when, and how near it is to what the whole clip tells.
+
+#include "mcdbn/motion_model/live_regeneration.hpp"
+
+#include <doctest/doctest.h>
+#include <malloc.h>
+
+#include <limits>
+
+#include "camera/detector_track.hpp"
+#include "device/every_device.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
+#include "mcdbn/motion/skeleton_roles.hpp"
+#include "mcdbn/synthesis/synthesize.hpp"
+#include "motion/body_size.hpp"
+#include "motion_model/clip_scene.hpp"
+#include "motion_model/live_output.hpp"
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+constexpr int kLookAhead = 2;
+
+/// Its answers are near the mean pose, from where the fit finds the track, and depend on what it
+/// sees.
+Mcdbn quiet_network(Device& device, const Modalities& modalities) {
+  const auto layer = [](int visible, std::size_t hidden, std::size_t order, std::uint64_t seed) {
+    const CrbmShape shape{static_cast<std::size_t>(visible), hidden, order, VisibleKind::gaussian};
+    return CrbmParameters::random(shape, 0.03, {seed, 0, 0, 0});
+  };
+  const MrbmParameters mrbm = MrbmParameters::random(two_modalities(8, 7, 6), 1.5, {3, 0, 0, 0});
+  Mcdbn network{std::vector<Cdbn>(2), Mrbm(device, mrbm), kLookAhead, 4};
+  network.cdbns[0].layers.emplace_back(device,
+                                       layer(modalities.track_scale.output_dimension(), 8, 2, 1));
+  network.cdbns[1].layers.emplace_back(device,
+                                       layer(modalities.pose_scale.output_dimension(), 7, 3, 2));
+  return network;
+}
+
+Motion walk(int clip, int frames, double fps) {
+  SynthesisOptions options;
+  options.clip = clip;
+  options.seconds = (frames + 1) / fps;
+  options.fps = fps;
+  Motion motion = synthesize(options);
+  motion.channels.conservativeResize(frames, Eigen::NoChange);
+  return motion;
+}
+
+struct Scene {
+  Motion training = walk(1, 60, 30);
+  CameraPlacement view{35, 12, std::nullopt, 45, 1920, 1080};
+  Modalities modalities = modalities_of({training}, view);
+  Motion clip;
+  Camera camera;
+  Track2d track;
+
+  explicit Scene(double fps = 30, int frames = 50)
+      : clip(walk(2, frames, fps)),
+        camera(place_camera(clip, view)),
+        track(project_motion(clip, camera)) {}
+  ClipPlacement placement() const {
+    ClipPlacement placement{{camera, clip.skeleton}};
+    // How exact the track is, live and whole clip would learn at their own pace.
+    placement.fit->solutions = 1;
+    return placement;
+  }
+  Model model(Device& device) const {
+    return {quiet_network(device, modalities), modalities, {}, {}};
+  }
+};
+
+TrackFrame frame_of(const Track2d& track, Eigen::Index frame) {
+  return {track.x_px.row(frame), track.y_px.row(frame), track.confidence.row(frame)};
+}
+
+void hide(Track2d& track, Eigen::Index first, Eigen::Index count, Eigen::Index joint = -1) {
+  for (Eigen::Index t = first; t < first + count; ++t)
+    for (Eigen::Index j = 0; j < track.joint_count(); ++j) {
+      if (joint >= 0 && j != joint) continue;
+      track.x_px(t, j) = track.y_px(t, j) = std::numeric_limits<double>::quiet_NaN();
+      track.confidence(t, j) = 0;
+    }
+}
+
+/// All that comes back, on the body as it is known in the end.
+Motion followed(LiveRegeneration& live, const Track2d& track) {
+  std::vector<LiveFrame> frames;
+  const auto add = [&](std::vector<LiveFrame> more) {
+    for (LiveFrame& frame : more) frames.push_back(std::move(frame));
+  };
+  for (int t = 0; t < track.frames(); ++t) add(live.push(frame_of(track, t)));
+  add(live.finish());
+  Motion motion{live.skeleton(), 1 / live.fps(),
+                MatrixD(std::ssize(frames), live.skeleton().channel_count())};
+  for (std::size_t t = 0; t < frames.size(); ++t)
+    motion.channels.row(static_cast<Eigen::Index>(t)) = frames[t].channels;
+  return motion;
+}
+
+/// Mean distance of the joints from the root, mm of a 1.7 m body, from frame `first` on.
+double apart_mm(const Motion& one, const Motion& other, Eigen::Index first = 0) {
+  const auto places = [&](const Motion& motion) -> MatrixD {
+    const MatrixD all = joint_positions(motion);
+    return 1000 / file_units_per_metre(motion.skeleton) *
+           (all - all.leftCols(3).replicate(1, all.cols() / 3));
+  };
+  const MatrixD off = (places(one) - places(other)).bottomRows(one.frames() - first);
+  double sum = 0;
+  for (Eigen::Index column = 0; column < off.cols(); column += 3)
+    sum += off.middleCols<3>(column).rowwise().norm().mean();
+  return 3 * sum / static_cast<double>(off.cols());
+}
+
+}  // namespace
+
+TEST_CASE("live: every frame comes back once, in order, no later than is said") {
+  on_every_device([](Device& device) {
+    for (const double fps : {30.0, 60.0, 47.0, 20.0})
+      for (const std::size_t look_ahead : {0U, 2U}) {
+        CAPTURE(fps);
+        CAPTURE(look_ahead);
+        const Scene scene(fps, 40);
+        const Model model = scene.model(device);
+        LiveRegeneration live(model, scene.track, scene.placement(), look_ahead);
+        CHECK(live.latency_frames() == static_cast<int>(look_ahead) + 3);
+        std::size_t back = 0, latest = 0;
+        for (std::size_t pushed = 1; pushed <= 40; ++pushed) {
+          back += live.push(frame_of(scene.track, static_cast<Eigen::Index>(pushed) - 1)).size();
+          // Of the frames that the track is at, in seconds.
+          const double late_s = static_cast<double>(pushed - back) / fps;
+          CHECK(late_s * 30 <= live.latency_frames() + 1e-9);
+          latest = std::max(latest, pushed - back);
+        }
+        if (fps == 30) CHECK(latest == look_ahead + 3);  // and no sooner
+        back += live.finish().size();
+        CHECK(back == 40);
+        CHECK(live.fps() == fps);
+      }
+  });
+}
+
+TEST_CASE(
+    "live: what comes back is near what the whole clip tells, no further from truth and track") {
+  on_every_device([](Device& device) {
+    const Scene scene;
+    const Model model = scene.model(device);
+    LiveRegeneration live(model, scene.track, scene.placement());
+    const Motion got = followed(live, scene.track);
+    REQUIRE(got.frames() == 50);
+    const Motion whole = regenerate_clip(model, scene.track, scene.placement(), {}).front();
+    const double apart = apart_mm(got, whole), off = apart_mm(got, scene.clip),
+                 whole_off = apart_mm(whole, scene.clip);
+    CAPTURE(apart);
+    CAPTURE(off);
+    CAPTURE(whole_off);
+    // A prior that says so little leaves the whole clip's fit, too, some way off the truth.
+    CHECK(apart < 15);
+    CHECK(off < whole_off + 5);
+    const auto off_track_px = [&](const Motion& motion) {
+      return (project_motion(motion, live.camera()).x_px - scene.track.x_px).cwiseAbs().mean();
+    };
+    CHECK(off_track_px(got) < 1.2 * off_track_px(whole));
+    for (int t = 1; t < 50; ++t)
+      CHECK((got.channels.row(t) - got.channels.row(t - 1)).cwiseAbs().maxCoeff() < 60);
+  });
+}
+
+TEST_CASE("live: a frame between two poses is between them") {
+  Skeleton skeleton;
+  skeleton.joints.push_back({"Hips", -1, {0, 0, 0}, {Channel::x_position}, {}});
+  LiveOutput output(30, 75);
+  std::vector<double> got;
+  for (const double at : {0.0, 10.0, 20.0})
+    for (const LiveFrame& frame : output.add(skeleton, RowVectorD::Constant(1, at), true))
+      got.push_back(frame.channels[0]);
+  REQUIRE(got.size() == 6);
+  for (std::size_t frame = 0; frame < 6; ++frame)
+    CHECK(got[frame] == doctest::Approx(4.0 * static_cast<double>(frame)));
+}
+
+TEST_CASE("live: a detector's keypoints as the whole clip has them, exchanged sides put right") {
+  on_every_device([](Device& device) {
+    Scene scene;
+    const Model model = scene.model(device);
+    scene.track = project_keypoints(scene.clip, skeleton_roles(scene.clip.skeleton),
+                                    joint_set("COCO_17").keypoints, scene.camera);
+    const auto got = [&] {
+      LiveRegeneration live(model, scene.track, scene.placement());
+      return followed(live, scene.track);
+    };
+    const Motion right = got();
+    CHECK(apart_mm(right, regenerate_clip(model, scene.track, scene.placement(), {}).front()) < 25);
+    for (const std::string joint : {"shoulder", "elbow", "wrist", "hip", "knee", "ankle"}) {
+      const int left = scene.track.find("left_" + joint),
+                other = scene.track.find("right_" + joint);
+      REQUIRE(left >= 0);
+      for (MatrixD* values : {&scene.track.x_px, &scene.track.y_px})
+        for (int t = 25; t < 28; ++t) std::swap((*values)(t, left), (*values)(t, other));
+    }
+    CHECK(apart_mm(got(), right) < 3);
+  });
+}
+
+TEST_CASE("live: missing joints follow from the others and by the frames around") {
+  on_every_device([](Device& device) {
+    Scene scene;
+    const Model model = scene.model(device);
+    hide(scene.track, 20, 8, scene.track.find("LeftHand"));
+    hide(scene.track, 35, 2);
+    LiveRegeneration live(model, scene.track, scene.placement());
+    const Motion got = followed(live, scene.track);
+    const Motion whole = regenerate_clip(model, scene.track, scene.placement(), {}).front();
+    CHECK(got.channels.allFinite());
+    CHECK(apart_mm(got, scene.clip) < apart_mm(whole, scene.clip) + 5);
+  });
+}
+
+TEST_CASE("live: before anybody is seen it is the mean pose; who comes back is found anew") {
+  on_every_device([](Device& device) {
+    Scene scene(30, 90);
+    const Model model = scene.model(device);
+    hide(scene.track, 0, 20);
+    hide(scene.track, 40, 25);
+    scene.track.x_px.bottomRows(25).array() += 500;  // elsewhere
+    LiveRegeneration live(model, scene.track, scene.placement());
+    std::vector<LiveFrame> frames;
+    for (int t = 0; t < 90; ++t)
+      for (LiveFrame& frame : live.push(frame_of(scene.track, t))) {
+        frames.push_back(std::move(frame));
+        CHECK(t + 1 - static_cast<int>(frames.size()) <= live.latency_frames());
+      }
+    for (LiveFrame& frame : live.finish()) frames.push_back(std::move(frame));
+    REQUIRE(frames.size() == 90);
+    for (int t = 0; t < 90; ++t) CHECK(frames[static_cast<std::size_t>(t)].seen == (t >= 20));
+    Motion end{live.skeleton(), 1.0 / 30, MatrixD(10, live.skeleton().channel_count())};
+    for (int t = 0; t < 10; ++t)
+      end.channels.row(t) = frames[static_cast<std::size_t>(80 + t)].channels;
+    const Track2d shown = project_motion(end, live.camera());
+    CHECK((shown.x_px - scene.track.x_px.bottomRows(10)).cwiseAbs().mean() < 5);
+  });
+}
+
+TEST_CASE("live: two tracks at once are as each by itself") {
+  on_every_device([](Device& device) {
+    const Scene one, other(47, 50);
+    const Model model = one.model(device);
+    const auto alone = [&](const Scene& scene) {
+      LiveRegeneration live(model, scene.track, scene.placement());
+      return followed(live, scene.track);
+    };
+    LiveRegeneration first(model, one.track, one.placement()),
+        second(model, other.track, other.placement());
+    std::vector<LiveFrame> of_first, of_second;
+    for (int t = 0; t < 50; ++t) {
+      for (LiveFrame& frame : first.push(frame_of(one.track, t)))
+        of_first.push_back(std::move(frame));
+      for (LiveFrame& frame : second.push(frame_of(other.track, t)))
+        of_second.push_back(std::move(frame));
+    }
+    const Motion want = alone(one), want_other = alone(other);
+    REQUIRE(of_first.size() > 40);
+    for (std::size_t t = 0; t < of_first.size(); ++t)
+      CHECK(of_first[t].channels == want.channels.row(static_cast<Eigen::Index>(t)));
+    for (std::size_t t = 0; t < of_second.size(); ++t)
+      CHECK(of_second[t].channels == want_other.channels.row(static_cast<Eigen::Index>(t)));
+  });
+}
+
+TEST_CASE("live: memory does not grow with the frames") {
+  on_every_device([](Device& device) {
+    Scene scene;
+    const Model model = scene.model(device);
+    LiveRegeneration live(model, scene.track, scene.placement());
+    const auto follow = [&](int frames) {
+      for (int t = 0; t < frames; ++t) (void)live.push(frame_of(scene.track, t % 50));
+      return mallinfo2().uordblks;
+    };
+    const auto before = static_cast<double>(follow(200)), after = static_cast<double>(follow(400));
+    // What a frame takes, 14 joints and their features, would be 400 KB.
+    CHECK(after - before < 50'000);
+  });
+}
+
+TEST_CASE("live: a camera that nobody knows: the first frame stands at the origin") {
+  on_every_device([](Device& device) {
+    const Scene scene;
+    const Model model = scene.model(device);
+    ClipPlacement placement = scene.placement();
+    placement.camera.reset();
+    LiveRegeneration live(model, scene.track, placement);
+    const Motion got = followed(live, scene.track);
+    const MatrixD root = joint_positions(got).leftCols(3);
+    const double metre = file_units_per_metre(got.skeleton);
+    CHECK(std::hypot(root(0, 0), root(0, 2)) < 0.1 * metre);
+    CHECK(root(0, 1) > 0.5 * metre);
+    CHECK(root(0, 1) < 1.5 * metre);
+    const Track2d shown = project_motion(got, live.camera());
+    CHECK((shown.x_px - scene.track.x_px).cwiseAbs().mean() < 5);
+  });
+}
+
+TEST_CASE("live: what cannot be followed is said") {
+  on_every_device([](Device& device) {
+    const Scene scene;
+    const Model model = scene.model(device);
+    CHECK_THROWS_AS(LiveRegeneration(model, scene.track, scene.placement(), kLookAhead + 1),
+                    ConfigError);
+    ClipPlacement placement = scene.placement();
+    placement.fit.reset();
+    CHECK_THROWS_AS(LiveRegeneration(model, scene.track, placement), ConfigError);
+    placement = scene.placement();
+    placement.skeleton->joints[3].name = "Other";
+    CHECK_THROWS_AS(LiveRegeneration(model, scene.track, placement), ConfigError);
+    LiveRegeneration live(model, scene.track, scene.placement());
+    CHECK_THROWS_AS(live.push(TrackFrame::unseen(3)), ShapeError);
+    CHECK(live.finish().empty());
+  });
+}
