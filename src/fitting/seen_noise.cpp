@@ -19,12 +19,12 @@ constexpr double kSmallChange = 0.1;
 
 }  // namespace
 
-SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m, bool own_skeleton,
+SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m, bool may_be_exact,
                      const TrackFitSettings& settings, double share) {
   const double focal_px = std::sqrt(camera.fx_px * camera.fy_px);
   measured_ = std::max(kLeastNoise_px, track_noise_px) / focal_px;
   usual_ = settings.detector * kHeight_m / std::max(depth_m, 1e-9);
-  least_ = own_skeleton ? measured_ : usual_;
+  least_ = may_be_exact ? measured_ : usual_;
   rays_.white = std::max(kLeastNoise_px, settings.caution * track_noise_px) / focal_px;
   rays_.lasting = share * usual_;
 }

@@ -10,14 +10,14 @@ namespace mcdbn {
 /// tell: one that comes nearer to the rays than their noise lets expect shows that there is less of
 /// it, the more so the nearer it comes. So an exact projection of a known body is found out in two
 /// solutions. A body that is fitted itself comes near to any rays, which shows nothing: there the
-/// part that lasts only grows.
+/// part that lasts only grows, and so it does of a detector's keypoints.
 class SeenNoise {
  public:
   /// @param track_noise_px new in every frame, of x and y each
   /// @param depth_m of the person, on a 1.7 m body
-  /// @param own_skeleton else the body is fitted
+  /// @param may_be_exact the body is known, and a detector need not have seen it
   /// @param share of a usual detector's lasting part, as it was told before
-  SeenNoise(double track_noise_px, const Camera& camera, double depth_m, bool own_skeleton,
+  SeenNoise(double track_noise_px, const Camera& camera, double depth_m, bool may_be_exact,
             const TrackFitSettings& settings, double share = 1);
 
   const RayNoise& rays() const { return rays_; }

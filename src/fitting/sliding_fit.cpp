@@ -54,6 +54,7 @@ SlidingFit::SlidingFit(const Modalities& modalities, const KnownOfClip& known, c
       skeleton_(known.skeleton ? *known.skeleton : modalities.pose_features.skeleton()),
       body_(skeleton_),
       body_unknown_(!known.skeleton),
+      detected_(known.detected),
       camera_known_(known.camera.has_value()),
       units_per_m_(file_units_per_metre(skeleton_)),
       assumed_(in_file_units(known.camera_of(like, modalities), skeleton_)),
@@ -146,8 +147,8 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
   if (clip.camera)
     clip.camera->balanced =
         evidence_->balanced(upright(), settings_.balance_deg * kRadiansPerDegree);
-  SeenNoise noise(track_noise_px, assumed_, evidence_->usual_depth_m(), !body_unknown_, settings_,
-                  lasting_noise_);
+  SeenNoise noise(track_noise_px, assumed_, evidence_->usual_depth_m(),
+                  !body_unknown_ && !detected_, settings_, lasting_noise_);
 
   problem_ = std::make_unique<WindowProblem>(clip, noise.rays(), settings_, point_, 0,
                                              clip.frames(), Unknowns::tracked);

@@ -85,7 +85,8 @@ class ClipFit {
     clip.root_m_s2 = root_acceleration_deviation_m_s2(prior, modalities_, settings);
     clip.body_unknown = !own_skeleton;
     clip.camera = doubt_of(known, modalities_, track, settings);
-    SeenNoise noise(track_noise_px, camera_, evidence_->usual_depth_m(), own_skeleton, settings);
+    SeenNoise noise(track_noise_px, camera_, evidence_->usual_depth_m(),
+                    own_skeleton && !known.detected, settings);
     point_ = PosteriorPoint::zero(clip);
     look_again(settings);
     rays_ = noise.rays();

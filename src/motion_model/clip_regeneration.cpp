@@ -66,7 +66,8 @@ std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d&
   ClipPlacement placement = other.placement(wanted);
   Track2d sides = track;
   std::vector<SideSwap> swaps;
-  if (!joined_by_name(track, modalities.track_features)) {
+  placement.detected = !joined_by_name(track, modalities.track_features);
+  if (placement.detected) {
     swaps = find_side_swaps(track);
     exchange_sides(sides, swaps);
   }

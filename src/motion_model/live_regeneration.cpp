@@ -57,6 +57,12 @@ std::optional<KeypointMap> map_of(const Modalities& modalities, const Track2d& l
                      skeleton_roles(skeleton, placement.joint_map));
 }
 
+KnownOfClip known_of(const ClipPlacement& placement, bool detected) {
+  KnownOfClip known = placement;
+  known.detected = detected;
+  return known;
+}
+
 Track2d without_frames(Track2d track) {
   drop_first(track, track.x_px.rows());
   return track;
@@ -75,7 +81,7 @@ class LiveRegeneration::Frames {
         raw_(without_frames(like)),
         map_(map_of(modalities_, like, placement)),
         running_(model.network),
-        fit_(modalities_, placement, like, fit_of(placement)),
+        fit_(modalities_, known_of(placement, map_.has_value()), like, fit_of(placement)),
         output_(modalities_.fps, like.fps) {
     recent_ = raw_;
     recent_.fps = modalities_.fps;

@@ -173,6 +173,25 @@ TEST_CASE("known of a clip: a body that nobody knows gets the lengths that the t
   CHECK(length(known, "LeftLeg") == length(own, "LeftLeg"));
 }
 
+TEST_CASE("known of a clip: a detector's keypoints are met less exactly than a projection") {
+  const Scene scene;
+  KnownOfClip known{scene.camera, scene.truth.skeleton};
+  const auto off_px = [&] {
+    // A pose that is wrong in every frame.
+    const MatrixF prior = scene.pose.array() + 0.3F;
+    const Track2d shown =
+        fit_to_track(prior, scene.modalities, scene.track, known, TrackFitSettings{}).shown;
+    double squares = 0;
+    for (const std::string& name : scene.modalities.track_features.joint_names())
+      squares += (shown.x_px.col(shown.find(name)) - scene.track.x_px.col(scene.track.find(name)))
+                     .squaredNorm();
+    return std::sqrt(squares / static_cast<double>(scene.track.x_px.size()));
+  };
+  const double projected_px = off_px();
+  known.detected = true;
+  CHECK(off_px() > 2 * projected_px);
+}
+
 TEST_CASE("known of a clip: motion goes onto the skeleton that is given") {
   const Scene scene;
   Skeleton larger = scene.truth.skeleton;

@@ -39,6 +39,8 @@ struct KnownOfClip {
   std::optional<Skeleton> skeleton;
   AssumedView view = {};   ///< what is known of the camera that is assumed
   AssumedView found = {};  ///< what was found out of it besides; `view` holds
+  /// Whether the joints are a detector's keypoints: they are taken for no better than usual.
+  bool detected = false;
 
   /// The camera, or the one that is assumed for that track.
   Camera camera_of(const Track2d& track, const Modalities& modalities) const {
