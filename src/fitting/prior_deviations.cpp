@@ -44,6 +44,12 @@ MatrixD turn_deviations_rad(const PosePrior& prior, const Modalities& features,
   return result;
 }
 
+MatrixD fitted_turn_deviations_rad(const PosePrior& prior, const Modalities& features,
+                                   const TrackFitSettings& settings) {
+  return turn_deviations_rad(prior, features, settings)
+      .cwiseMax(settings.turn_deg * kRadiansPerDegree);
+}
+
 double root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities& features,
                                         const TrackFitSettings& settings) {
   if (!prior.has_deviation() || prior.mean.rows() == 0) return settings.root_m_s2;

@@ -13,6 +13,11 @@ namespace mcdbn {
 MatrixD turn_deviations_rad(const PosePrior& prior, const Modalities& features,
                             const TrackFitSettings& settings);
 
+/// The same as the fit takes them: no smaller than the settings' typical ones. A prior that is
+/// surer than that is wrong by more than it says on people whom it does not know.
+MatrixD fitted_turn_deviations_rad(const PosePrior& prior, const Modalities& features,
+                                   const TrackFitSettings& settings);
+
 /// How much the change of the prior's root velocity is off: its deviation, RMS over the clip,
 /// within the time that errors last. @return m/s² on a 1.7 m body
 double root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities& features,

@@ -138,7 +138,7 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
   // From where the solution before ended it would not leave a valley that few frames had led into.
   point_.turns.setZero();
   if (!past_) point_.ground_m = evidence_->ground(point_);
-  clip.turn_deviation_rad = turn_deviations_rad(prior_, modalities_, settings_);
+  clip.turn_deviation_rad = fitted_turn_deviations_rad(prior_, modalities_, settings_);
   clip.root_m_s2 = root_m_s2;
   clip.body_unknown = body_unknown_;
   clip.mean_lean = mean_lean_;

@@ -81,7 +81,7 @@ class ClipFit {
     mean_ = features_;
     evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, camera_);
     PosteriorClip& clip = evidence_->clip;
-    clip.turn_deviation_rad = turn_deviations_rad(prior, modalities_, settings);
+    clip.turn_deviation_rad = fitted_turn_deviations_rad(prior, modalities_, settings);
     clip.root_m_s2 = root_acceleration_deviation_m_s2(prior, modalities_, settings);
     clip.body_unknown = !own_skeleton;
     clip.camera = doubt_of(known, modalities_, track, settings);
@@ -104,7 +104,7 @@ class ClipFit {
                             const PosteriorDraws& draws) {
     settings = settings_of_draws(settings);
     const PosteriorPoint likeliest = point_;
-    evidence_->clip.turn_deviation_rad = turn_deviations_rad(prior, modalities_, settings);
+    evidence_->clip.turn_deviation_rad = fitted_turn_deviations_rad(prior, modalities_, settings);
     std::vector<Motion> motions;
     for (const PosteriorPoint& point :
          posterior_draws(evidence_->clip, rays_, settings, likeliest, draws.count, draws.seed)) {

@@ -65,7 +65,13 @@ struct Scene {
     return modalities.encode_pose(wrong, known.camera->camera_from_world);
   }
 
-  FittedClip fit(const std::optional<TrackFitSettings>& settings = TrackFitSettings{}) const {
+  /// Which believe any prior as far as it says.
+  static TrackFitSettings believing() {
+    TrackFitSettings settings;
+    settings.turn_deg = 0.1;
+    return settings;
+  }
+  FittedClip fit(const std::optional<TrackFitSettings>& settings = believing()) const {
     return fit_to_track(prior, modalities, track, known, settings);
   }
   /// RMS by which a joint's standardized orientation is off `from` in some frames.
@@ -117,6 +123,14 @@ TEST_CASE("fit to track: the surer the prior, the nearer the answer to its mean"
     before = moved;
   }
   CHECK(hand_off_cm(scene.fit().motion) < 0.3 * wrong_cm);
+}
+
+TEST_CASE("fit to track: a prior that is surer than usual is believed as a usual one") {
+  Scene scene;
+  scene.prior.deviation.setZero();
+  const TrackFitSettings usual;
+  CHECK(scene.off(scene.fit(usual).motion, scene.prior.mean, "LeftForeArm") >
+        0.3F * scene.wrong("LeftForeArm"));
 }
 
 TEST_CASE("fit to track: each joint moves as far as its own features' deviation lets it") {
