@@ -80,13 +80,9 @@ void SlidingFit::take_prior(const PosePrior& prior) {
 /// Where the track shows the root of the body as the prior turns it.
 MatrixD SlidingFit::placed_root(const Track2d& track, const MatrixD& velocity_m_s,
                                 double velocity_error_m_s2) const {
-  const MatrixD all =
-      joint_positions(decoded(mean_, body_, camera_, MatrixD::Zero(mean_.rows(), 3)));
-  const MatrixD zero = all.middleCols(3 * body_.find(modalities_.root_name()), 3);
-  MatrixD relative(all.rows(), 3 * std::ssize(names_));
-  for (std::size_t i = 0; i < names_.size(); ++i)
-    relative.middleCols(3 * static_cast<Eigen::Index>(i), 3) =
-        all.middleCols(3 * body_.find(names_[i]), 3) - zero;
+  const MatrixD relative =
+      positions_about(modalities_.root_name(), names_,
+                      decoded(mean_, body_, camera_, MatrixD::Zero(mean_.rows(), 3)));
   const MatrixD root =
       root_trajectory(relative, track_rays(names_, track, camera_), camera_,
                       units_per_m_ * velocity_m_s * camera_.camera_from_world, velocity_error_m_s2);

@@ -71,7 +71,9 @@ class ClipFit {
   }
 
   void place_root() {
-    root_ = root_trajectory(relative_positions(), track_, camera_, velocity_, velocity_error_m_s2_);
+    root_ = root_trajectory(positions_about(modalities_.root_name(), names_,
+                                            decoded(MatrixD::Zero(features_.rows(), 3))),
+                            track_, camera_, velocity_, velocity_error_m_s2_);
   }
 
   /// @param known as the constructor's; without a skeleton its proportions are unknown
@@ -218,17 +220,6 @@ class ClipFit {
   Motion decoded(const MatrixD& root) const {
     return modalities_.pose_features.decode(features_, camera_.camera_from_world, skeleton_,
                                             modalities_.fps, root);
-  }
-
-  /// Of the tracked joints about the root. @return [frames x 3·names]
-  MatrixD relative_positions() const {
-    const MatrixD all = joint_positions(decoded(MatrixD::Zero(features_.rows(), 3)));
-    const MatrixD zero = all.middleCols(3 * skeleton_.find(modalities_.root_name()), 3);
-    MatrixD positions(all.rows(), 3 * static_cast<Eigen::Index>(names_.size()));
-    for (std::size_t i = 0; i < names_.size(); ++i)
-      positions.middleCols(3 * static_cast<Eigen::Index>(i), 3) =
-          all.middleCols(3 * skeleton_.find(names_[i]), 3) - zero;
-    return positions;
   }
 
   const Modalities& modalities_;

@@ -68,27 +68,19 @@ class BvhStream : public FrameStream {
   Skeleton skeleton_;
 };
 
-class CsvStream : public FrameStream {
+/// A text for each frame, with its number and time.
+class NumberedStream : public FrameStream {
  public:
-  CsvStream(std::ostream& out, double fps) : out_(out), fps_(fps) {}
+  NumberedStream(std::ostream& out, double fps) : out_(out), fps_(fps) {}
+  void finish() override {}
 
-  void write(const Skeleton& skeleton, const RowVectorD& channels) override {
-    std::string text;
-    if (frames_ == 0) {
-      text = "frame,time_s";
-      for (const Joint& joint : skeleton.joints) {
-        require_csv_name(joint.name);
-        text += fmt::format(",{0}_x,{0}_y,{0}_z", joint.name);
-      }
-      text += '\n';
-    }
-    text += fmt::format("{},{:.6g}", frames_, static_cast<double>(frames_) / fps_);
-    for (const double place : places_of(skeleton, channels)) text += fmt::format(",{:.6g}", place);
-    text += '\n';
+ protected:
+  long long frame() const { return frames_; }
+  double time_s() const { return static_cast<double>(frames_) / fps_; }
+  void put_frame(const std::string& text) {
     put(out_, text);
     ++frames_;
   }
-  void finish() override {}
 
  private:
   std::ostream& out_;
@@ -96,9 +88,30 @@ class CsvStream : public FrameStream {
   long long frames_ = 0;
 };
 
-class JsonStream : public FrameStream {
+class CsvStream : public NumberedStream {
  public:
-  JsonStream(std::ostream& out, double fps) : out_(out), fps_(fps) {}
+  using NumberedStream::NumberedStream;
+
+  void write(const Skeleton& skeleton, const RowVectorD& channels) override {
+    std::string text;
+    if (frame() == 0) {
+      text = "frame,time_s";
+      for (const Joint& joint : skeleton.joints) {
+        require_csv_name(joint.name);
+        text += fmt::format(",{0}_x,{0}_y,{0}_z", joint.name);
+      }
+      text += '\n';
+    }
+    text += fmt::format("{},{:.6g}", frame(), time_s());
+    for (const double place : places_of(skeleton, channels)) text += fmt::format(",{:.6g}", place);
+    text += '\n';
+    put_frame(text);
+  }
+};
+
+class JsonStream : public NumberedStream {
+ public:
+  using NumberedStream::NumberedStream;
 
   void write(const Skeleton& skeleton, const RowVectorD& channels) override {
     const RowVectorD places = places_of(skeleton, channels);
@@ -107,19 +120,12 @@ class JsonStream : public FrameStream {
       joints[skeleton.joints[static_cast<std::size_t>(j)].name] = {places[3 * j], places[3 * j + 1],
                                                                    places[3 * j + 2]};
     const nlohmann::ordered_json line = {
-        {"frame", frames_},
-        {"time_s", static_cast<double>(frames_) / fps_},
+        {"frame", frame()},
+        {"time_s", time_s()},
         {"channels", std::vector<double>(channels.begin(), channels.end())},
         {"joints", std::move(joints)}};
-    put(out_, line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-    ++frames_;
+    put_frame(line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   }
-  void finish() override {}
-
- private:
-  std::ostream& out_;
-  double fps_;
-  long long frames_ = 0;
 };
 
 }  // namespace

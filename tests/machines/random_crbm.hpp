@@ -23,4 +23,17 @@ inline CrbmParameters random_crbm(const CrbmShape& shape, unsigned seed, float d
   return p;
 }
 
+/// The same with entries of the same size whatever the shape.
+inline CrbmParameters random_layer(std::size_t visible, std::size_t hidden, std::size_t order,
+                                   VisibleKind kind, unsigned seed) {
+  CrbmParameters p = CrbmParameters::zeros({visible, hidden, order, kind});
+  p.W = random_matrix(visible, hidden, seed, 0.4F);
+  p.A = random_matrix(order * visible, visible, seed + 1, 0.1F);
+  p.B = random_matrix(order * visible, hidden, seed + 2, 0.2F);
+  p.a = random_matrix(1, visible, seed + 3, 0.3F);
+  p.b = random_matrix(1, hidden, seed + 4, 0.3F);
+  p.visible_mean = (0.5F * (random_matrix(1, visible, seed + 5).array() + 1.0F)).matrix();
+  return p;
+}
+
 }  // namespace mcdbn::test

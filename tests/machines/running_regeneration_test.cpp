@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "device/every_device.hpp"
+#include "machines/random_crbm.hpp"
 #include "machines/two_modalities.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -19,27 +20,15 @@ namespace {
 constexpr std::size_t kTrack = 6, kPose = 9, kHidden = 7, kTop = 5, kShared = 4;
 
 /// Layers of unequal orders, so that each needs a history of its own length.
-CrbmParameters layer(std::size_t visible, std::size_t hidden, std::size_t order, VisibleKind kind,
-                     unsigned seed) {
-  CrbmParameters p = CrbmParameters::zeros({visible, hidden, order, kind});
-  p.W = random_matrix(visible, hidden, seed, 0.4F);
-  p.A = random_matrix(order * visible, visible, seed + 1, 0.1F);
-  p.B = random_matrix(order * visible, hidden, seed + 2, 0.2F);
-  p.a = random_matrix(1, visible, seed + 3, 0.3F);
-  p.b = random_matrix(1, hidden, seed + 4, 0.3F);
-  p.visible_mean = (random_matrix(1, visible, seed + 5).array() + 1.0F) / 2.0F;
-  return p;
-}
-
 Mcdbn network(Device& device, std::size_t look_ahead) {
-  CrbmParameters lowest_pose = layer(kPose, kHidden, 4, VisibleKind::gaussian, 30);
+  CrbmParameters lowest_pose = random_layer(kPose, kHidden, 4, VisibleKind::gaussian, 30);
   lowest_pose.visible_deviation = MatrixF::Constant(1, kPose, 0.5F);
   lowest_pose.visible_deviation(0, 2) = 1.5F;
   Cdbn track, pose;
-  track.layers.emplace_back(device, layer(kTrack, kHidden, 1, VisibleKind::gaussian, 10));
-  track.layers.emplace_back(device, layer(kHidden, kTop, 2, VisibleKind::binary, 20));
+  track.layers.emplace_back(device, random_layer(kTrack, kHidden, 1, VisibleKind::gaussian, 10));
+  track.layers.emplace_back(device, random_layer(kHidden, kTop, 2, VisibleKind::binary, 20));
   pose.layers.emplace_back(device, lowest_pose);
-  pose.layers.emplace_back(device, layer(kHidden, kTop, 1, VisibleKind::binary, 40));
+  pose.layers.emplace_back(device, random_layer(kHidden, kTop, 1, VisibleKind::binary, 40));
   const MrbmParameters mrbm = mrbm_of(
       {random_matrix(kTop, kShared, 50, 2.0F), random_matrix(kTop, kShared, 51, 2.0F)},
       {random_matrix(1, kTop, 52), random_matrix(1, kTop, 53)}, random_matrix(1, kShared, 54));

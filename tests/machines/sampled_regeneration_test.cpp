@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
+#include "machines/random_crbm.hpp"
 #include "machines/regeneration_reference.hpp"
 #include "machines/two_modalities.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -18,18 +19,6 @@ using reference::misfit;
 
 namespace {
 
-CrbmParameters layer(std::size_t visible, std::size_t hidden, std::size_t order, VisibleKind kind,
-                     unsigned seed) {
-  CrbmParameters p = CrbmParameters::zeros({visible, hidden, order, kind});
-  p.W = random_matrix(visible, hidden, seed, 0.4F);
-  p.A = random_matrix(order * visible, visible, seed + 1, 0.1F);
-  p.B = random_matrix(order * visible, hidden, seed + 2, 0.2F);
-  p.a = random_matrix(1, visible, seed + 3, 0.3F);
-  p.b = random_matrix(1, hidden, seed + 4, 0.3F);
-  p.visible_mean = (0.5F * (random_matrix(1, visible, seed + 5).array() + 1.0F)).matrix();
-  return p;
-}
-
 MrbmParameters mrbm(std::size_t track, std::size_t pose, std::size_t hidden) {
   return mrbm_of({random_matrix(track, hidden, 50, 2.0F), random_matrix(pose, hidden, 51, 2.0F)},
                  {random_matrix(1, track, 52), random_matrix(1, pose, 53)},
@@ -41,8 +30,8 @@ constexpr VisibleKind kGaussian = VisibleKind::gaussian, kBinary = VisibleKind::
 /// Codes of equal size, so that one modality's in the other's place would fit. The 2D stack needs
 /// three frames before its first code, a layer of the 3D stack four.
 reference::Network two_layers() {
-  return {{layer(6, 5, 2, kGaussian, 10), layer(5, 5, 1, kBinary, 20)},
-          {layer(6, 5, 2, kGaussian, 30), layer(5, 5, 4, kBinary, 40)},
+  return {{random_layer(6, 5, 2, kGaussian, 10), random_layer(5, 5, 1, kBinary, 20)},
+          {random_layer(6, 5, 2, kGaussian, 30), random_layer(5, 5, 4, kBinary, 40)},
           mrbm(5, 5, 4),
           2,
           3};
@@ -50,7 +39,11 @@ reference::Network two_layers() {
 
 /// A single layer, as the default model has; here the 2D stack needs more frames than the 3D one.
 reference::Network one_layer() {
-  return {{layer(6, 7, 3, kGaussian, 60)}, {layer(9, 5, 1, kGaussian, 70)}, mrbm(7, 5, 8), 1, 4};
+  return {{random_layer(6, 7, 3, kGaussian, 60)},
+          {random_layer(9, 5, 1, kGaussian, 70)},
+          mrbm(7, 5, 8),
+          1,
+          4};
 }
 
 Mcdbn on(Device& device, const reference::Network& network) {

@@ -68,6 +68,11 @@ struct Scene {
     placement.fit->solutions = 1;
     return placement;
   }
+  /// A detector's, in place of the model's joints.
+  Track2d keypoints() const {
+    return project_keypoints(clip, skeleton_roles(clip.skeleton), joint_set("COCO_17").keypoints,
+                             camera);
+  }
   Model model(Device& device) const {
     return {quiet_network(device, modalities), modalities, {}, {}};
   }
@@ -186,8 +191,7 @@ TEST_CASE("live: a detector's keypoints as the whole clip has them, exchanged si
   on_every_device([](Device& device) {
     Scene scene;
     const Model model = scene.model(device);
-    scene.track = project_keypoints(scene.clip, skeleton_roles(scene.clip.skeleton),
-                                    joint_set("COCO_17").keypoints, scene.camera);
+    scene.track = scene.keypoints();
     ClipPlacement placement = scene.placement();
     const auto got = [&] {
       LiveRegeneration live(model, scene.track, placement);
@@ -211,8 +215,7 @@ TEST_CASE("live, and the whole clip: keypoints are a detector's, whether somebod
   on_every_device([](Device& device) {
     Scene scene;
     const Model model = scene.model(device);
-    scene.track = project_keypoints(scene.clip, skeleton_roles(scene.clip.skeleton),
-                                    joint_set("COCO_17").keypoints, scene.camera);
+    scene.track = scene.keypoints();
     ClipPlacement placement = scene.placement();
     placement.fit = TrackFitSettings{};  // several solutions: they would find out
     placement.fit->detector = 0.05;      // that it is better than this
