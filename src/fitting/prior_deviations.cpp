@@ -59,4 +59,9 @@ double root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities
   return std::max(kLeastAcceleration_m_s2, std::sqrt(variance) / settings.lasting_s);
 }
 
+double fitted_root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities& features,
+                                               const TrackFitSettings& settings) {
+  return std::max(settings.root_m_s2, root_acceleration_deviation_m_s2(prior, features, settings));
+}
+
 }  // namespace mcdbn

@@ -23,4 +23,8 @@ MatrixD fitted_turn_deviations_rad(const PosePrior& prior, const Modalities& fea
 double root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities& features,
                                         const TrackFitSettings& settings);
 
+/// The same as the fit takes it, for the same reason: no smaller than the settings' typical one.
+double fitted_root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities& features,
+                                               const TrackFitSettings& settings);
+
 }  // namespace mcdbn

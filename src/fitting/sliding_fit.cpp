@@ -113,7 +113,7 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
   take_prior(prior);
   const PoseFeatures& features = modalities_.pose_features;
   const MatrixD velocity_m_s = features.root_features(mean_).rightCols(3);
-  const double root_m_s2 = root_acceleration_deviation_m_s2(prior_, modalities_, settings_);
+  const double root_m_s2 = fitted_root_acceleration_deviation_m_s2(prior_, modalities_, settings_);
   place_root(track, velocity_m_s, root_m_s2);
 
   MatrixD travelled = MatrixD::Zero(mean_.rows(), 3);

@@ -84,7 +84,7 @@ class ClipFit {
     evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, camera_);
     PosteriorClip& clip = evidence_->clip;
     clip.turn_deviation_rad = fitted_turn_deviations_rad(prior, modalities_, settings);
-    clip.root_m_s2 = root_acceleration_deviation_m_s2(prior, modalities_, settings);
+    clip.root_m_s2 = fitted_root_acceleration_deviation_m_s2(prior, modalities_, settings);
     clip.body_unknown = !own_skeleton;
     clip.camera = doubt_of(known, modalities_, track, settings);
     SeenNoise noise(track_noise_px, camera_, evidence_->usual_depth_m(),

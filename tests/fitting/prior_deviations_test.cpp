@@ -46,3 +46,21 @@ TEST_CASE("prior deviations: a prior that says none has the typical one") {
   const MatrixD turns = turn_deviations_rad(PosePrior(mean), modalities, settings);
   CHECK((turns.array() - std::numbers::pi / 10).abs().maxCoeff() < 1e-12);
 }
+
+TEST_CASE("prior deviations: the fit takes none for smaller than the typical one") {
+  const Modalities modalities = modalities_of({two_second_walk()}, {});
+  const auto columns = std::ssize(modalities.pose_scale.kept_columns());
+  PosePrior prior(MatrixF::Zero(3, columns), MatrixF::Zero(3, columns));
+  TrackFitSettings settings;
+  settings.turn_deg = 18;
+  settings.root_m_s2 = 4;
+  CHECK(fitted_turn_deviations_rad(prior, modalities, settings).minCoeff() ==
+        doctest::Approx(std::numbers::pi / 10));
+  CHECK(fitted_root_acceleration_deviation_m_s2(prior, modalities, settings) == 4);
+  prior.deviation.setConstant(1000);
+  CHECK(fitted_turn_deviations_rad(prior, modalities, settings) ==
+        turn_deviations_rad(prior, modalities, settings));
+  CHECK(fitted_root_acceleration_deviation_m_s2(prior, modalities, settings) ==
+        root_acceleration_deviation_m_s2(prior, modalities, settings));
+  CHECK(root_acceleration_deviation_m_s2(prior, modalities, settings) > 4);
+}

@@ -133,6 +133,25 @@ TEST_CASE("fit to track: a prior that is surer than usual is believed as a usual
         0.3F * scene.wrong("LeftForeArm"));
 }
 
+TEST_CASE("fit to track: a prior that is surer of the velocity than usual is believed as usual") {
+  Scene scene;
+  scene.prior.mean = scene.right;
+  scene.prior.deviation.setZero();
+  const auto& kept = scene.modalities.pose_scale.kept_columns();
+  const int velocity = scene.modalities.pose_features.velocity_feature();
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    if (kept[k] >= velocity)
+      for (int t = 0; t < kFrames; ++t)
+        scene.prior.mean(t, static_cast<Eigen::Index>(k)) += static_cast<float>(std::sin(0.2 * t));
+  const auto off_cm = [&](double least_m_s2) {
+    TrackFitSettings settings;
+    settings.root_m_s2 = least_m_s2;
+    const MatrixD off = path_of(scene.fit(settings).motion, "Hips") - path_of(scene.truth, "Hips");
+    return off.norm() / std::sqrt(kFrames);
+  };
+  CHECK(off_cm(TrackFitSettings{}.root_m_s2) < 0.5 * off_cm(1e-3));
+}
+
 TEST_CASE("fit to track: each joint moves as far as its own features' deviation lets it") {
   Scene scene;
   for (const Eigen::Index column : scene.columns_of("LeftForeArm"))

@@ -89,7 +89,8 @@ struct TrackFitSettings {
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     visit(Setting{"turn", above(0), "degrees",
-                  "standard deviation of an orientation about each axis where the prior says none"},
+                  "standard deviation of an orientation about each axis where the prior says none "
+                  "or less"},
           self.turn_deg);
     // At 1 a joint would turn with its parent and no other way.
     visit(Setting{"likeness", share_below_one(), "",
@@ -98,9 +99,11 @@ struct TrackFitSettings {
     visit(Setting{"lasting", above(0), "seconds",
                   "how long the prior's errors last: frames so near are one witness"},
           self.lasting_s);
-    visit(Setting{"root", above(0), "m/s2",
-                  "deviation of the root's acceleration from the prior's, where that says none"},
-          self.root_m_s2);
+    visit(
+        Setting{
+            "root", above(0), "m/s2",
+            "deviation of the root's acceleration from the prior's, where that says none or less"},
+        self.root_m_s2);
     visit(Setting{"detector", above(0), "",
                   "how far off detectors are for longer than a frame, as a share of the body's "
                   "height"},
