@@ -23,7 +23,8 @@ using namespace mcdbn::test;
 namespace {
 
 PosePrior some_rows(const PosePrior& prior, Eigen::Index first, Eigen::Index count) {
-  return MatrixF(prior.mean.middleRows(first, count));
+  if (!prior.has_deviation()) return MatrixF(prior.mean.middleRows(first, count));
+  return {prior.mean.middleRows(first, count), prior.deviation.middleRows(first, count)};
 }
 
 Track2d some_rows(const Track2d& track, Eigen::Index first, Eigen::Index count) {
@@ -40,14 +41,14 @@ struct Slid {
   Skeleton body;
 };
 Slid slid(const Scene& scene, const std::optional<Skeleton>& skeleton, Eigen::Index lag,
-          const TrackFitSettings& settings = {}) {
+          const TrackFitSettings& settings, const PosePrior& prior) {
   SlidingFit fit(scene.modalities, {scene.known.camera, skeleton}, scene.track, settings);
   const Eigen::Index frames = scene.track.frames();
   Slid result{MatrixD(frames, scene.truth.channels.cols()), {}};
   Eigen::Index first = 0, settled = 0;
   for (Eigen::Index t = 0; t < frames; ++t) {
     const Eigen::Index count = t + 1 - first;
-    fit.solve(some_rows(PosePrior(scene.mean), first + fit.held(), count - fit.held()),
+    fit.solve(some_rows(prior, first + fit.held(), count - fit.held()),
               some_rows(scene.track, first, count),
               track_noise_px(some_rows(scene.track, 0, t + 1)));
     const Eigen::Index done = (t + 1 == frames ? frames : t + 1 - lag) - settled;
@@ -60,6 +61,11 @@ Slid slid(const Scene& scene, const std::optional<Skeleton>& skeleton, Eigen::In
   }
   result.body = fit.body();
   return result;
+}
+
+Slid slid(const Scene& scene, const std::optional<Skeleton>& skeleton, Eigen::Index lag,
+          const TrackFitSettings& settings = {}) {
+  return slid(scene, skeleton, lag, settings, scene.mean);
 }
 
 /// Mean distance from the root, mm of a 1.7 m body.
@@ -95,6 +101,15 @@ TEST_CASE("a sliding fit: eight frames later it is where the whole clip's fit is
   CHECK(from_whole < 10);
   CHECK(from_truth < whole_from_truth + 5);
   CHECK(from_truth < 0.5 * unfitted);
+}
+
+TEST_CASE("a sliding fit: a prior that is surer than usual is believed as one that says nothing") {
+  const Scene scene = make_scene();
+  const auto channels = [&](const PosePrior& prior) {
+    return slid(scene, scene.truth.skeleton, 8, {}, prior).channels;
+  };
+  CHECK(channels({scene.mean, MatrixF::Zero(scene.mean.rows(), scene.mean.cols())}) ==
+        channels(scene.mean));
 }
 
 TEST_CASE("a sliding fit: that a track is exact shows within a second") {
