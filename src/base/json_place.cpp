@@ -1,7 +1,6 @@
 #include "base/json_place.hpp"
 
 #include <fmt/format.h>
-#include <string_view>
 
 #include <algorithm>
 #include <cmath>
@@ -30,9 +29,10 @@ std::string kind_of(const json& value) {
 std::string JsonPlace::where() const {
   constexpr std::size_t kLongest = 100;  // of a path; keys may be of any length
   if (path_.empty()) return file_;
-  const std::string_view path = path_;
-  if (path.size() <= kLongest) return fmt::format("{}: {}", file_, path);
-  return fmt::format("{}: ...{}", file_, path.substr(path.size() - kLongest));
+  const bool whole = path_.size() <= kLongest;
+  std::string path = whole ? path_ : path_.substr(path_.size() - kLongest);
+  std::ranges::replace(path, '\n', ' ');
+  return fmt::format("{}: {}{}", file_, whole ? "" : "...", printable(path));
 }
 
 void JsonPlace::fail(const std::string& what) const {
