@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <utility>
 
 #include "base/counted.hpp"
@@ -115,6 +116,19 @@ void report_assumed(const Camera& camera, bool found) {
 /// What was missing in the track and what was wrong with it.
 void report(const std::filesystem::path& path, const TrackFindings& findings) {
   const TrackFeatures::FillCount& filled = findings.filled;
+  const std::vector<FrameRange>& stretches = findings.stretches.stretches;
+  const auto frames = [](const FrameRange& range) {
+    return range.frames == 1 ? fmt::format("{}", range.first)
+                             : fmt::format("{}-{}", range.first, range.end() - 1);
+  };
+  if (stretches.size() > 1)
+    spdlog::warn(
+        "{}: jumps to another place, as if to another person: frames {} are regenerated each by "
+        "themselves, with one body",
+        path.string(), fmt::join(stretches | std::views::transform(frames), ", "));
+  if (const auto& strays = findings.stretches.strays; !strays.empty())
+    spdlog::warn("{}: somebody elsewhere in frames {}: left out", path.string(),
+                 fmt::join(strays | std::views::transform(frames), ", "));
   if (!findings.swaps.empty())
     spdlog::warn("{}: {}; put right", path.string(), described(findings.swaps));
   if (!filled.unseen.empty())

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "mcdbn/camera/track.hpp"
+
+namespace mcdbn {
+
+struct FrameRange {
+  int first = 0, frames = 0;
+  int end() const { return first + frames; }
+  bool operator==(const FrameRange&) const = default;
+};
+
+/// A track in parts, each of which can be one person's motion.
+struct TrackStretches {
+  std::vector<FrameRange> stretches;  ///< all frames of the track, in order
+  std::vector<FrameRange> strays;  ///< frames that show a body elsewhere, too few to be a stretch
+};
+
+/// Where a whole body is suddenly elsewhere the detector went on with another person, or the film
+/// was cut. The middle of the joints that are seen moves by no more than three quarters of the
+/// body's height on the image and seven heights a second: joints come and go, and a runner's 12 m/s
+/// are as much. What is elsewhere for less than 0.3 s is a stray, and what comes before and after
+/// it may be one stretch. A detector's joints are those of the limbs.
+/// @return one stretch of all frames if there is no such jump, or nothing but jumps; none of no
+///         frames
+TrackStretches find_stretches(const Track2d& track);
+
+/// The frames' joints are missing from then on.
+void leave_out(Track2d& track, const std::vector<FrameRange>& frames);
+
+}  // namespace mcdbn

@@ -1,0 +1,116 @@
+#include "mcdbn/camera/track_stretches.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/numbers.hpp"
+#include "base/upper_median.hpp"
+#include "camera/keypoint_pairs.hpp"
+#include "camera/track_columns.hpp"
+
+namespace mcdbn {
+namespace {
+
+constexpr double kMostAtOnce_heights = 0.75;
+constexpr double kFastest_heights_s = 7;
+constexpr double kShortest_s = 0.3;
+constexpr std::size_t kFewestJoints = 3;
+
+/// A body on the image.
+struct Sighting {
+  int frame = 0;
+  Eigen::Vector2d middle;
+  double size_px = 0;
+};
+
+/// Sightings from `first` to `last` go on from one another.
+struct Run {
+  Sighting first, last;
+};
+
+std::vector<int> body_columns(const Track2d& track) {
+  std::vector<int> columns;
+  for (const LimbPairs& limbs : {leg_pairs(track.keypoints), arm_pairs(track.keypoints)})
+    for (const auto& [left, right] : limbs.columns) columns.insert(columns.end(), {left, right});
+  if (columns.empty())
+    for (int column = 0; column < track.joint_count(); ++column) columns.push_back(column);
+  return columns;
+}
+
+std::vector<Sighting> sightings(const Track2d& track) {
+  const std::vector<int> columns = body_columns(track);
+  std::vector<Sighting> found;
+  std::vector<double> sizes;
+  for (int t = 0; t < track.frames(); ++t) {
+    std::vector<double> x, y;
+    for (const int column : columns) {
+      const Eigen::Vector2d place = pixel_at(track, t, column);
+      if (!(track.confidence(t, column) > 0) || !place.allFinite()) continue;
+      x.push_back(place.x());
+      y.push_back(place.y());
+    }
+    if (x.size() < kFewestJoints) continue;
+    const auto [left, right] = std::ranges::minmax(x);
+    const auto [top, bottom] = std::ranges::minmax(y);
+    sizes.push_back(std::hypot(right - left, bottom - top));
+    found.push_back({t, {upper_median(std::move(x)), upper_median(std::move(y))}, sizes.back()});
+  }
+  // Of whom a frame shows little, or who crouches, the clip says how large people are in it.
+  const double usual = sizes.empty() ? 0 : upper_median(std::move(sizes));
+  for (Sighting& one : found) one.size_px = std::max(one.size_px, usual);
+  return found;
+}
+
+bool goes_on(const Sighting& before, const Sighting& after, double fps) {
+  const double heights =
+      (after.middle - before.middle).norm() / std::max({before.size_px, after.size_px, 1e-9});
+  return heights <= kMostAtOnce_heights + kFastest_heights_s * (after.frame - before.frame) / fps;
+}
+
+std::vector<Run> runs_of(const std::vector<Sighting>& sightings, double fps) {
+  std::vector<Run> runs;
+  for (const Sighting& one : sightings)
+    if (!runs.empty() && goes_on(runs.back().last, one, fps))
+      runs.back().last = one;
+    else
+      runs.push_back({one, one});
+  return runs;
+}
+
+}  // namespace
+
+TrackStretches find_stretches(const Track2d& track) {
+  TrackStretches result;
+  if (track.frames() == 0) return result;
+  const std::vector<Run> runs = runs_of(sightings(track), track.fps);
+  const auto frames = [](const Run& run) { return run.last.frame + 1 - run.first.frame; };
+  const auto is_stray = [&](const Run& run) { return frames(run) < kShortest_s * track.fps; };
+  const bool none_stays = std::ranges::all_of(runs, is_stray);
+  std::vector<Run> kept;
+  for (const Run& run : runs) {
+    if (none_stays) break;
+    if (is_stray(run))
+      result.strays.push_back({run.first.frame, frames(run)});
+    else if (!kept.empty() && goes_on(kept.back().last, run.first, track.fps))
+      kept.back().last = run.last;
+    else
+      kept.push_back(run);
+  }
+  int first = 0;
+  for (std::size_t i = 0; i < std::max<std::size_t>(kept.size(), 1); ++i) {
+    const int end = i + 1 < kept.size() ? kept[i + 1].first.frame : track.frames();
+    result.stretches.push_back({first, end - first});
+    first = end;
+  }
+  return result;
+}
+
+void leave_out(Track2d& track, const std::vector<FrameRange>& frames) {
+  for (const FrameRange& range : frames) {
+    track.confidence.middleRows(range.first, range.frames).setZero();
+    for (MatrixD* values : {&track.x_px, &track.y_px})
+      values->middleRows(range.first, range.frames).setConstant(kNan);
+  }
+}
+
+}  // namespace mcdbn

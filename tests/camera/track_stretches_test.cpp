@@ -1,0 +1,107 @@
+#include "mcdbn/camera/track_stretches.hpp"
+
+#include <doctest/doctest.h>
+
+namespace track_stretches_test {
+
+using namespace mcdbn;
+
+namespace {
+
+constexpr double kHeight_px = 300;
+
+/// Somebody 300 px tall who walks to the right at a height in two seconds, 30 frames a second.
+Track2d walking(int frames) {
+  Track2d track;
+  track.joint_names = {"Hips", "LHand", "RHand", "LFoot", "RFoot"};
+  const double x[]{0, -40, 40, -30, 30}, y[]{150, 140, 145, 300, 0};
+  track.x_px.resize(frames, 5);
+  track.y_px.resize(frames, 5);
+  track.confidence = MatrixD::Ones(frames, 5);
+  for (int t = 0; t < frames; ++t)
+    for (int joint = 0; joint < 5; ++joint) {
+      track.x_px(t, joint) = 400 + kHeight_px * t / 60 + x[joint];
+      track.y_px(t, joint) = 200 + y[joint];
+    }
+  return track;
+}
+
+void move(Track2d& track, int first, int frames, double heights) {
+  track.x_px.middleRows(first, frames).array() += heights * kHeight_px;
+}
+
+}  // namespace
+
+TEST_CASE("stretches: one who goes on is one, whoever comes and goes") {
+  Track2d track = walking(90);
+  CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 90}});
+  track.confidence.middleRows(20, 30).setZero();
+  track.confidence.col(3).tail(20).setZero();
+  CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 90}});
+  track.confidence.setZero();
+  CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 90}});
+  CHECK(find_stretches(walking(1)).stretches == std::vector<FrameRange>{{0, 1}});
+  CHECK(find_stretches(walking(0)).stretches.empty());
+}
+
+TEST_CASE("stretches: who is suddenly elsewhere begins another") {
+  Track2d track = walking(90);
+  move(track, 40, 50, 1.1);
+  CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 40}, {40, 50}});
+  // The frames between in which nobody is seen are the former's.
+  track.confidence.middleRows(37, 3).setZero();
+  move(track, 40, 50, 1);
+  const TrackStretches found = find_stretches(track);
+  CHECK(found.stretches == std::vector<FrameRange>{{0, 40}, {40, 50}});
+  CHECK(found.strays.empty());
+  // In two seconds one can go there.
+  track.confidence.middleRows(0, 37).setZero();
+  track.confidence.middleRows(37, 3).setOnes();
+  track.confidence.topRows(10).setOnes();
+  track.confidence.middleRows(10, 60).setZero();
+  CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 90}});
+}
+
+TEST_CASE("stretches: no runner is cut in two, and nothing where nobody stays") {
+  Track2d track = walking(90);
+  for (int t = 0; t < 90; ++t) move(track, t, 1, 6.0 * t / track.fps);
+  CHECK(find_stretches(track).stretches.size() == 1);
+  for (int t = 45; t < 90; ++t) move(track, t, 1, 60.0 * t / track.fps);
+  CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 90}});
+  CHECK(find_stretches(track).strays.size() == 45);
+  for (int t = 0; t < 45; ++t) move(track, t, 1, 60.0 * t / track.fps);
+  CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 90}});
+  CHECK(find_stretches(track).strays.empty());
+}
+
+TEST_CASE("stretches: some frames elsewhere are strays, and the others are one") {
+  Track2d track = walking(90);
+  move(track, 40, 5, 2);
+  move(track, 60, 1, -3);
+  const TrackStretches found = find_stretches(track);
+  CHECK(found.stretches == std::vector<FrameRange>{{0, 90}});
+  CHECK(found.strays == std::vector<FrameRange>{{40, 5}, {60, 1}});
+  leave_out(track, found.strays);
+  CHECK(track.confidence.rowwise().sum().isApprox([] {
+    Eigen::VectorXd seen = Eigen::VectorXd::Constant(90, 5);
+    seen.segment(40, 5).setZero();
+    seen[60] = 0;
+    return seen;
+  }()));
+  CHECK(track.x_px.row(42).array().isNaN().all());
+  CHECK(track.y_px.row(60).array().isNaN().all());
+}
+
+TEST_CASE("stretches: of a detector's joints those of the limbs tell") {
+  Track2d track = walking(90);
+  track.keypoints.resize(5);
+  using enum JointRole;
+  const JointRole roles[]{pelvis, left_wrist, right_wrist, left_ankle, right_ankle};
+  for (int joint = 0; joint < 5; ++joint) track.keypoints[joint].role = roles[joint];
+  track.x_px.col(0).tail(30).array() += 100 * kHeight_px;
+  CHECK(find_stretches(track).stretches.size() == 1);
+  move(track, 60, 30, 2);
+  CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 60}, {60, 30}});
+}
+
+}  // namespace track_stretches_test

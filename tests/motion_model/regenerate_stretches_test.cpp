@@ -1,0 +1,138 @@
+// A track that jumps to another place: each stretch is a clip of its own, of one body.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "camera/detector_track.hpp"
+#include "features/clip_modalities.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
+#include "mcdbn/motion/skeleton_roles.hpp"
+#include "mcdbn/motion_model/clip_regeneration.hpp"
+#include "mcdbn/synthesis/synthesize.hpp"
+#include "motion_model/recent_track.hpp"
+
+namespace regenerate_stretches_test {
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+constexpr int kFirst = 50, kFrames = 80;
+
+/// A walk whose track goes on elsewhere after 50 frames, and poses that nothing is known of.
+struct Scene {
+  Motion clip = walk();
+  Modalities modalities = modalities_of({clip}, {});
+  Camera camera = place_camera(clip, {});
+  Track2d track = jumping(project_motion(clip, camera));
+  ClipPlacement known{{camera, clip.skeleton}};
+
+  static Motion walk() {
+    SynthesisOptions options;
+    options.seconds = (kFrames + 1) / 30.0;
+    options.fps = 30;
+    Motion motion = synthesize(options);
+    motion.channels.conservativeResize(kFrames, Eigen::NoChange);
+    return motion;
+  }
+  static Track2d jumping(Track2d track) {
+    track.x_px.bottomRows(kFrames - kFirst).array() += 2 * track.height_px;
+    return track;
+  }
+  Track2d keypoints() const {
+    return jumping(project_keypoints(clip, skeleton_roles(clip.skeleton),
+                                     joint_set("COCO_17").keypoints, camera));
+  }
+  std::vector<Motion> regenerated(const Track2d& of, const ClipPlacement& placement,
+                                  TrackFindings* findings = nullptr, int answers = 1) const {
+    const auto single = [&](const MatrixF& features) -> PosePrior {
+      return MatrixF(MatrixF::Zero(features.rows(), modalities.pose_scale.output_dimension()));
+    };
+    const auto all = [&](const MatrixF& features) {
+      std::vector<PosePrior> priors(static_cast<std::size_t>(answers), single(features));
+      for (int i = 0; i < answers; ++i)
+        priors[static_cast<std::size_t>(i)].mean.array() += 0.3F * static_cast<float>(i);
+      return priors;
+    };
+    return regenerate_clip(modalities, of, placement, single, all, findings);
+  }
+};
+
+/// The farthest that a joint is seen from where the track has it.
+double off_px(const Motion& motion, const Camera& camera, const Track2d& track) {
+  const Track2d seen = project_motion(motion, camera);
+  return std::max((seen.x_px - track.x_px).cwiseAbs().maxCoeff(),
+                  (seen.y_px - track.y_px).cwiseAbs().maxCoeff());
+}
+
+}  // namespace
+
+TEST_CASE("regenerate stretches: each is as if it were alone") {
+  const Scene scene;
+  TrackFindings found;
+  const auto got = scene.regenerated(scene.track, scene.known, &found, 2);
+  CHECK(found.stretches.stretches == std::vector<FrameRange>{{0, kFirst}, {kFirst, 30}});
+  REQUIRE(got.size() == 2);
+  for (const FrameRange& range : found.stretches.stretches) {
+    const auto alone = scene.regenerated(some_frames(scene.track, range.first, range.frames),
+                                         scene.known, nullptr, 2);
+    for (std::size_t i = 0; i < 2; ++i)
+      CHECK(got[i].channels.middleRows(range.first, range.frames) == alone[i].channels);
+  }
+  CHECK(got[0].channels != got[1].channels);
+}
+
+TEST_CASE("regenerate stretches: they have the body and the camera of the longest") {
+  const Scene scene;
+  const ClipPlacement nothing_known;
+  for (const bool backwards : {false, true}) {
+    CAPTURE(backwards);
+    Track2d track = scene.track;
+    if (backwards)
+      for (MatrixD* values : {&track.x_px, &track.y_px, &track.confidence})
+        *values = MatrixD(values->colwise().reverse());
+    TrackFindings found, of_longest;
+    const auto got = scene.regenerated(track, nothing_known, &found, 2);
+    const FrameRange longest = found.stretches.stretches.at(backwards ? 1 : 0);
+    REQUIRE(longest.frames == kFirst);
+    const auto alone = scene.regenerated(some_frames(track, longest.first, longest.frames),
+                                         nothing_known, &of_longest, 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(got[i].channels.middleRows(longest.first, kFirst) == alone[i].channels);
+      for (std::size_t joint = 0; joint < got[i].skeleton.joints.size(); ++joint)
+        CHECK(got[i].skeleton.joints[joint].offset == alone[i].skeleton.joints[joint].offset);
+    }
+    CHECK(found.camera.fx_px == of_longest.camera.fx_px);
+    CHECK(found.camera.translation == of_longest.camera.translation);
+    CHECK(off_px(got[0], found.camera, track) < 100);  // the jump is 2160
+  }
+}
+
+TEST_CASE("regenerate stretches: strays are left out, and what is said is of the whole track") {
+  Scene scene;
+  scene.known.uncertainty_draws.count = 2;
+  Track2d track = scene.keypoints();
+  const auto exchange = [](Track2d& of, int first, int frames) {
+    for (const std::string joint : {"hip", "knee", "ankle"})
+      for (MatrixD* values : {&of.x_px, &of.y_px})
+        for (int t = first; t < first + frames; ++t)
+          std::swap((*values)(t, of.find("left_" + joint)),
+                    (*values)(t, of.find("right_" + joint)));
+  };
+  exchange(track, 65, 4);
+  track.y_px.middleRows(20, 3).array() += 3 * track.height_px;
+  TrackFindings found;
+  const auto got = scene.regenerated(track, scene.known, &found);
+  CHECK(found.stretches.strays == std::vector<FrameRange>{{20, 3}});
+  REQUIRE(found.swaps.size() == 1);
+  CHECK(found.swaps[0].first_frame == 65);
+  CHECK(found.swaps[0].last_frame == 68);
+  CHECK(found.uncertainty.rows() == kFrames);
+  CHECK(found.uncertainty.cwiseAbs().minCoeff() >= 0);
+  leave_out(track, found.stretches.strays);
+  CHECK(scene.regenerated(track, scene.known).front().channels == got.front().channels);
+}
+
+}  // namespace regenerate_stretches_test
