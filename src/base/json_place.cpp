@@ -30,9 +30,8 @@ std::string JsonPlace::where() const {
   constexpr std::size_t kLongest = 100;  // of a path; keys may be of any length
   if (path_.empty()) return file_;
   const bool whole = path_.size() <= kLongest;
-  std::string path = whole ? path_ : path_.substr(path_.size() - kLongest);
-  std::ranges::replace(path, '\n', ' ');
-  return fmt::format("{}: {}{}", file_, whole ? "" : "...", printable(path));
+  return fmt::format("{}: {}{}", file_, whole ? "" : "...",
+                     printable_line(whole ? path_ : path_.substr(path_.size() - kLongest)));
 }
 
 void JsonPlace::fail(const std::string& what) const {

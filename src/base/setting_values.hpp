@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/shown.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/base/said_setting.hpp"
 #include "mcdbn/base/settings.hpp"
@@ -36,7 +37,7 @@ void assign_setting(Settings& settings, const SaidSetting& said,
     if (check == RangeCheck::off) setting.range = any_number();
     assign_value(said.who, setting, said.value, member);
   });
-  if (!found) throw ConfigError(fmt::format("{} is no setting", said.who));
+  if (!found) throw ConfigError(fmt::format("{} is no setting", printable_line(said.who)));
 }
 
 /// The number that a text is, the whole of it; a text that is none, as it is.

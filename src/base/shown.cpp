@@ -50,11 +50,15 @@ std::string printable(std::string_view text) {
   return result;
 }
 
+std::string printable_line(std::string text) {
+  std::ranges::replace(text, '\n', ' ');
+  return printable(text);
+}
+
 std::string shown(std::string_view text) {
   constexpr std::size_t kLongest = 40;
-  std::string beginning(text.substr(0, kLongest));
-  std::ranges::replace(beginning, '\n', ' ');
-  return fmt::format("'{}{}'", printable(beginning), text.size() > kLongest ? "..." : "");
+  return fmt::format("'{}{}'", printable_line(std::string(text.substr(0, kLongest))),
+                     text.size() > kLongest ? "..." : "");
 }
 
 }  // namespace mcdbn

@@ -9,6 +9,9 @@ namespace mcdbn {
 /// writing too, and what is no UTF-8 replaced.
 std::string printable(std::string_view text);
 
+/// The same in one line: line ends are spaces.
+std::string printable_line(std::string text);
+
 /// A piece of input in quotes, for messages: not more than its beginning, and printable.
 std::string shown(std::string_view text);
 
