@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "default_model.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/track_stretches.hpp"
 #include "mcdbn/camera/track_summary.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/motion_file.hpp"
@@ -68,6 +69,10 @@ json describe_person(const Track2d& track, long long first_frame) {
     person["first_frame"] = first_frame + summary.first_frame;
     person["last_frame"] = first_frame + summary.last_frame;
   }
+  json jumps = json::array();
+  for (const FrameRange& stretch : find_stretches(track).stretches)
+    if (stretch.first > 0) jumps.push_back(first_frame + stretch.first);
+  person["jumps_to_frames"] = jumps;
   return person;
 }
 

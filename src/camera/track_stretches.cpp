@@ -14,6 +14,7 @@ namespace {
 constexpr double kMostAtOnce_heights = 0.75;
 constexpr double kFastest_heights_s = 7;
 constexpr double kShortest_s = 0.3;
+constexpr double kLookBack_s = 1;
 constexpr std::size_t kFewestJoints = 3;
 
 /// A body on the image.
@@ -67,13 +68,31 @@ bool goes_on(const Sighting& before, const Sighting& after, double fps) {
   return heights <= kMostAtOnce_heights + kFastest_heights_s * (after.frame - before.frame) / fps;
 }
 
-std::vector<Run> runs_of(const std::vector<Sighting>& sightings, double fps) {
+int frames_of(const Run& run) {
+  return run.last.frame + 1 - run.first.frame;
+}
+
+bool is_stray(const Run& run, double fps) {
+  return frames_of(run) < kShortest_s * fps;
+}
+
+/// What goes on from a run behind strays is of that run.
+std::vector<Run> runs_of(const std::vector<Sighting>& sightings, double fps,
+                         std::vector<FrameRange>& strays) {
   std::vector<Run> runs;
-  for (const Sighting& one : sightings)
-    if (!runs.empty() && goes_on(runs.back().last, one, fps))
-      runs.back().last = one;
-    else
+  for (const Sighting& one : sightings) {
+    auto from = runs.rbegin();
+    while (from != runs.rend() && !goes_on(from->last, one, fps) && is_stray(*from, fps) &&
+           one.frame - from->first.frame < kLookBack_s * fps)
+      ++from;
+    if (from == runs.rend() || !goes_on(from->last, one, fps)) {
       runs.push_back({one, one});
+      continue;
+    }
+    from->last = one;
+    for (; runs.rbegin() != from; runs.pop_back())
+      strays.push_back({runs.back().first.frame, frames_of(runs.back())});
+  }
   return runs;
 }
 
@@ -82,20 +101,22 @@ std::vector<Run> runs_of(const std::vector<Sighting>& sightings, double fps) {
 TrackStretches find_stretches(const Track2d& track) {
   TrackStretches result;
   if (track.frames() == 0) return result;
-  const std::vector<Run> runs = runs_of(sightings(track), track.fps);
-  const auto frames = [](const Run& run) { return run.last.frame + 1 - run.first.frame; };
-  const auto is_stray = [&](const Run& run) { return frames(run) < kShortest_s * track.fps; };
-  const bool none_stays = std::ranges::all_of(runs, is_stray);
+  const auto stray = [&](const Run& run) { return is_stray(run, track.fps); };
+  const std::vector<Run> runs = runs_of(sightings(track), track.fps, result.strays);
   std::vector<Run> kept;
-  for (const Run& run : runs) {
-    if (none_stays) break;
-    if (is_stray(run))
-      result.strays.push_back({run.first.frame, frames(run)});
-    else if (!kept.empty() && goes_on(kept.back().last, run.first, track.fps))
-      kept.back().last = run.last;
-    else
-      kept.push_back(run);
+  if (std::ranges::all_of(runs, stray)) {
+    result.strays.clear();
+  } else {
+    for (const Run& run : runs) {
+      if (stray(run))
+        result.strays.push_back({run.first.frame, frames_of(run)});
+      else if (!kept.empty() && goes_on(kept.back().last, run.first, track.fps))
+        kept.back().last = run.last;
+      else
+        kept.push_back(run);
+    }
   }
+  std::ranges::sort(result.strays, {}, &FrameRange::first);
   int first = 0;
   for (std::size_t i = 0; i < std::max<std::size_t>(kept.size(), 1); ++i) {
     const int end = i + 1 < kept.size() ? kept[i + 1].first.frame : track.frames();

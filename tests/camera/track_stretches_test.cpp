@@ -81,6 +81,12 @@ TEST_CASE("stretches: some frames elsewhere are strays, and the others are one")
   const TrackStretches found = find_stretches(track);
   CHECK(found.stretches == std::vector<FrameRange>{{0, 90}});
   CHECK(found.strays == std::vector<FrameRange>{{40, 5}, {60, 1}});
+  // Neither is the beginning lost, nor the end, nor what lies between two.
+  Track2d often = walking(90);
+  for (const int at : {5, 30, 32, 36, 86}) move(often, at, 1, at % 4 == 0 ? -2 : 3);
+  CHECK(find_stretches(often).stretches == std::vector<FrameRange>{{0, 90}});
+  CHECK(find_stretches(often).strays ==
+        std::vector<FrameRange>{{5, 1}, {30, 1}, {32, 1}, {36, 1}, {86, 1}});
   leave_out(track, found.strays);
   CHECK(track.confidence.rowwise().sum().isApprox([] {
     Eigen::VectorXd seen = Eigen::VectorXd::Constant(90, 5);

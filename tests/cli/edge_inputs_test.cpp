@@ -2,9 +2,12 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "base/text_file.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/track_csv.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn;
@@ -90,4 +93,29 @@ TEST_CASE("a track that shows nobody is described, and refused by its name") {
   check_run("regenerate --model " + pipeline.model().string() + " --input " + none + " -o " + out,
             3, none + ": the 2D track never shows");
   CHECK(!fs::exists(out));
+}
+
+TEST_CASE("a track that jumps to another person: info and regenerate say where") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  const fs::path clip = TinyPipeline::instance().motion() / "walk_s02_01.bvh",
+                 csv = folder / "track.csv", out = folder / "out.bvh";
+  REQUIRE(run_cli(fmt::format("project {} -o {}", clip.string(), csv.string())).exit_code == 0);
+  Track2d track = read_track_csv(csv);
+  const int half = track.frames() / 2;
+  REQUIRE(half > 12);
+  track.x_px.bottomRows(track.frames() - half).array() += track.width_px;
+  track.y_px.row(5).array() -= 2 * track.height_px;
+  write_track_csv(csv, track);
+  const auto told = nlohmann::json::parse(run_cli("info --json " + csv.string()).standard_output);
+  CHECK(told.at("people")[0].at("jumps_to_frames") == nlohmann::json{half});
+  const std::string model = TinyPipeline::instance().model().string();
+  const std::string call =
+      fmt::format("regenerate --model {} --input {} -o {}", model, csv.string(), out.string());
+  check_run(call, 0,
+            fmt::format("track.csv: jumps to another place, as if to another person: frames 0-{}, "
+                        "{}-{} are regenerated each by themselves",
+                        half - 1, half, track.frames() - 1));
+  check_run(call, 0, "track.csv: somebody elsewhere in frames 5: left out");
+  CHECK(read_bvh(out).frames() == track.frames());
 }
