@@ -5,7 +5,10 @@
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "base/output_file.hpp"
 
 namespace mcdbn::cli {
 
@@ -17,7 +20,7 @@ struct CommandContext {
   std::uint64_t seed = 1;
   bool quiet = false;
   bool json = false;
-  std::vector<CLI::Option*> outputs;  ///< files to write: mark_output
+  std::vector<std::pair<CLI::Option*, OutputKind>> outputs;  ///< files to write: mark_output
   std::function<void()> run;
 };
 
@@ -28,7 +31,8 @@ void add_json_option(CLI::App& command, CommandContext& context);     ///< --jso
 
 /// The option names a file to write: it is looked at before the command runs, as check_output does,
 /// and must be none that another option reads.
-CLI::Option* mark_output(CLI::Option* option, CommandContext& context);
+CLI::Option* mark_output(CLI::Option* option, CommandContext& context,
+                         OutputKind kind = OutputKind::file);
 
 /// JSON as text; bytes of names in files that are no text become U+FFFD.
 /// @param indent of lines; -1: one line

@@ -33,8 +33,8 @@ void add_json_option(CLI::App& command, CommandContext& context) {
   command.add_flag("--json", context.json, "Print one JSON object to stdout");
 }
 
-CLI::Option* mark_output(CLI::Option* option, CommandContext& context) {
-  context.outputs.push_back(option);
+CLI::Option* mark_output(CLI::Option* option, CommandContext& context, OutputKind kind) {
+  context.outputs.emplace_back(option, kind);
   return option;
 }
 

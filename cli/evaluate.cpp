@@ -8,6 +8,7 @@
 
 #include "base/counted.hpp"
 #include "base/interruption.hpp"
+#include "base/output_file.hpp"
 #include "base/shown.hpp"
 #include "camera_options.hpp"
 #include "commands.hpp"
@@ -82,7 +83,8 @@ void print_coverage(const EvaluationReport& report) {
   const auto& joints = report.joints.by_name();
   const auto worst = std::min_element(joints.begin(), joints.end(), by_share);
   fmt::print("\n90 % intervals that hold the truth: of joints {:.1f} % ({} {:.1f} %)",
-             100 * report.joints.overall().share(), worst->first, 100 * worst->second.share());
+             100 * report.joints.overall().share(), printable(worst->first),
+             100 * worst->second.share());
   if (!report.channels.empty())
     fmt::print(", of the network's channels {:.1f} %", 100 * report.channels.overall().share());
   fmt::print("\n");
@@ -115,6 +117,7 @@ void print_table(const EvaluationReport& report) {
 void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   apply_protocol(options);
   choose_tracks(options);
+  if (!options.report.empty()) make_folder(options.report);  // before the work
   Device device = Device::open({context.platform, context.device});
   const std::filesystem::path model_file = model_or_default(options.model);
   const Model model = load_model(device, model_file);
@@ -137,6 +140,7 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
     report.temperature = run.regeneration.temperature;
     add_training_views(model, run);
     run.progress = show(0.0, kTestShare);
+    run.notices = [](const std::string& notice) { spdlog::warn("{}", with_flags(notice)); };
     const std::vector<ClipResult> results = run_test(model, find_clips(options.test), run);
     for (const ClipResult& result : results) {
       report.joints.add(result.joints);

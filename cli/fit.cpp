@@ -131,6 +131,22 @@ ColumnScale prepare(std::vector<MatrixF>& data, const MatrixInput& input, Visibl
   return scale;
 }
 
+/// A machine that could not be saved where it belongs, as on a full disk, is kept among temporary
+/// files. @return why it could not, and where it lies
+std::string keep_elsewhere(const SavedMachine& machine, const std::filesystem::path& output,
+                           const std::string& why) {
+  const std::filesystem::path elsewhere = make_temporary_folder() / output.filename();
+  if (!elsewhere.has_parent_path()) return why;
+  try {
+    const OutputsAtOnce to_stay;
+    save_machine(elsewhere, machine);
+  } catch (const InputError&) {
+    return why;
+  }
+  return fmt::format("{}; the machine lies in {}: make room and move it to {}", why,
+                     elsewhere.string(), output.string());
+}
+
 /// Fits with the progress, the metrics and the way to stop that all machines share, and saves.
 /// @param fit makes a SavedMachine on a device, given an observer
 template <typename Fit>
@@ -149,9 +165,13 @@ void fit_and_save(const CommandContext& context, const FitOptions& options, Fit&
   saved.config["machine"] = options.machine;
   if (!options.widths.empty()) saved.config["widths"] = options.widths;
   if (!options.orders.empty()) saved.config["orders"] = options.orders;
-  save_machine(options.output, saved);
-  metrics.finish();
-  metrics_file.put_in_place();
+  try {
+    save_machine(options.output, saved);
+    metrics.finish();
+    metrics_file.put_in_place();
+  } catch (const InputError& error) {
+    throw InputError(keep_elsewhere(saved, options.output, error.what()));
+  }
   spdlog::info("{}: fitted in {:.1f} s", options.output.string(), progress.elapsed_s());
 }
 

@@ -6,10 +6,13 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "base/interruption.hpp"
+#include "base/output_file.hpp"
 #include "line_source.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/frame_stream.hpp"
@@ -25,13 +28,15 @@ constexpr const char* kGroup = "Track that is still growing";
 /// Where frames go: a file that is there to be read while it grows, or standard output.
 class FrameOutput {
  public:
-  FrameOutput(const std::filesystem::path& path, const std::string& frames, double fps) {
+  FrameOutput(const std::filesystem::path& path, const std::string& frames, double fps)
+      : name_(path.empty() ? "standard output" : path.string()) {
     const std::string ending = path.extension().string();
     const std::string format = !frames.empty()                           ? frames
                                : ending == ".csv"                        ? kCsv
                                : ending == ".json" || ending == ".jsonl" ? kJson
                                                                          : kBvh;
     if (!path.empty()) {
+      check_replaceable(path);
       file_.open(path, std::ios::binary | std::ios::trunc);
       if (!file_) throw InputError(fmt::format("{}: cannot be written", path.string()));
     }
@@ -42,7 +47,7 @@ class FrameOutput {
   }
   ~FrameOutput() {
     try {
-      stream_->finish();  // what there is, is whole
+      finish();  // what there is, is whole
     } catch (const Error& error) {
       spdlog::error("{}", error.what());
     }
@@ -50,13 +55,34 @@ class FrameOutput {
   FrameOutput(const FrameOutput&) = delete;
   FrameOutput& operator=(const FrameOutput&) = delete;
 
+  /// @throws InputError naming the output
   void write(const Skeleton& skeleton, const std::vector<LiveFrame>& frames) {
-    for (const LiveFrame& frame : frames) stream_->write(skeleton, frame.channels);
-    written_ += frames.size();
+    named([&] {
+      for (const LiveFrame& frame : frames) {
+        stream_->write(skeleton, frame.channels);
+        ++written_;
+      }
+    });
+  }
+  /// No more frames will come. @throws InputError naming the output
+  void finish() {
+    if (!std::exchange(finished_, true)) named([&] { stream_->finish(); });
   }
   std::size_t written() const { return written_; }
 
  private:
+  template <typename Write>
+  void named(const Write& write) {
+    try {
+      write();
+    } catch (const InputError& error) {
+      finished_ = true;  // nothing more can be written
+      throw InputError(fmt::format("{}: {}", name_, error.what()));
+    }
+  }
+
+  std::string name_;
+  bool finished_ = false;
   std::ofstream file_;
   std::unique_ptr<FrameStream> stream_;
   std::size_t written_ = 0;
@@ -88,6 +114,7 @@ class Following {
   std::size_t finish() {
     if (!live_) return 0;
     frames_->write(live_->skeleton(), live_->finish());
+    frames_->finish();
     return frames_->written();
   }
 
@@ -150,13 +177,17 @@ void follow_track(const Model& model, const std::filesystem::path& input,
   // Whoever asks to stop gets the frames that are on their way.
   const InterruptionDeferred until_the_end;
   while (const std::optional<std::string> line = source.next()) {
+    std::optional<TrackFrame> frame;
+    bool broken = false;
     try {
-      if (const auto frame = lines.read(*line)) following.take(*frame, lines);
+      frame = lines.read(*line);
     } catch (const InputError& error) {
       if (!following.has_begun()) throw;
       spdlog::warn("{}: taken as a frame in which nobody was seen", error.what());
-      following.take_broken();
+      broken = true;
     }
+    if (frame) following.take(*frame, lines);
+    if (broken) following.take_broken();
     for (const std::string& notice : lines.take_notices()) spdlog::warn("{}", with_flags(notice));
   }
   const std::size_t written = following.finish();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/counted.hpp"
+#include "clip_options.hpp"
 #include "commands.hpp"
 #include "default_model.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -29,7 +30,7 @@ struct GenerateOptions {
 std::vector<SeedClip> load_seeds(const GenerateOptions& options, double fps) {
   std::vector<SeedClip> seeds;
   for (const std::filesystem::path& file : options.seed_clips)
-    seeds.push_back({file.string(), load_clip(file, {.fps = fps})});
+    seeds.push_back({file.string(), load_clip_with_notices(file, {.fps = fps})});
   return seeds;
 }
 

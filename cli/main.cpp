@@ -13,7 +13,9 @@
 #include <iostream>
 #include <memory>
 #include <new>
+#include <opencv2/core/utils/logger.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/output_file.hpp"
@@ -57,8 +59,11 @@ constexpr const char* kExitCodes =
 class PrintableLines : public spdlog::formatter {
  public:
   void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
+    constexpr std::size_t kLongest = 4000;  // names may be of any length, too
     spdlog::details::log_msg clean = message;
-    const std::string text = printable({message.payload.data(), message.payload.size()});
+    const std::string_view all(message.payload.data(), message.payload.size());
+    const std::string text =
+        printable(all.substr(0, kLongest)) + (all.size() > kLongest ? "..." : "");
     clean.payload = text;
     pattern_.format(clean, line);
   }
@@ -76,6 +81,9 @@ void set_up_messages() {
   spdlog::set_default_logger(spdlog::stderr_logger_st("mcdbn-cl"));
   spdlog::set_formatter(std::make_unique<PrintableLines>());
   spdlog::cfg::load_env_levels();
+  // What OpenCV and FFmpeg say of a damaged film is said in our own words.
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
 }
 
 int report(const std::exception& error, ExitCode code) {
@@ -109,13 +117,16 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
 /// What the command line names beside its outputs: files, folders, and what is none.
 std::vector<std::filesystem::path> inputs_of(const CLI::App& command,
                                              const CommandContext& context) {
+  using Output = decltype(context.outputs)::value_type;
   std::vector<std::filesystem::path> inputs;
   for (const CLI::Option* option : command.get_options()) {
-    if (std::ranges::count(context.outputs, option) > 0) continue;
+    if (std::ranges::count(context.outputs, option, &Output::first) > 0) continue;
     for (const std::string& said : option->results()) {
       inputs.emplace_back(said);
       if (const auto name_end = said.find('='); name_end != std::string::npos)
         inputs.emplace_back(said.substr(name_end + 1));  // --modality NAME=FILE
+      if (const auto file_end = said.rfind(':'); file_end != std::string::npos)
+        inputs.emplace_back(said.substr(0, file_end));  // --camera FILE:NAME
     }
   }
   return inputs;
@@ -124,8 +135,8 @@ std::vector<std::filesystem::path> inputs_of(const CLI::App& command,
 /// The command's outputs come all or none, and replace nothing that it reads.
 void run_command(const CLI::App& command, const CommandContext& context) {
   OutputBatch outputs(inputs_of(command, context));
-  for (const CLI::Option* option : context.outputs)
-    if (!option->empty()) check_output(option->as<std::string>());
+  for (const auto& [option, kind] : context.outputs)
+    if (!option->empty()) check_output(option->as<std::string>(), kind);
   context.run();
   outputs.put_in_place();
 }

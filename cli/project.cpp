@@ -58,7 +58,7 @@ void add_project_command(CLI::App& app, CommandContext& context) {
   command->add_option("clip", options->clip, "BVH file")->required()->type_name("FILE");
   mark_output(
       command->add_option("-o,--output", options->output, "Track to write, a file or a folder"),
-      context)
+      context, OutputKind::file_or_folder)
       ->required()
       ->type_name("FILE");
   add_format_option(*command, options->format,

@@ -194,7 +194,9 @@ ClipPlacement placement_of(const RegenerateOptions& options, const std::optional
   placement.camera = camera;
   placement.view = options.seen_by.view;
   if (!options.skeleton.empty()) {
-    Motion clip = read_motion(options.skeleton);
+    std::vector<std::string> warnings;
+    Motion clip = read_motion(options.skeleton, &warnings);
+    for (const std::string& warning : warnings) spdlog::warn("{}", warning);
     placement.skeleton = std::move(clip.skeleton);
     placement.skeleton_channels = std::move(clip.channels);
   }

@@ -137,7 +137,8 @@ void train_sweep(const CommandContext& context, Device& device, const TrainOptio
   const auto resolve = [&](const SweepConfiguration& varied) {
     return options.settings.resolve(varied);
   };
-  Sweep sweep(device, file.test, clips, resolve, options.run);
+  Sweep sweep(device, file.test, clips, resolve, options.run,
+              [](const std::string& notice) { spdlog::warn("{}", with_flags(notice)); });
   std::vector<nlohmann::ordered_json> records;
   for (const SweepConfiguration& configuration : file.configurations) {
     spdlog::info("configuration {} of {}: {}", records.size() + 1, file.configurations.size(),

@@ -15,7 +15,7 @@ using nlohmann::json;
 
 namespace {
 
-std::string kind_of(const json& value) {
+std::string kind_in_words(const json& value) {
   if (value.is_null()) return "nothing (null)";
   if (value.is_boolean()) return "a truth value";
   if (value.is_string()) return "a text";
@@ -39,27 +39,27 @@ void JsonPlace::fail(const std::string& what) const {
 }
 
 JsonPlace JsonPlace::operator[](const std::string& key) const {
-  if (!is_object()) fail(fmt::format("{} where an object is expected", kind_of(*value_)));
+  if (!is_object()) fail(fmt::format("{} where an object is expected", kind_in_words(*value_)));
   const auto found = value_->find(key);
   if (found == value_->end()) fail(fmt::format("no key {}", shown(key)));
   return {*found, *this, path_.empty() ? key : "." + key};
 }
 
 JsonPlace JsonPlace::at(std::size_t index) const {
-  if (!is_list()) fail(fmt::format("{} where a list is expected", kind_of(*value_)));
+  if (!is_list()) fail(fmt::format("{} where a list is expected", kind_in_words(*value_)));
   if (index >= value_->size()) fail(fmt::format("{} values; more are needed", value_->size()));
   return {(*value_)[index], *this, fmt::format("[{}]", index)};
 }
 
 std::vector<JsonPlace> JsonPlace::list() const {
-  if (!is_list()) fail(fmt::format("{} where a list is expected", kind_of(*value_)));
+  if (!is_list()) fail(fmt::format("{} where a list is expected", kind_in_words(*value_)));
   std::vector<JsonPlace> places;
   for (std::size_t i = 0; i < value_->size(); ++i) places.push_back(at(i));
   return places;
 }
 
 std::vector<std::string> JsonPlace::keys() const {
-  if (!is_object()) fail(fmt::format("{} where an object is expected", kind_of(*value_)));
+  if (!is_object()) fail(fmt::format("{} where an object is expected", kind_in_words(*value_)));
   std::vector<std::string> names;
   for (const auto& [key, value] : value_->items()) names.push_back(key);
   return names;
@@ -67,7 +67,8 @@ std::vector<std::string> JsonPlace::keys() const {
 
 double JsonPlace::number() const {
   if (value_->is_null()) return std::numeric_limits<double>::quiet_NaN();
-  if (!value_->is_number()) fail(fmt::format("{} where a number is expected", kind_of(*value_)));
+  if (!value_->is_number())
+    fail(fmt::format("{} where a number is expected", kind_in_words(*value_)));
   return value_->get<double>();
 }
 
@@ -78,12 +79,14 @@ long long JsonPlace::whole_number() const {
 }
 
 std::string JsonPlace::text() const {
-  if (!value_->is_string()) fail(fmt::format("{} where a text is expected", kind_of(*value_)));
+  if (!value_->is_string())
+    fail(fmt::format("{} where a text is expected", kind_in_words(*value_)));
   return value_->get<std::string>();
 }
 
 std::vector<double> JsonPlace::numbers() const {
-  if (!is_list()) fail(fmt::format("{} where a list of numbers is expected", kind_of(*value_)));
+  if (!is_list())
+    fail(fmt::format("{} where a list of numbers is expected", kind_in_words(*value_)));
   std::vector<double> result;
   result.reserve(value_->size());
   for (std::size_t i = 0; i < value_->size(); ++i) {
@@ -95,7 +98,7 @@ std::vector<double> JsonPlace::numbers() const {
 
 bool JsonPlace::truth() const {
   if (!value_->is_boolean())
-    fail(fmt::format("{} where true or false is expected", kind_of(*value_)));
+    fail(fmt::format("{} where true or false is expected", kind_in_words(*value_)));
   return value_->get<bool>();
 }
 
@@ -107,7 +110,7 @@ double JsonPlace::number(const Range& range) const {
 
 std::size_t JsonPlace::count(const Range& range) const {
   if (!value_->is_number_integer())
-    fail(fmt::format("{} where a whole number is expected", kind_of(*value_)));
+    fail(fmt::format("{} where a whole number is expected", kind_in_words(*value_)));
   number(range);
   return value_->get<std::size_t>();
 }

@@ -123,7 +123,7 @@ MatrixF matrix_of(const Safetensors& content, const std::string& file, const std
 
 enum class Kind { npy, csv, safetensors };
 
-std::optional<Kind> kind_of(const fs::path& path) {
+std::optional<Kind> matrix_kind(const fs::path& path) {
   const std::string extension = extension_of(path);
   if (extension == ".npy") return Kind::npy;
   if (extension == ".csv") return Kind::csv;
@@ -143,11 +143,11 @@ MatrixF read_npy(const fs::path& path) {
 }  // namespace
 
 bool is_matrix_file(const fs::path& path) {
-  return kind_of(path).has_value();
+  return matrix_kind(path).has_value();
 }
 
 MatrixF read_matrix(const fs::path& path, const std::string& tensor) {
-  const auto kind = kind_of(path);
+  const auto kind = matrix_kind(path);
   if (kind == Kind::npy) return read_npy(path);
   if (kind == Kind::csv) return CsvReader(path.string()).read(read_text_file(path));
   if (kind == Kind::safetensors) return matrix_of(read_safetensors(path), path.string(), tensor);
@@ -166,7 +166,7 @@ void write_csv(std::ostream& stream, const MatrixF& values) {
 }
 
 void write_matrix(const fs::path& path, const MatrixF& values, const std::string& tensor) {
-  const auto kind = kind_of(path);
+  const auto kind = matrix_kind(path);
   if (kind == Kind::npy) {
     write_text_file(path, npy_bytes(values));
   } else if (kind == Kind::csv) {

@@ -1,10 +1,13 @@
 #include "base/output_file.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -35,31 +38,17 @@ fs::path temporary_beside(const fs::path& place) {
          fmt::format(".mcdbn-{}-{}{}", ::getpid(), ++count, place.extension().string());
 }
 
-/// @throws InputError if what is there is not to be replaced
-void check_place(const fs::path& path, const std::vector<fs::path>& inputs) {
-  std::error_code error;
-  const fs::file_type type = fs::status(path, error).type();
-  if (type == fs::file_type::not_found) return;
-  if (type == fs::file_type::none)
-    throw InputError(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
-  if (type == fs::file_type::directory) {
-    if (!fs::is_empty(path, error))
-      throw InputError(
-          fmt::format("{}: is a folder with files in it; give another name", path.string()));
-  } else if (type != fs::file_type::regular) {
-    throw InputError(
-        fmt::format("{}: is {}, which is not replaced; name a file", path.string(), kind_of(type)));
-  }
-  for (const fs::path& input : inputs)
-    if (fs::equivalent(input, path, error))
-      throw InputError(
-          fmt::format("{}: is read, so it cannot be written; give another name", path.string()));
-}
-
 /// What it is called in full, whether it exists or not.
 fs::path place_of(const fs::path& path) {
   std::error_code error;
   return fs::weakly_canonical(fs::absolute(path, error), error);
+}
+
+/// A file cannot take the place of a folder, not even of an empty one.
+void refuse_folder(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error))
+    throw InputError(fmt::format("{}: is a folder; name a file", path.string()));
 }
 
 [[noreturn]] void fail_twice(const fs::path& path) {
@@ -91,11 +80,43 @@ std::string_view kind_of(fs::file_type type) {
 
 thread_local OutputBatch* OutputBatch::current = nullptr;
 
+std::optional<OutputBatch::FileIdentity> OutputBatch::identity_of(const fs::path& path) {
+  struct stat found {};
+  if (::stat(path.c_str(), &found) != 0) return {};
+  return FileIdentity{found.st_dev, found.st_ino};
+}
+
+void note_input(const fs::path& path) {
+  if (OutputBatch* batch = OutputBatch::current)
+    if (const auto identity = OutputBatch::identity_of(path)) batch->inputs_.insert(*identity);
+}
+
+void check_replaceable(const fs::path& path) {
+  std::error_code error;
+  const fs::file_type type = fs::status(path, error).type();
+  if (type == fs::file_type::not_found) return;
+  if (type == fs::file_type::none)
+    throw InputError(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
+  if (type == fs::file_type::directory) {
+    if (!fs::is_empty(path, error))
+      throw InputError(
+          fmt::format("{}: is a folder with files in it; give another name", path.string()));
+  } else if (type != fs::file_type::regular) {
+    throw InputError(
+        fmt::format("{}: is {}, which is not replaced; name a file", path.string(), kind_of(type)));
+  }
+  const OutputBatch* batch = OutputBatch::current;
+  const auto identity = OutputBatch::identity_of(path);
+  if (batch != nullptr && identity && batch->inputs_.count(*identity) > 0)
+    throw InputError(
+        fmt::format("{}: is read, so it cannot be written; give another name", path.string()));
+}
+
 OutputFile::OutputFile(const fs::path& path)
     : path_(followed(path.filename().empty() ? path.parent_path() : path)),
       temporary_(temporary_beside(path_)) {
   // As it was named: a link of the system's own, /dev/stdout, leads to no name.
-  check_place(path, OutputBatch::current ? OutputBatch::current->inputs_ : std::vector<fs::path>{});
+  check_replaceable(path);
 }
 
 OutputFile::~OutputFile() {
@@ -104,6 +125,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::put_in_place() {
+  if (!fs::is_directory(temporary_)) refuse_folder(path_);
   if (OutputBatch* batch = OutputBatch::current) {
     if (!batch->places_.insert(place_of(path_)).second) fail_twice(path_);
     batch->waiting_.push_back({temporary_, path_});
@@ -114,11 +136,8 @@ void OutputFile::put_in_place() {
 }
 
 OutputBatch::OutputBatch(const std::vector<fs::path>& inputs) {
-  std::ranges::copy_if(inputs, std::back_inserter(inputs_), [](const fs::path& input) {
-    std::error_code error;
-    return fs::exists(input, error);
-  });
   current = this;
+  std::ranges::for_each(inputs, note_input);
 }
 
 OutputBatch::~OutputBatch() {
@@ -136,8 +155,9 @@ void OutputBatch::put_in_place() {
   made_folders_.clear();
 }
 
-void check_output(const fs::path& path) {
-  check_place(path, OutputBatch::current ? OutputBatch::current->inputs_ : std::vector<fs::path>{});
+void check_output(const fs::path& path, OutputKind kind) {
+  check_replaceable(path);
+  if (kind == OutputKind::file) refuse_folder(path);
   if (path.empty()) throw InputError("an output without a name; name a file");
   if (path == "-")
     throw InputError("-: standard output is not written to; a file of that name is ./-");
@@ -154,15 +174,23 @@ void check_output(const fs::path& path) {
     fail_twice(path);
 }
 
+fs::path make_temporary_folder() {
+  std::error_code error;
+  std::string pattern = (fs::temp_directory_path(error) / "mcdbn-cl-XXXXXX").string();
+  return !error && ::mkdtemp(pattern.data()) != nullptr ? fs::path(pattern) : fs::path();
+}
+
 void make_folder(const fs::path& folder) {
   std::error_code error;
+  const fs::path place = followed(folder.filename().empty() ? folder.parent_path() : folder);
   if (OutputBatch* batch = OutputBatch::current) {
     std::vector<fs::path> missing;  // the deepest first
-    for (fs::path at = folder; !at.empty() && !fs::exists(at, error); at = at.parent_path())
-      if (!at.filename().empty()) missing.push_back(at);
+    for (fs::path at = place; !at.empty() && !fs::exists(fs::symlink_status(at, error));
+         at = at.parent_path())
+      missing.push_back(at);
     batch->made_folders_.insert(batch->made_folders_.end(), missing.rbegin(), missing.rend());
   }
-  fs::create_directories(folder, error);
+  fs::create_directories(place, error);
   if (error)
     throw InputError(
         fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));

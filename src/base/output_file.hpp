@@ -1,12 +1,17 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace mcdbn {
+
+/// What a command may write to one place.
+enum class OutputKind { file, file_or_folder };
 
 /// A file, or a folder of files, that is written under a temporary name beside its place and put
 /// there when it is whole. Whoever reads the place sees what was there before or all of the new.
@@ -25,7 +30,8 @@ class OutputFile {
   /// Where to write: of the same extension and in the same folder as the place.
   const std::filesystem::path& temporary() const { return temporary_; }
   /// At once, or with all others of the OutputBatch if there is one.
-  /// @throws InputError, also if another of the batch has the same place
+  /// @throws InputError, also if another of the batch has the same place, or a file would take that
+  /// of a folder
   void put_in_place();
 
  private:
@@ -33,11 +39,11 @@ class OutputFile {
 };
 
 /// While it lives, the outputs that this thread writes wait beside their places, and
-/// put_in_place() puts them all there: the outputs of a command come all or none.
+/// put_in_place() puts them all there: the outputs of a command come all or none, and replace no
+/// file that it reads.
 class OutputBatch {
  public:
-  /// @param inputs files and folders that are read, and so not to be replaced; others are passed
-  /// over
+  /// @param inputs files that will be read; what is none is passed over
   explicit OutputBatch(const std::vector<std::filesystem::path>& inputs = {});
   /// Removes what was not put in place, with the folders that were made for it.
   ~OutputBatch();
@@ -51,14 +57,20 @@ class OutputBatch {
   friend class OutputFile;
   friend class OutputsAtOnce;
   friend void make_folder(const std::filesystem::path& folder);
-  friend void check_output(const std::filesystem::path& path);
+  friend void check_output(const std::filesystem::path& path, OutputKind kind);
+  friend void note_input(const std::filesystem::path& path);
+  friend void check_replaceable(const std::filesystem::path& path);
 
   struct Waiting {
     std::filesystem::path temporary, place;
   };
+  /// What a file is, whatever it is called: its device and its number there.
+  using FileIdentity = std::pair<std::uintmax_t, std::uintmax_t>;
+  static std::optional<FileIdentity> identity_of(const std::filesystem::path& path);
   static thread_local OutputBatch* current;
 
-  std::vector<std::filesystem::path> inputs_, made_folders_;
+  std::set<FileIdentity> inputs_;
+  std::vector<std::filesystem::path> made_folders_;
   std::set<std::filesystem::path> checked_, places_;
   std::vector<Waiting> waiting_;
 };
@@ -77,16 +89,28 @@ class OutputsAtOnce {
   OutputBatch* held_back_;
 };
 
+/// The file is read: the OutputBatch of this thread, if there is one, replaces it no more. Whoever
+/// reads a file says so (read_text_file does), also of those that a folder or a list led to.
+void note_input(const std::filesystem::path& path);
+
+/// @throws InputError if the place is taken by what is not to be replaced, as OutputFile says
+void check_replaceable(const std::filesystem::path& path);
+
 /// What there is that is no regular file, in words: "a pipe".
 std::string_view kind_of(std::filesystem::file_type type);
 
 /// What can be said of an output before the work is done.
 /// @throws InputError as OutputFile does, for a name that no file can have or that was looked at
-/// before in this OutputBatch, and where the folder that it goes to does not exist or cannot be
-/// written to
-void check_output(const std::filesystem::path& path);
+/// before in this OutputBatch, for a folder where only a file can be written, and where the folder
+/// that it goes to does not exist or cannot be written to
+void check_output(const std::filesystem::path& path, OutputKind kind = OutputKind::file);
 
-/// The folder, and those that it lies in, unless they exist. @throws InputError
+/// A new folder among temporary files: what stood there under a name that is known beforehand could
+/// be somebody's link. @return its place; empty if none can be made
+std::filesystem::path make_temporary_folder();
+
+/// The folder, and those that it lies in, unless they exist; through a link, where it leads.
+/// @throws InputError
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace mcdbn

@@ -26,6 +26,7 @@ std::string read_text_file(const fs::path& path) {
   if (!stream) {
     throw InputError(fmt::format("{}: cannot be opened, check its name and rights", path.string()));
   }
+  note_input(path);
   std::ostringstream text;
   text << stream.rdbuf();
   if (stream.bad()) throw InputError(fmt::format("{}: cannot be read to its end", path.string()));

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "comparison/fitted_baseline.hpp"
+#include "corpus/clip_notices.hpp"
 #include "corpus/people.hpp"
 #include "evaluation/bone_length.hpp"
 #include "evaluation/foot_slide.hpp"
@@ -72,8 +73,9 @@ MatrixD turned(MatrixD positions, const Eigen::Matrix3d& axes_from_world) {
 
 /// A test clip as everyone sees it.
 EncodedClip test_clip(const std::filesystem::path& file, const Model& model,
-                      const TestRunOptions& options, std::uint64_t seed) {
-  EncodedClip clip = encode_clip(file, model.modalities, options.camera, options.keep_first_frame);
+                      const TestRunOptions& options, std::uint64_t seed, ClipNotices& notices) {
+  EncodedClip clip =
+      encode_clip(file, model.modalities, options.camera, options.keep_first_frame, &notices);
   if (options.detector) {
     AugmentedView view = detector_view(clip.motion, *options.detector, seed);
     exchange_sides(view.track, find_side_swaps(view.track));
@@ -309,6 +311,7 @@ std::vector<ClipResult> run_test(const Model& model,
                                  const TestRunOptions& options) {
   const Progress progress(options);
   std::vector<ClipResult> results;
+  ClipNotices found;
   for (const auto& file : files) {
     progress.show("reading clips", 0.0, results.size(), files.size());
     const bool trained_on = was_trained_on(model, file);
@@ -318,11 +321,14 @@ std::vector<ClipResult> run_test(const Model& model,
                       "`include-training`",
                       file.string()));
     ClipResult result;
-    result.truth = test_clip(file, model, options, options.regeneration.seed + results.size());
+    result.truth =
+        test_clip(file, model, options, options.regeneration.seed + results.size(), found);
     result.trained_on = trained_on;
     result.known_person = known_person(model, file);
     results.push_back(std::move(result));
   }
+  if (options.notices)
+    for (const std::string& notice : found.told()) options.notices(notice);
   regenerate_clips(model, options, progress, results);
   regenerate_tracks(model, results);
   if (!options.baselines.empty()) run_baselines(model, options, progress, results);

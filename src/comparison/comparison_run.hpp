@@ -47,6 +47,8 @@ struct TestRunOptions {
   /// Called now and then with what is being done and how much of the run is done; may throw to
   /// stop.
   std::function<void(const std::string& what, double fraction)> progress;
+  /// Called with what is odd about the test clips, line by line.
+  std::function<void(const std::string& notice)> notices;
 };
 
 /// One answer to a clip.

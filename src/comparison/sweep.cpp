@@ -23,8 +23,9 @@ using nlohmann::ordered_json;
 
 /// No configuration is charged for compiling.
 void build_kernels(Device& device, const std::vector<ListedClip>& files,
-                   const TrainingConfig& config, const Sweep::Watch& watch) {
-  const ClipStore clips = load_training_clips(files, config);
+                   const TrainingConfig& config, const Sweep::Watch& watch,
+                   std::vector<std::string>& notices) {
+  const ClipStore clips = load_training_clips(files, config, &notices);
   const TrainingSet data = make_training_set(clips, config);
   train_model(device, data, clips, config, watch ? watch(false) : EpochObserver());
 }
@@ -102,12 +103,13 @@ void Sweep::Log::add(ordered_json record) {
 }
 
 Sweep::Sweep(Device& device, const std::vector<fs::path>& test, std::vector<ListedClip> clips,
-             Resolve resolve, fs::path run)
+             Resolve resolve, fs::path run, Notices notices)
     : device_(device),
       test_(find_clips(test)),
       clips_(std::move(clips)),
       resolve_(std::move(resolve)),
       run_(std::move(run)),
+      notices_(std::move(notices)),
       lock_((require_folder(run_), run_)),
       log_(run_ / "sweep.jsonl") {}
 
@@ -135,13 +137,20 @@ ordered_json Sweep::run(const SweepConfiguration& configuration, const Watch& wa
   return record;
 }
 
-void Sweep::score(const TrainingConfig& config, const Watch& watch, ordered_json& record) const {
+void Sweep::tell(const std::string& notice) {
+  if (notices_ && told_.insert(notice).second) notices_(notice);
+}
+
+void Sweep::score(const TrainingConfig& config, const Watch& watch, ordered_json& record) {
   const fs::path folder = run_ / record["name"].get<std::string>();
-  build_kernels(device_, clips_, shortest(config), watch);
+  std::vector<std::string> notices;
+  build_kernels(device_, clips_, shortest(config), watch, notices);
+  for (const std::string& notice : notices) tell(notice);
   const TrainedRun trained = trained_run(device_, clips_, config, folder, watch);
   TestRunOptions options;
   options.camera = trained.model.modalities.camera;
   options.baselines.clear();
+  options.notices = [this](const std::string& notice) { tell(notice); };
   options.fit.reset();  // it is networks that are compared, not what the track makes of them
   const auto results = run_test(trained.model, test_, options);
   std::vector<ClipScore> scores;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -42,9 +43,13 @@ class Sweep {
   /// kernels. What it returns hears of its epochs and may throw Interrupted to stop the sweep.
   using Watch = std::function<EpochObserver(bool counts)>;
 
+  /// Called with what is odd about the clips, line by line; of several trainings once.
+  using Notices = std::function<void(const std::string& notice)>;
+
   /// @throws InputError if the test clips cannot be used or the folder not be made
   Sweep(Device& device, const std::vector<std::filesystem::path>& test,
-        std::vector<ListedClip> clips, Resolve resolve, std::filesystem::path run);
+        std::vector<ListedClip> clips, Resolve resolve, std::filesystem::path run,
+        Notices notices = {});
 
   /// @return the line, also of a configuration that failed, or was done before
   /// @throws Interrupted, DeviceError: the next one would fail too
@@ -63,14 +68,16 @@ class Sweep {
     std::vector<nlohmann::ordered_json> records_;
   };
 
-  void score(const TrainingConfig& config, const Watch& watch,
-             nlohmann::ordered_json& record) const;
+  void score(const TrainingConfig& config, const Watch& watch, nlohmann::ordered_json& record);
+  void tell(const std::string& notice);
 
   Device& device_;
   std::vector<std::filesystem::path> test_;
   std::vector<ListedClip> clips_;
   Resolve resolve_;
   std::filesystem::path run_;
+  Notices notices_;
+  std::set<std::string> told_;
   FolderLock lock_;
   Log log_;
 };

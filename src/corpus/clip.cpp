@@ -78,11 +78,21 @@ void ClipNotices::tell(std::vector<std::string>& notices) const {
       "{}: dropped the calibration pose of the first frame (`keep-first-frame` keeps it)", whose));
 }
 
+std::vector<std::string> ClipNotices::told() const {
+  std::vector<std::string> notices;
+  tell(notices);
+  return notices;
+}
+
+Motion load_clip(const fs::path& path, const ClipOptions& options, ClipNotices& notices) {
+  if (options.fps != 0) check_range("`fps`, if not 0,", kFrameRate_hz, options.fps);
+  return prepared(read_motion(path, &notices.lines), path, options, notices);
+}
+
 Motion load_clip(const fs::path& path, const ClipOptions& options,
                  std::vector<std::string>* notices) {
-  if (options.fps != 0) check_range("`fps`, if not 0,", kFrameRate_hz, options.fps);
   ClipNotices found;
-  Motion motion = prepared(read_motion(path, &found.lines), path, options, found);
+  Motion motion = load_clip(path, options, found);
   if (notices) found.tell(*notices);
   return motion;
 }

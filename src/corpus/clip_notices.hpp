@@ -16,11 +16,16 @@ class ClipNotices {
   void add_calibration_pose(const std::filesystem::path& file);
   void add(const ClipNotices& others);
   void tell(std::vector<std::string>& notices) const;
+  std::vector<std::string> told() const;
 
  private:
   std::size_t posed_ = 0;
   std::filesystem::path first_posed_;
 };
+
+/// As load_clip with a list of notices, for many clips.
+Motion load_clip(const std::filesystem::path& path, const ClipOptions& options,
+                 ClipNotices& notices);
 
 /// A clip at its own rate. Several threads may call it at once.  @throws InputError as load_clip
 LoadedClip load_clip_as_is(const std::filesystem::path& file, bool keep_first_frame,

@@ -15,12 +15,14 @@ MatrixD root_path(const Motion& motion, const Modalities& modalities) {
 
 EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& modalities,
                         const CameraPlacement& placement, bool keep_first_frame,
-                        std::vector<std::string>* notices) {
+                        ClipNotices* notices) {
   EncodedClip clip;
   clip.file = file;
-  clip.motion = for_skeleton(
-      load_clip(file, {.fps = modalities.fps, .keep_first_frame = keep_first_frame}, notices),
-      modalities.pose_features.skeleton());
+  ClipNotices ignored;
+  clip.motion =
+      for_skeleton(load_clip(file, {.fps = modalities.fps, .keep_first_frame = keep_first_frame},
+                             notices != nullptr ? *notices : ignored),
+                   modalities.pose_features.skeleton());
   clip.camera = place_camera(clip.motion, placement);
   clip.track = project_motion(clip.motion, clip.camera);
   clip.track_features = modalities.encode_track(clip.track, clip.camera);

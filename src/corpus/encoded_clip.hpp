@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "corpus/clip_notices.hpp"
 #include "mcdbn/corpus/augmentation.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/features/modalities.hpp"
@@ -20,10 +21,10 @@ struct EncodedClip {
   MatrixF track_features, pose_features;  ///< [frames x dimension], standardized
 };
 
-/// @throws InputError
+/// @param notices what was odd, if anyone wants to know  @throws InputError
 EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& modalities,
                         const CameraPlacement& placement, bool keep_first_frame = false,
-                        std::vector<std::string>* notices = nullptr);
+                        ClipNotices* notices = nullptr);
 
 /// What another camera saw of other motion, made from that file. The features are those of the pose
 /// alone: whether a network sees the track as it is hangs on its columns.

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <string_view>
 
 #include "base/interruption.hpp"
 #include "base/text_file.hpp"
+#include "drawing/film_file.hpp"
 #include "drawing/render_figure.hpp"
 #include "drawing/render_over.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -205,7 +205,7 @@ double duration_s(const std::vector<Figure>& figures) {
 
 void render_video(const std::vector<Panel>& panels, const std::vector<Figure>& figures,
                   const fs::path& path, double fps) {
-  OutputFile file(path);
+  rendering::FilmWriter film(path, fps);
   const auto frame_at = [&](double t_s) {
     cv::Mat image;
     for (const Panel& panel : panels) {
@@ -220,22 +220,12 @@ void render_video(const std::vector<Panel>& panels, const std::vector<Figure>& f
     }
     return image;
   };
-  cv::VideoWriter writer;
-  const int frames = std::max(1, static_cast<int>(std::lround(duration_s(figures) * fps)));
+  const int frames = rendering::film_frames(duration_s(figures), fps, path);
   for (int i = 0; i < frames; ++i) {
     check_interruption();
-    const cv::Mat image = frame_at(i / fps);
-    if (i == 0 && !writer.open(file.temporary().string(),
-                               cv::VideoWriter::fourcc('m', 'p', '4', 'v'), fps, image.size())) {
-      throw InputError(fmt::format(
-          "{}: the video cannot be opened for writing; check that its folder exists and is "
-          "writable, or write a .png instead",
-          path.string()));
-    }
-    writer.write(image);
+    film.write(frame_at(i / fps));
   }
-  writer.release();
-  file.put_in_place();
+  film.finish();
 }
 
 /// Frames at even times: one row a panel, or two rows of a single one.

@@ -6,56 +6,22 @@
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "base/interruption.hpp"
 #include "base/text_file.hpp"
+#include "drawing/film_file.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/motion/frame_rate.hpp"
 
 namespace mcdbn::rendering {
 namespace {
-
-/// The frames of a film from one on, one after another.
-class Film {
- public:
-  Film(const std::filesystem::path& path, int from) : path_(path) {
-    cv::Mat skipped;
-    if (!std::filesystem::is_regular_file(path) || !capture_.open(path.string()))
-      throw InputError(fmt::format("{}: is not a film that can be read", path.string()));
-    for (int frame = 0; frame < from; ++frame) {
-      check_interruption();
-      if (!capture_.read(skipped))
-        throw InputError(fmt::format("{}: ends before its frame {}", path.string(), from));
-    }
-  }
-  double fps() const {
-    constexpr double kUsual = 30;
-    const double fps = capture_.get(cv::CAP_PROP_FPS);
-    if (fps > 0 && !kFrameRate_hz.contains(fps))
-      throw InputError(fmt::format("{}: says {:g} frames a second, which must be {}",
-                                   path_.string(), fps, kFrameRate_hz.text()));
-    return fps > 0 ? fps : kUsual;
-  }
-  /// An empty image where the film ends.
-  cv::Mat next() {
-    cv::Mat image;
-    capture_.read(image);
-    return image;
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-  cv::VideoCapture capture_;
-};
 
 /// So many frames of the film show some figure.
 int frames_shown(const std::vector<Figure>& figures, double fps) {
   double longest_s = 0;
   for (const Figure& figure : figures)
     longest_s = std::max(longest_s, static_cast<double>(figure.points.rows()) / figure.fps);
-  return std::max(1, static_cast<int>(std::lround(longest_s * fps)));
+  constexpr double kMost = 1e9;  // the film ends before
+  return std::max(1, static_cast<int>(std::min(kMost, std::round(longest_s * fps))));
 }
 
 void draw_figures(cv::Mat& image, const std::vector<Figure>& figures, const Camera& camera,
@@ -65,30 +31,24 @@ void draw_figures(cv::Mat& image, const std::vector<Figure>& figures, const Came
     draw_figure(image, own, figure, figure.frame_at(t_s), Palette::second);
 }
 
-void write_film(Film& film, int frames, const std::vector<Figure>& figures, const Camera& camera,
-                const std::filesystem::path& path) {
-  OutputFile file(path);
-  cv::VideoWriter writer;
+void write_film(FilmReader& film, int frames, const std::vector<Figure>& figures,
+                const Camera& camera, const std::filesystem::path& path) {
+  FilmWriter writer(path, film.fps());
   for (int i = 0; i < frames; ++i) {
     check_interruption();
     cv::Mat image = film.next();
     if (image.empty()) break;
     draw_figures(image, figures, camera, i / film.fps());
-    if (!writer.isOpened() &&
-        !writer.open(file.temporary().string(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'),
-                     film.fps(), image.size()))
-      throw InputError(fmt::format("{}: the video cannot be opened for writing", path.string()));
     writer.write(image);
   }
-  if (!writer.isOpened())
+  if (writer.frames() == 0)
     throw InputError(fmt::format("{}: has no frame to draw over", film.path().string()));
-  writer.release();
-  file.put_in_place();
+  writer.finish();
 }
 
 /// Two rows of frames at even times.
-void write_sheet(Film& film, int frames, const std::vector<Figure>& figures, const Camera& camera,
-                 const std::filesystem::path& path, int columns) {
+void write_sheet(FilmReader& film, int frames, const std::vector<Figure>& figures,
+                 const Camera& camera, const std::filesystem::path& path, int columns) {
   constexpr int kWidth_px = 640;
   std::vector<cv::Mat> strips(2);
   const int times = 2 * columns;
@@ -127,7 +87,7 @@ void render_over(const std::vector<Figure>& figures, const std::filesystem::path
                  const RenderOptions& options) {
   if (!options.camera)
     throw ConfigError("a film is drawn over through the camera that filmed it; give one");
-  Film film(options.over, options.over_from);
+  FilmReader film(options.over, options.over_from);
   const int frames = frames_shown(figures, film.fps());
   if (path.extension() == ".png")
     write_sheet(film, frames, figures, *options.camera, path, options.sheet_columns);

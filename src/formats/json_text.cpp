@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/interruption.hpp"
 #include "base/parsed_json.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -42,8 +43,16 @@ std::string without_nan(std::string_view text) {
 json parse_value(std::string_view text, const std::string& file, long lines_before) {
   if (nests_deeper(text, kDeepestJson))
     throw InputError(fmt::format("{}: nested deeper than any track", file));
+  check_interruption();
+  constexpr std::size_t kLong = 1 << 20;  // bytes
+  std::size_t parts = 0;
+  const auto look_now_and_then = [&](int, json::parse_event_t, json&) {
+    constexpr std::size_t kEvery = 4096;
+    if (++parts % kEvery == 0) check_interruption();
+    return true;
+  };
   try {
-    return json::parse(text);
+    return text.size() < kLong ? json::parse(text) : json::parse(text, look_now_and_then);
   } catch (const json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     const auto line = 1 + lines_before + std::count(text.begin(), end, '\n');

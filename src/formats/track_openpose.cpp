@@ -3,6 +3,7 @@
 // Facts: OpenPose's doc/02_output.md.
 #include <fmt/format.h>
 
+#include "base/interruption.hpp"
 #include "base/text_file.hpp"
 #include "formats/frame_numbers.hpp"
 #include "formats/joint_naming.hpp"
@@ -117,9 +118,11 @@ void write(const fs::path& path, const Track2d& track) {
       path.filename().empty() ? path.parent_path().filename().string() : path.filename().string();
   {
     const OutputsAtOnce into_folder;
-    for (int frame = 0; frame < track.frames(); ++frame)
+    for (int frame = 0; frame < track.frames(); ++frame) {
+      check_interruption();
       write_text_file(folder.temporary() / fmt::format("{}_{:012}_keypoints.json", name, frame),
                       frame_text(track, frame));
+    }
   }
   folder.put_in_place();
 }

@@ -1,10 +1,8 @@
 #include "mcdbn/motion_model/run_folder.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -40,14 +38,6 @@ bool holds_training(const fs::path& path) {
   for (const char* name : kResults)
     if (fs::exists(path / name)) return true;
   return fs::exists(path / kUnfinished);
-}
-
-/// A new folder among temporary files: what stood there under a name that is known beforehand could
-/// be somebody's link. Empty if none can be made.
-fs::path folder_elsewhere() {
-  std::error_code error;
-  std::string pattern = (fs::temp_directory_path(error) / "mcdbn-cl-XXXXXX").string();
-  return !error && ::mkdtemp(pattern.data()) != nullptr ? fs::path(pattern) : fs::path();
 }
 
 }  // namespace
@@ -86,18 +76,27 @@ RunFolder RunFolder::begin(const fs::path& path, const TrainingConfig& config,
   run.config_ = config;
   run.clips_ = clips;
   run.begun_here_ = true;
+  try {
+    run.note_beginning(start);
+  } catch (...) {
+    run.take_back();  // of a full disk nothing is left that stands in the way later
+    throw;
+  }
+  return run;
+}
+
+void RunFolder::note_beginning(const fs::path& start) {
   std::error_code error;
-  fs::remove_all(run.unfinished(), error);
-  make_folder(run.unfinished());
-  write_text_file(run.unfinished() / kResults[0], settings_toml(config));
+  fs::remove_all(unfinished(), error);
+  make_folder(unfinished());
+  write_text_file(unfinished() / kResults[0], settings_toml(config_));
   if (!start.empty()) {
     const TrainingClip file = identify_clip(start);
     require_utf8(file.path, file.path + ": its name");
-    run.started_from_ = {file.path, file.fingerprint};
-    write_text_file(run.start_model(), read_text_file(start));
+    started_from_ = {file.path, file.fingerprint};
+    write_text_file(start_model(), read_text_file(start));
   }
-  write_run_record(run.unfinished() / kRunFile, {config, clips, run.started_from_});
-  return run;
+  write_run_record(unfinished() / kRunFile, {config_, clips_, started_from_});
 }
 
 RunFolder RunFolder::resume(const fs::path& path) {
@@ -151,7 +150,7 @@ void RunFolder::complete(const Model& model) {
     failure = save(file);
   }
   if (failure) {
-    const fs::path elsewhere = folder_elsewhere() / kModelFile;
+    const fs::path elsewhere = make_temporary_folder() / kModelFile;
     if (!elsewhere.has_parent_path() || save(elsewhere))
       throw InputError(fmt::format(
           "{}; make room, then go on from the last checkpoint: mcdbn-cl train --resume {}",

@@ -37,11 +37,16 @@ TEST_CASE("what is no regular file is not replaced") {
   const test::ScratchFolder folder;
   REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
   fs::create_symlink("pipe", folder / "link");
-  for (const fs::path& path : {folder / "pipe", folder / "link", fs::path("/dev/null")}) {
+  const auto check_refused = [](const fs::path& path, const std::string& kind) {
     CAPTURE(path);
-    CHECK_THROWS_AS(write_text_file(path, "x"), InputError);
-    CHECK_THROWS_AS(check_output(path), InputError);
-  }
+    const std::string words =
+        path.string() + ": is " + kind + ", which is not replaced; name a file";
+    CHECK_THROWS_WITH_AS(write_text_file(path, "x"), words.c_str(), InputError);
+    CHECK_THROWS_WITH_AS(check_output(path), words.c_str(), InputError);
+  };
+  check_refused(folder / "pipe", "a pipe");
+  check_refused(folder / "link", "a pipe");
+  check_refused("/dev/null", "a device");
   CHECK(fs::is_fifo(folder / "pipe"));
   CHECK(fs::is_character_file("/dev/null"));
   fs::create_symlink("loop", folder / "loop");
@@ -111,6 +116,21 @@ TEST_CASE("outputs of a batch come all or none") {
   CHECK(read_text_file(folder / "a.txt") == "without a batch");
 }
 
+TEST_CASE("a folder is made where a link leads, and a link is never taken away") {
+  const test::ScratchFolder folder;
+  fs::create_symlink("made/inside", folder / "link");
+  fs::create_symlink("nowhere", folder / "other");
+  folder.write("file", "x");
+  {
+    const OutputBatch batch;
+    make_folder(folder / "link/");
+    CHECK(fs::is_directory(folder / "made/inside"));
+    CHECK_THROWS_AS(make_folder(folder / "other/inside"), InputError);
+    CHECK_THROWS_AS(make_folder(folder / "file"), InputError);
+  }
+  CHECK(test::entries_of(folder / "") == std::set<std::string>{"link", "other", "file"});
+}
+
 TEST_CASE("a batch does not replace what is read, whatever it is called") {
   const test::ScratchFolder folder;
   const fs::path input = folder.write("input.txt", "read");
@@ -125,6 +145,33 @@ TEST_CASE("a batch does not replace what is read, whatever it is called") {
   }
   CHECK_NOTHROW(check_output(folder / "output.txt"));
   CHECK_NOTHROW(check_output(folder / "absent"));
+}
+
+TEST_CASE("a batch does not replace what was read while it lives, from a folder or a list") {
+  const test::ScratchFolder folder;
+  fs::create_directory(folder / "frames");
+  const fs::path frame = folder.write("frames/1.json", "read"),
+                 other = folder.write("frames/2.json", "not read");
+  fs::create_symlink("frames/1.json", folder / "link.json");
+  {
+    OutputBatch batch({folder / "frames"});
+    CHECK_NOTHROW(check_output(frame));
+    CHECK(read_text_file(frame) == "read");
+    for (const fs::path& path : {frame, folder / "link.json"}) {
+      CAPTURE(path);
+      CHECK_THROWS_AS(write_text_file(path, "x"), InputError);
+      CHECK_THROWS_AS(check_replaceable(path), InputError);
+    }
+    CHECK_NOTHROW(write_text_file(other, "new"));
+    {
+      const OutputsAtOnce its_own;  // a log that goes on
+      CHECK_NOTHROW(write_text_file(frame, "new"));
+    }
+    batch.put_in_place();
+  }
+  CHECK(read_text_file(other) == "new");
+  const OutputBatch next;  // knows nothing of the one before
+  CHECK_NOTHROW(check_output(frame));
 }
 
 TEST_CASE("an output that no file can be is refused before the work") {
@@ -157,6 +204,26 @@ TEST_CASE("an output in a folder that may not be written to is refused before th
   int status = -1;
   REQUIRE(::waitpid(child, &status, 0) == child);
   CHECK(WEXITSTATUS(status) == 0);
+}
+
+TEST_CASE("a file takes the place of no folder, a folder that of an empty one; or none of them") {
+  const test::ScratchFolder folder;
+  fs::create_directory(folder / "empty");
+  CHECK_THROWS_AS(check_output(folder / "empty"), InputError);
+  CHECK_NOTHROW(check_output(folder / "empty", OutputKind::file_or_folder));
+  {
+    OutputBatch batch;
+    write_text_file(folder / "a.txt", "new");
+    CHECK_THROWS_AS(write_text_file(folder / "empty", "x"), InputError);
+  }
+  CHECK(test::entries_of(folder / "") == std::set<std::string>{"empty"});
+  OutputBatch batch;
+  OutputFile frames(folder / "empty");
+  fs::create_directory(frames.temporary());
+  std::ofstream(frames.temporary() / "1.json") << "{}";
+  frames.put_in_place();
+  batch.put_in_place();
+  CHECK(test::entries_of(folder / "empty") == std::set<std::string>{"1.json"});
 }
 
 TEST_CASE("two outputs of a command in one place are refused, whatever they are called") {

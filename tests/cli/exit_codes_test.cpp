@@ -143,6 +143,40 @@ TEST_CASE("exit codes: numbers out of any range are 2, NaN is in none, messages 
   CHECK(!fs::exists(out));
 }
 
+TEST_CASE("exit codes: a file's own words are not repeated by the kilobyte") {
+  const ScratchFolder folder;
+  const std::string name(100000, 'x');
+  const fs::path list =
+      folder.write("list.toml", "[[clip]]\nfile = \"" + name + ".bvh\"\nperson = \"a\"\n");
+  const CliResult result = run_cli(fmt::format("corpus '{}'", list.string()));
+  CHECK(result.exit_code == 3);
+  CHECK(result.standard_error.starts_with("mcdbn-cl: error: " + list.string()));
+  CHECK(result.standard_error.size() < 5000);
+}
+
+TEST_CASE("exit codes: a film that is cut off is 3, in one line of our own words") {
+  const ScratchFolder folder;
+  const fs::path clip = folder.write("clip.bvh", small_bvh(40)), film = folder / "film.mp4",
+                 camera = folder / "c.yaml", track = folder / "t.csv";
+  REQUIRE(
+      run_cli(fmt::format("render '{}' -o '{}' --image-size 96 96", clip.string(), film.string()))
+          .exit_code == 0);
+  REQUIRE(run_cli(fmt::format("project '{}' -o '{}' --write-camera '{}'", clip.string(),
+                              track.string(), camera.string()))
+              .exit_code == 0);
+  const std::string whole = mcdbn::read_text_file(film);
+  const fs::path cut = folder.write("cut.mp4", whole.substr(0, whole.size() / 2));
+  const CliResult result =
+      run_cli(fmt::format("render '{}' -o '{}' --over '{}' --camera '{}'", clip.string(),
+                          (folder / "o.mp4").string(), cut.string(), camera.string()));
+  CAPTURE(result.standard_error);
+  CHECK(result.exit_code == 3);
+  CHECK(result.standard_error.ends_with(
+      fmt::format("mcdbn-cl: error: {}: is not a film that can be read\n", cut.string())));
+  for (const char* raw : {"OpenCV(", "exception", "[mov", "GStreamer"})
+    CHECK(result.standard_error.find(raw) == std::string::npos);
+}
+
 TEST_CASE("exit codes: what a training cannot do with these clips or this device is 2, at once") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();

@@ -146,6 +146,31 @@ TEST_CASE("regenerate --follow: a reader that closes the pipe ends it") {
   CHECK(result.standard_error.find("error") == std::string::npos);
 }
 
+TEST_CASE("regenerate --follow: an output that cannot be written is named, no frame is blamed") {
+  if (!have_device()) return;
+  const Scene scene;
+  const fs::path out = scene.folder / "out.bvh";
+  const CliResult full = run_cli(
+      scene.call(fmt::format("--quiet --input '{}' -o '{}'", scene.track.string(), out.string())),
+      "ulimit -f 1; trap '' XFSZ;");
+  CAPTURE(full.standard_error);
+  CHECK(full.exit_code == 3);
+  CHECK(count_lines(full.standard_error) == 1);
+  CHECK(full.standard_error.starts_with(
+      fmt::format("mcdbn-cl: error: {}: a frame cannot be written", out.string())));
+  fs::create_directory(scene.folder / "folder");
+  const CliResult folder = run_cli(scene.call(fmt::format(
+      "--input '{}' -o '{}'", scene.track.string(), (scene.folder / "folder").string())));
+  CHECK(folder.exit_code == 3);
+  // What is read is not written over, by whatever name.
+  const std::string before = mcdbn::read_text_file(scene.camera);
+  fs::create_hard_link(scene.camera, scene.folder / "other.bvh");
+  CHECK(run_cli(scene.call(fmt::format("--input '{}' -o '{}'", scene.track.string(),
+                                       (scene.folder / "other.bvh").string())))
+            .exit_code == 3);
+  CHECK(mcdbn::read_text_file(scene.camera) == before);
+}
+
 TEST_CASE("regenerate --follow: what cannot be followed") {
   if (!have_device()) return;
   const Scene scene;

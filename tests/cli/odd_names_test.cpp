@@ -75,7 +75,42 @@ TEST_CASE("outputs that are none, or two in one place, are refused before the wo
   check_refused(project + "''", "without a name");
   check_refused(project + "-", "./-");
   check_refused(project + fmt::format("'{0}' --write-camera '{0}'", same), same);
-  CHECK(entries_of(folder / "") == std::set<std::string>{"clip.bvh"});
+  // A file takes no folder's place, and then its other output is not written either.
+  fs::create_directory(folder / "empty");
+  const std::string empty = (folder / "empty").string(), other = (folder / "t.csv").string();
+  check_refused(fmt::format("render '{}' -o '{}'", clip, empty), empty);
+  check_refused(fmt::format("{}'{}' --write-camera '{}'", project, other, empty), empty);
+  check_refused(fmt::format("{}'{}'", project, empty), empty);
+  CHECK(entries_of(folder / "") == std::set<std::string>{"clip.bvh", "empty"});
+}
+
+TEST_CASE("a link that leads nowhere is no folder's end: it is written through, or stays") {
+  const ScratchFolder folder;
+  fs::create_symlink("made", folder / "link");
+  const std::string link = (folder / "link").string();
+  check_refused(fmt::format("synthesize --action walk --seconds 1 -o '{}/below'", link), link);
+  CHECK(fs::is_symlink(folder / "link"));
+  CHECK(run_cli(fmt::format("synthesize --action walk --clips 1 --seconds 1 --quiet -o '{}'", link))
+            .exit_code == 0);
+  CHECK(entries_of(folder / "made") == std::set<std::string>{"walk_s01_01.bvh"});
+}
+
+TEST_CASE("what a folder, a list or FILE:NAME leads to is read, and so not replaced") {
+  const ScratchFolder folder;
+  fs::create_directory(folder / "clips");
+  const std::string text = small_bvh(40), track = (folder / "t.csv").string();
+  const std::string clip = folder.write("clips/walk.bvh", text).string(),
+                    clips = (folder / "clips").string(), camera = (folder / "c.yaml").string();
+  check_refused(fmt::format("corpus '{}' -o '{}'", clips, clip), clip);
+  const std::string list = (folder / "list.toml").string();
+  REQUIRE(run_cli(fmt::format("corpus '{}' -o '{}' --quiet", clips, list)).exit_code == 0);
+  check_refused(fmt::format("corpus '{}' -o '{}'", list, clip), clip);
+  CHECK(mcdbn::read_text_file(clip) == text);
+  REQUIRE(
+      run_cli(fmt::format("project '{}' -o '{}' --write-camera '{}' --quiet", clip, track, camera))
+          .exit_code == 0);
+  check_refused(fmt::format("project '{0}' -o '{1}' --camera '{1}:one'", clip, camera), camera);
+  CHECK(run_cli(fmt::format("info '{}'", camera)).exit_code == 0);
 }
 
 TEST_CASE("a clip whose name is no text stands in no list that TOML could not hold") {

@@ -96,8 +96,9 @@ TEST_CASE("commands without a device replace their files whole") {
         fmt::format("render {} -o {} --image-size 96 96", clip, in(folder, name));
     check_replaces(folder, {name}, render, render + " --camera-azimuth -80");
   }
-  check_keeps_old(folder, "r.png", fmt::format("render {} -o {}", clip, in(folder, "r.png")),
-                  kFullDisk);
+  for (const char* name : {"r.png", "r.mp4"})
+    check_keeps_old(folder, name, fmt::format("render {} -o {}", clip, in(folder, name)),
+                    kFullDisk);
 }
 
 TEST_CASE("train, regenerate and evaluate replace their files whole") {
@@ -125,6 +126,49 @@ TEST_CASE("train, regenerate and evaluate replace their files whole") {
       fmt::format("train {} -o {} {} --quiet", pipeline.training_clips(), in(folder, "run"), kTiny);
   check_replaces(folder, {"run/model.safetensors", "run/config.toml"}, train,
                  train + " --seed 2 --force");
+}
+
+TEST_CASE("a training for which the disk is too full from the start leaves nothing in its way") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const CliResult full = train(pipeline.training_clips(), folder / "run", kTiny, kFullDisk);
+  CAPTURE(full.standard_error);
+  CHECK(full.exit_code == 3);
+  CHECK(entries_of(folder / "").empty());
+  CHECK(train(pipeline.training_clips(), folder / "run", kTiny + " --quiet").exit_code == 0);
+}
+
+TEST_CASE("a fitted machine that has no room where it belongs is kept elsewhere, and it is said") {
+  if (!have_device()) return;
+  const ScratchFolder folder, temporary;
+  std::string rows;
+  for (int i = 0; i < 40; ++i) rows += fmt::format("{},{}\n", i % 3, i % 5);
+  const fs::path data = folder.write("data.csv", rows);
+  // The file's room goes to a folder while the machine is fitted.
+  const fs::path
+      out = folder / "rbm.safetensors",
+      script = folder.write(
+          "fit.sh",
+          fmt::format(
+              "TMPDIR='{0}' '{1}' fit '{2}' --machine gaussian-rbm --hidden 3 --quiet "
+              "--gaussian-epochs 3000 -o '{3}' & program=$!\n"
+              "until ls -A '{4}' | grep -q mcdbn || ! kill -0 $program; do sleep 0.01; done\n"
+              "mkdir '{3}'\nwait $program\n",
+              (temporary / "").string(), MCDBN_CLI, data.string(), out.string(),
+              (folder / "").string()));
+  const CliResult result = run_program("/bin/bash", fmt::format("'{}'", script.string()));
+  CAPTURE(result.standard_error);
+  CHECK(result.exit_code == 3);
+  const std::string lies = "the machine lies in ";
+  const auto at = result.standard_error.find(lies);
+  REQUIRE(at != std::string::npos);
+  const auto begin = at + lies.size();
+  const std::string kept =
+      result.standard_error.substr(begin, result.standard_error.find(": make room", begin) - begin);
+  CHECK(kept.starts_with((temporary / "").string()));
+  CHECK(run_cli(fmt::format("info '{}'", kept)).exit_code == 0);
+  CHECK(entries_of(folder / "") == std::set<std::string>{"data.csv", "fit.sh", "rbm.safetensors"});
 }
 
 TEST_CASE("a training that fails leaves the model of before whole") {

@@ -108,6 +108,12 @@ TEST_CASE("what cannot be drawn over is said") {
   CHECK_THROWS_AS(draw(options), ConfigError);
   CHECK_THROWS_AS(draw(over(folder / "absent.mp4", motion, 0)), InputError);
   CHECK_THROWS_AS(draw(over(folder.write("text.mp4", "no film"), motion, 0)), InputError);
+  // OpenCV would open the files, and the addresses, that these name.
+  for (const char* list : {"ffconcat version 1.0\nfile film.mp4\n",
+                           "#EXTM3U\n#EXT-X-TARGETDURATION:9\n#EXTINF:9,\nfilm.mp4\n"}) {
+    CAPTURE(list);
+    CHECK_THROWS_AS(draw(over(folder.write("list.mp4", list), motion, 0)), InputError);
+  }
   CHECK_THROWS_AS(draw(over(film, motion, 6)), InputError);
   CHECK_THROWS_AS(draw(over(film, motion, 60)), InputError);
   CHECK(!std::filesystem::exists(folder / "drawn.mp4"));

@@ -157,6 +157,12 @@ TEST_CASE("rendering says what is wrong and leaves no file behind") {
   options = {};
   options.placement.width_px = options.placement.height_px = 100'000;
   CHECK_THROWS_AS(render({clip}, folder / "a.png", options), ConfigError);
+  RenderClip endless = clip;  // of a month, at 240 frames a second
+  endless.motion.frame_time_s = 10;
+  endless.motion.channels = clip.motion.channels.row(0).replicate(5000, 1);
+  options = {};
+  options.fps = 240;
+  CHECK_THROWS_AS(render({endless}, folder / "a.mp4", options), InputError);
   RenderClip empty = clip;
   empty.motion.channels.resize(0, empty.motion.channels.cols());
   CHECK_THROWS_AS(render({empty}, folder / "a.png"), InputError);

@@ -7,6 +7,9 @@
 
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
+#include "formats/figure_track.hpp"
+#include "formats/json_text.hpp"
+#include "formats/track_source.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/base/matrix_file.hpp"
 #include "mcdbn/formats/bvh.hpp"
@@ -32,8 +35,15 @@ TEST_CASE("reading, working on and writing many frames stops when it is asked to
              people = folder.write("tracks.csv",
                                    "scorer,m,m,m\nbodyparts,nose,nose,nose\n"
                                    "coords,x,y,likelihood\n0,1,2,0.5\n1,1,2,0.5\n");
+  std::filesystem::create_directory(folder / "json");
+  for (const char* frame : {"json/a_1.json", "json/a_2.json"})
+    folder.write(frame, R"({"people": [{"pose_keypoints_2d": [1, 2, 1]}]})");
+  // Long enough that it is asked in the middle.
+  std::string long_list = "[0";
+  while (long_list.size() < (3U << 20U)) long_list += ",0";
+  long_list += "]";
   const Motion motion = parse_bvh(kBvh, "a.bvh");
-  const Track2d track = read_track_csv(csv);
+  const Track2d track = read_track_csv(csv), seen = figure_track(track_format("openpose"));
   const std::vector<std::function<void()>> all{
       [&] { parse_bvh(kBvh, "a.bvh"); },
       [&] { bvh_text(motion); },
@@ -43,9 +53,13 @@ TEST_CASE("reading, working on and writing many frames stops when it is asked to
       [&] { write_track_csv(folder / "out.csv", track); },
       [&] { read_tracks(people, {.format = "deeplabcut"}); },
       [&] { read_matrix(rows); },
+      [&] { TrackSource(folder / "json").json_of(folder / "json/a_1.json"); },
+      [&] { parse_json(long_list, "long.json"); },
+      [&] { track_format("openpose").write(folder / "frames", seen); },
   };
   for (const auto& work : all) CHECK_NOTHROW(work());
   std::filesystem::remove(folder / "out.csv");
+  std::filesystem::remove_all(folder / "frames");
   for (std::size_t i = 0; i < all.size(); ++i) {
     CAPTURE(i);
     request_interruption();
@@ -59,4 +73,5 @@ TEST_CASE("reading, working on and writing many frames stops when it is asked to
     CHECK(stopped);
   }
   CHECK(!std::filesystem::exists(folder / "out.csv"));
+  CHECK(!std::filesystem::exists(folder / "frames"));
 }

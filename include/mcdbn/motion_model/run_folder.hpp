@@ -59,6 +59,7 @@ class RunFolder {
   class Lock;
 
   RunFolder(std::filesystem::path path, std::unique_ptr<Lock> lock);
+  void note_beginning(const std::filesystem::path& start);
   void put_in_place();
 
   std::filesystem::path path_;

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <opencv2/videoio.hpp>
+
+#include "base/output_file.hpp"
+
+namespace mcdbn::rendering {
+
+/// A film that is written, as MPEG-4.
+class FilmWriter {
+ public:
+  FilmWriter(std::filesystem::path path, double fps);
+  /// @param image of the first one's size  @throws InputError if no film can be written there
+  void write(const cv::Mat& image);
+  int frames() const { return frames_; }
+  /// Puts the film in place. @throws InputError if it is not whole: OpenCV says nothing of a full
+  /// disk
+  void finish();
+
+ private:
+  std::filesystem::path path_;
+  double fps_;
+  OutputFile file_;
+  cv::VideoWriter writer_;
+  int frames_ = 0;
+};
+
+/// The frames of a film from one on, one after another.
+class FilmReader {
+ public:
+  /// @throws InputError if it cannot be read, has fewer frames, or is no film by its first bytes:
+  /// lists of films, which OpenCV takes too, name files and addresses of their own
+  FilmReader(const std::filesystem::path& path, int from);
+  /// @throws InputError if it says a rate that no film has
+  double fps() const;
+  /// An empty image where the film ends.
+  cv::Mat next();
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  cv::VideoCapture capture_;
+};
+
+/// How many frames so many seconds have: one at least. @throws InputError if nobody could watch
+/// them
+int film_frames(double duration_s, double fps, const std::filesystem::path& path);
+
+}  // namespace mcdbn::rendering

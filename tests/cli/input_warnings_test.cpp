@@ -1,0 +1,80 @@
+// What is odd about an input is said by every command that reads it, also where --quiet hides the
+// rest.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "base/text_file.hpp"
+#include "tiny_pipeline.hpp"
+
+using namespace mcdbn::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A clip of the pipeline, at another rate: its frame time says so many seconds.
+fs::path clip_at(const ScratchFolder& folder, const std::string& clip, const std::string& seconds) {
+  std::string text = mcdbn::read_text_file(TinyPipeline::instance().motion() / clip);
+  const std::string words = "Frame Time: ";
+  const auto begin = text.find(words) + words.size();
+  text.replace(begin, text.find('\n', begin) - begin, seconds);
+  return folder.write(clip, text);
+}
+
+void check_warned(const std::string& arguments, const std::string& warning) {
+  CAPTURE(arguments);
+  const CliResult result = run_cli(arguments);
+  CAPTURE(result.standard_error);
+  CHECK(result.exit_code == 0);
+  const auto at = result.standard_error.find("mcdbn-cl: warning: " + warning);
+  REQUIRE(at != std::string::npos);
+  CHECK(result.standard_error.find(warning, at + 1 + warning.size()) == std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("a frame rate that no clip has is said by every command that reads one, once") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder, out;
+  const std::string clip = clip_at(folder, "walk_s01_01.bvh", "0.5").string(),
+                    model = pipeline.model().string();
+  const std::string warning = clip + ": it has 2 frames a second; correct it if that is not so\n";
+  const auto to = [&](const char* name) { return (out / name).string(); };
+  check_warned(fmt::format("info '{}'", clip), warning);
+  check_warned(fmt::format("project '{}' -o '{}' --quiet", clip, to("t.csv")), warning);
+  check_warned(fmt::format("render '{}' -o '{}' --quiet", clip, to("r.png")), warning);
+  check_warned(fmt::format("generate --model '{}' --seed-clip '{}' -o '{}' --frames 3 --quiet",
+                           model, clip, to("g.bvh")),
+               warning);
+  check_warned(fmt::format("regenerate --model '{}' --to track --input '{}' -o '{}' --quiet", model,
+                           clip, to("t2.csv")),
+               warning);
+  check_warned(fmt::format("evaluate --model '{}' --test '{}' --fit none --baselines none --quiet",
+                           model, clip),
+               warning);
+  check_warned(fmt::format("train '{}' -o '{}' {} --quiet", clip, to("run"), kTiny), warning);
+  // Of several trainings on the same clips once, too.
+  const fs::path sweep =
+      folder.write("sweep.toml", fmt::format("test = ['{}']\n[grid]\nseed = [1, 2]\n",
+                                             (pipeline.motion() / "walk_s02_01.bvh").string()));
+  check_warned(fmt::format("train '{}' -o '{}' {} --sweep '{}' --quiet", clip, to("sweep"), kTiny,
+                           sweep.string()),
+               warning);
+}
+
+TEST_CASE("what is odd about a skeleton's file is said") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const std::string clip = (pipeline.motion() / "walk_s02_01.bvh").string(),
+                    track = (folder / "t.csv").string();
+  REQUIRE(run_cli(fmt::format("project '{}' -o '{}' --quiet", clip, track)).exit_code == 0);
+  std::string text = mcdbn::read_text_file(clip);
+  const auto frames = text.find("Frames: ");
+  const auto end = text.find('\n', frames);
+  const fs::path odd = folder.write("odd.bvh", text.replace(frames, end - frames, "Frames: 9999"));
+  check_warned(
+      fmt::format("regenerate --model '{}' --input '{}' --skeleton '{}' -o '{}' --quiet",
+                  pipeline.model().string(), track, odd.string(), (folder / "out.bvh").string()),
+      odd.string());
+}
