@@ -91,9 +91,11 @@ class FrameOutput {
 /// A track on its way to frames.
 class Following {
  public:
-  Following(const Model& model, std::filesystem::path output, ClipPlacement placement,
-            FollowOptions options)
+  /// @param name the track's, for messages
+  Following(const Model& model, std::string name, std::filesystem::path output,
+            ClipPlacement placement, FollowOptions options)
       : model_(model),
+        name_(std::move(name)),
         output_(std::move(output)),
         placement_(std::move(placement)),
         options_(std::move(options)) {}
@@ -121,7 +123,11 @@ class Following {
  private:
   void begin(const Track2d& like) {
     joints_ = like.joint_count();
-    live_ = std::make_unique<LiveRegeneration>(model_, like, placement_, options_.look_ahead);
+    try {
+      live_ = std::make_unique<LiveRegeneration>(model_, like, placement_, options_.look_ahead);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", name_, error.what()));
+    }
     frames_ = std::make_unique<FrameOutput>(output_, options_.frames, like.fps);
     spdlog::info("frames come back {} frames of {:g} a second later at most",
                  live_->latency_frames(), model_.modalities.fps);
@@ -133,6 +139,7 @@ class Following {
   }
 
   const Model& model_;
+  std::string name_;
   std::filesystem::path output_;
   ClipPlacement placement_;
   FollowOptions options_;
@@ -171,9 +178,10 @@ void add_follow_options(CLI::App& command, FollowOptions& options) {
 void follow_track(const Model& model, const std::filesystem::path& input,
                   const std::filesystem::path& output, const TrackReadOptions& reading,
                   const ClipPlacement& placement, const FollowOptions& options) {
-  TrackLines lines(input == "-" ? "standard input" : input.string(), reading);
+  const std::string name = input == "-" ? "standard input" : input.string();
+  TrackLines lines(name, reading);
   LineSource source(input);
-  Following following(model, output, placement, options);
+  Following following(model, name, output, placement, options);
   // Whoever asks to stop gets the frames that are on their way.
   const InterruptionDeferred until_the_end;
   while (const std::optional<std::string> line = source.next()) {
@@ -191,9 +199,7 @@ void follow_track(const Model& model, const std::filesystem::path& input,
     for (const std::string& notice : lines.take_notices()) spdlog::warn("{}", with_flags(notice));
   }
   const std::size_t written = following.finish();
-  if (written == 0)
-    throw InputError(fmt::format("{}: no frame that shows somebody",
-                                 input == "-" ? "standard input" : input.string()));
+  if (written == 0) throw InputError(fmt::format("{}: no frame that shows somebody", name));
   spdlog::info("{}: {} frames", output.empty() ? "standard output" : output.string(), written);
 }
 

@@ -129,6 +129,20 @@ TEST_CASE("regenerate --follow: a broken line is named and counts as a frame wit
   CHECK(count_lines(result.standard_output) == mcdbn::read_track_csv(scene.track).frames() + 2);
 }
 
+TEST_CASE("regenerate --follow: a track that shows too little is refused by its name") {
+  if (!have_device()) return;
+  const Scene scene;
+  const fs::path hips = scene.folder.write("hips.csv", "Hips_x_px,Hips_y_px\n10,20\n11,21\n");
+  CHECK(scene.follow("", hips).standard_error.find(
+            "error: standard input: the 2D track shows too little of the body") !=
+        std::string::npos);
+  const CliResult result = run_cli(scene.call(fmt::format("--input '{}'", hips.string())));
+  CHECK(result.exit_code == 3);
+  CHECK(result.standard_error.find(
+            fmt::format("error: {}: the 2D track shows too little of the body", hips.string())) !=
+        std::string::npos);
+}
+
 TEST_CASE("regenerate --follow: a reader that closes the pipe ends it") {
   if (!have_device()) return;
   const Scene scene;
