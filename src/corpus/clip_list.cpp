@@ -6,6 +6,7 @@
 #include <iterator>
 #include <set>
 #include <sstream>
+#include <system_error>
 
 #include "base/shown.hpp"
 #include "base/text_file.hpp"
@@ -38,8 +39,9 @@ ListedClip clip_from(const fs::path& path, const toml::table& table) {
   }
   if (clip.file.empty())
     fail_at(path, table.source(), fmt::format("a clip without file; {}", kExample));
-  if (!fs::is_regular_file(clip.file))
-    fail_at(path, table.source(), fmt::format("{}: no such file", printable(clip.file.string())));
+  std::error_code error;  // of names that no file can have, too
+  if (!fs::is_regular_file(clip.file, error))
+    fail_at(path, table.source(), fmt::format("no such file: {}", printable(clip.file.string())));
   return clip;
 }
 

@@ -84,17 +84,21 @@ bool names_error(const std::string& line) {
 
 /// What went wrong in a line: the first of the log that speaks of an error.
 std::string build_failure(const std::string& log, const std::string& options) {
+  constexpr const char* kIsThereRoom =
+      "is there room where it keeps what it builds (PoCL: $POCL_CACHE_DIR, else ~/.cache/pocl)?";
   if (is_blank(log))
-    return fmt::format(
-        "building kernels with {}: the OpenCL driver says nothing of why; is there room where it "
-        "keeps what it builds (PoCL: $POCL_CACHE_DIR, else ~/.cache/pocl)?",
-        options);
+    return fmt::format("building kernels with {}: the OpenCL driver says nothing of why; {}",
+                       options, kIsThereRoom);
   std::istringstream lines(log);
   std::string line, first;
   while (std::getline(lines, line) && !names_error(line))
     if (is_blank(first)) first = line;
-  const std::string path = kept_log(log);
-  return fmt::format("building kernels with {}: {}{}", options, names_error(line) ? line : first,
+  const std::string path = kept_log(log),
+                    what = names_error(line)
+                               ? line
+                               : fmt::format("the OpenCL driver says no more than '{}'; {}", first,
+                                             kIsThereRoom);
+  return fmt::format("building kernels with {}: {}{}", options, what,
                      path.empty() ? "" : fmt::format(" (the whole log: {})", path));
 }
 

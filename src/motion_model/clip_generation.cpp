@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "base/counted.hpp"
@@ -49,6 +52,18 @@ PreparedSeed prepared(const Model& model, const Motion& seed) {
   return own;
 }
 
+/// @throws ConfigError for more numbers than kernels count to, in 32 bits
+void check_amount(const Crbm& layer, std::size_t sequences, const GenerationOptions& options) {
+  const double widest = static_cast<double>(std::max(layer.shape().visible, layer.shape().hidden)),
+               numbers = widest * static_cast<double>(sequences) *
+                         static_cast<double>(options.frames + layer.shape().order);
+  if (numbers > std::numeric_limits<std::int32_t>::max())
+    throw ConfigError(fmt::format(
+        "`frames` ({}) in {} are {:.2g} numbers; {:.2g} are the most: lower `frames` or `samples`",
+        options.frames, counted(sequences, "sequence"), numbers,
+        static_cast<double>(std::numeric_limits<std::int32_t>::max())));
+}
+
 /// What was generated, on the seed's person and from where the seed ends.
 Motion decoded(const Modalities& modalities, const MatrixF& pose, const PreparedSeed& seed,
                const Eigen::Matrix3d& axes_from_world) {
@@ -81,6 +96,8 @@ std::vector<Motion> generate_clips(const Model& model, const std::vector<SeedCli
       throw InputError(fmt::format("{}: {}", seed.name, error.what()));
     }
   }
+  for (const Crbm& layer : model.network.cdbns[kPose].layers)
+    check_amount(layer, seeds.size() * options.samples, options);
   const auto poses = generate(model.network.cdbns[kPose], features, options);
   if (health) *health = generation_health(poses, features);
   std::vector<Motion> motions;

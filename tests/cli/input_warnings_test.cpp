@@ -52,13 +52,15 @@ TEST_CASE("a frame rate that no clip has is said by every command that reads one
   check_warned(fmt::format("evaluate --model '{}' --test '{}' --fit none --baselines none --quiet",
                            model, clip),
                warning);
-  check_warned(fmt::format("train '{}' -o '{}' {} --quiet", clip, to("run"), kTiny), warning);
+  check_warned(fmt::format("train '{}' {} -o '{}' {} --quiet", clip, pipeline.training_clips(),
+                           to("run"), kTiny),
+               warning);
   // Of several trainings on the same clips once, too.
   const fs::path sweep =
       folder.write("sweep.toml", fmt::format("test = ['{}']\n[grid]\nseed = [1, 2]\n",
                                              (pipeline.motion() / "walk_s02_01.bvh").string()));
-  check_warned(fmt::format("train '{}' -o '{}' {} --sweep '{}' --quiet", clip, to("sweep"), kTiny,
-                           sweep.string()),
+  check_warned(fmt::format("train '{}' {} -o '{}' {} --sweep '{}' --quiet", clip,
+                           pipeline.training_clips(), to("sweep"), kTiny, sweep.string()),
                warning);
 }
 
@@ -72,7 +74,7 @@ TEST_CASE("what is odd about a skeleton's file is said") {
   std::string text = mcdbn::read_text_file(clip);
   const auto frames = text.find("Frames: ");
   const auto end = text.find('\n', frames);
-  const fs::path odd = folder.write("odd.bvh", text.replace(frames, end - frames, "Frames: 9999"));
+  const fs::path odd = folder.write("odd.bvh", text.replace(frames, end - frames, "Frames: 30"));
   check_warned(
       fmt::format("regenerate --model '{}' --input '{}' --skeleton '{}' -o '{}' --quiet",
                   pipeline.model().string(), track, odd.string(), (folder / "out.bvh").string()),

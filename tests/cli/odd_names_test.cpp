@@ -97,10 +97,11 @@ TEST_CASE("a link that leads nowhere is no folder's end: it is written through, 
 
 TEST_CASE("what a folder, a list or FILE:NAME leads to is read, and so not replaced") {
   const ScratchFolder folder;
-  fs::create_directory(folder / "clips");
-  const std::string text = small_bvh(40), track = (folder / "t.csv").string();
-  const std::string clip = folder.write("clips/walk.bvh", text).string(),
-                    clips = (folder / "clips").string(), camera = (folder / "c.yaml").string();
+  const std::string clips = (folder / "clips").string(), track = (folder / "t.csv").string(),
+                    camera = (folder / "c.yaml").string();
+  REQUIRE(run_cli(fmt::format("synthesize --action walk --clips 1 --seconds 1 -o '{}'", clips))
+              .exit_code == 0);
+  const std::string clip = clips + "/walk_s01_01.bvh", text = mcdbn::read_text_file(clip);
   check_refused(fmt::format("corpus '{}' -o '{}'", clips, clip), clip);
   const std::string list = (folder / "list.toml").string();
   REQUIRE(run_cli(fmt::format("corpus '{}' -o '{}' --quiet", clips, list)).exit_code == 0);

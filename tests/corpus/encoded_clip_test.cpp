@@ -42,7 +42,7 @@ TEST_CASE("a clip as a model sees it: at its rate, from the view that is asked f
   write_bvh(file, recorded);
   const Modalities modalities = modalities_of(recorded, 20);
   const CameraPlacement view{70, 15, std::nullopt, 50, 1000, 800};
-  std::vector<std::string> notices;
+  ClipNotices notices;
   const EncodedClip clip = encode_clip(file, modalities, view, false, &notices);
   CHECK(clip.file == file);
   const Motion motion = load_clip(file, {.fps = 20, .keep_first_frame = false});
@@ -93,12 +93,12 @@ TEST_CASE("a clip's leading calibration pose is dropped unless it is to be kept"
   const auto file = folder / "clip.bvh";
   write_bvh(file, recorded);
   const Modalities modalities = modalities_of(recorded, 30);
-  std::vector<std::string> notices;
+  ClipNotices notices;
   const EncodedClip dropped = encode_clip(file, modalities, {}, false, &notices);
   CHECK(dropped.motion.frames() == 39);
   CHECK(dropped.pose_features.rows() == 39);
   CHECK(dropped.track_features.rows() == 39);
-  CHECK(notices.size() == 1);
+  CHECK(notices.told().size() == 1);
   CHECK(encode_clip(file, modalities, {}, true).motion.frames() == 40);
   CHECK(encode_clip(file, modalities, {}).motion.frames() == 39);
   CHECK_THROWS_AS(encode_clip(folder / "missing.bvh", modalities, {}), InputError);

@@ -72,7 +72,9 @@ TEST_CASE("a build that fails without an error is tried once more, and only once
   const std::string message = failure();
   CAPTURE(message);
   CHECK(builds() == 2);
-  CHECK(message.find(": nothing wrong here (the whole log: ") != std::string::npos);
+  // What PoCL says when its cache is on a full disk has no error in it either.
+  CHECK(message.find("says no more than 'nothing wrong here'; is there room where it keeps") !=
+        std::string::npos);
   kept_log(message);
 
   layer::heal();

@@ -135,6 +135,9 @@ TEST_CASE("generate_clips: every option comes to its use, and too short a seed i
     longer.frames = 25;
     CHECK(first(longer).topRows(20) == usual);
     CHECK(first(longer).rows() == 25);
+    longer.frames = 1'000'000;  // each by itself is in range
+    longer.samples = 1000;
+    CHECK_THROWS_AS(generated(model, seed, longer), ConfigError);
     Motion end = seed;
     end.channels = MatrixD(seed.channels.bottomRows(3));
     CHECK_NOTHROW(generated(model, end, options));
