@@ -41,7 +41,8 @@ ListedClip clip_from(const fs::path& path, const toml::table& table) {
     fail_at(path, table.source(), fmt::format("a clip without file; {}", kExample));
   std::error_code error;  // of names that no file can have, too
   if (!fs::is_regular_file(clip.file, error))
-    fail_at(path, table.source(), fmt::format("no such file: {}", printable(clip.file.string())));
+    fail_at(path, table.source(),
+            fmt::format("no such file: {}", printable_line(clip.file.string())));
   return clip;
 }
 
