@@ -3,11 +3,14 @@
 #include "mcdbn/motion_model/seen_clip.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "camera/keypoint_pairs.hpp"
 #include "camera/keypoint_track.hpp"
+#include "camera/track_columns.hpp"
 #include "features/clip_modalities.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -158,6 +161,36 @@ TEST_CASE("seen clips: the view of an unknown camera is found as the clip is see
   CHECK_FALSE(finds_view(scene.modalities, scene.placement));
   scene.placement = {{scene.camera, scene.truth.skeleton}};
   CHECK_FALSE(finds_view(scene.modalities, scene.placement));
+}
+
+TEST_CASE("seen clips: legs that come back with the other's sides get their own") {
+  Scene scene;
+  scene.truth = synthesize({.seconds = 3});
+  scene.exact = project_motion(scene.truth, scene.camera);
+  scene.pose = scene.modalities.encode_pose(scene.truth, scene.camera.camera_from_world);
+  Track2d track = scene.seen(body_25_keypoints());
+  const LimbPairs legs = leg_pairs(track.keypoints);
+  for (const int gap : {33, 52})
+    for (const auto& [left, right] : legs.columns)
+      for (const int column : {left, right}) track.confidence.col(column).segment(gap, 7).setZero();
+  const SeenClip right = scene.see(track);
+  CHECK(right.swaps.empty());
+  CHECK(scene.asked == 2 + 2 * 3);  // each of three spells both ways
+  for (const auto& [first, last] : {std::pair{0, 32}, std::pair{40, 51}, std::pair{59, 89}}) {
+    CAPTURE(first);
+    Track2d exchanged = track;
+    for (int t = first; t <= last; ++t)
+      for (const auto& [left, other] : legs.columns) exchange_columns(exchanged, t, left, other);
+    const SeenClip seen = scene.see(exchanged);
+    CHECK(described(seen.swaps) == fmt::format("legs swapped in frames {}-{}", first, last));
+    CHECK(seen.features == right.features);
+    CHECK((seen.joints.confidence == right.joints.confidence));
+    ClipPlacement unfitted = scene.placement;
+    unfitted.fit.reset();
+    std::swap(unfitted, scene.placement);
+    CHECK(scene.see(exchanged).swaps.empty());
+    std::swap(unfitted, scene.placement);
+  }
 }
 
 TEST_CASE("seen clips: too little of a person is an error") {
