@@ -14,7 +14,9 @@
 #include "features/clip_modalities.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
+#include "motion/resample.hpp"
 
 namespace seen_clip_test {
 
@@ -191,6 +193,28 @@ TEST_CASE("seen clips: legs that come back with the other's sides get their own"
     CHECK(scene.see(exchanged).swaps.empty());
     std::swap(unfitted, scene.placement);
   }
+}
+
+TEST_CASE("seen clips: sides that were looked at again are told in the track's own frames") {
+  const Motion fast = synthesize({.fps = 60, .seconds = 3});
+  Scene scene;
+  scene.pose = scene.modalities.encode_pose(resample(fast, 30), scene.camera.camera_from_world);
+  Track2d track = keypoint_track(fast, scene.camera, body_25_keypoints());
+  const LimbPairs legs = leg_pairs(track.keypoints);
+  for (const auto& [left, right] : legs.columns) {
+    for (const int gap : {60, 100})
+      for (const int column : {left, right})
+        track.confidence.col(column).segment(gap, 20).setZero();
+    for (int t = 80; t < 100; ++t) exchange_columns(track, t, left, right);
+  }
+  const auto answer = [&](const MatrixF&) -> MatrixF { return scene.pose; };
+  TrackFindings found;
+  regenerate_clip(
+      scene.modalities, track, scene.placement, answer,
+      [&](const MatrixF& features) { return std::vector<PosePrior>{answer(features)}; }, &found);
+  REQUIRE(found.swaps.size() == 1);
+  CHECK(std::abs(found.swaps[0].first_frame - 80) <= 2);
+  CHECK(std::abs(found.swaps[0].last_frame - 99) <= 2);
 }
 
 TEST_CASE("seen clips: too little of a person is an error") {
