@@ -110,8 +110,11 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
   solve_others();
   second.get();
   PosteriorPoint whole = from;
-  for (std::size_t i = 0; i < windows.size(); ++i)
+  whole.energy = 0;  // frames that two windows have count twice
+  for (std::size_t i = 0; i < windows.size(); ++i) {
     join(whole, i == 0 ? 0 : windows[i - 1].end(), parts[i], windows[i]);
+    whole.energy += parts[i].energy;
+  }
   return whole;
 }
 

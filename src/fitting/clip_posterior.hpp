@@ -59,6 +59,7 @@ struct PosteriorPoint {
   Eigen::Vector3d lean{0, 0, 0};  ///< turn of the world otherwise than the camera is assumed to
                                   ///< stand, radians, camera axes; never about y
   double log_focal = 0;           ///< the camera's focal length over the assumed one
+  double energy = 0;              ///< −log of how likely the solution is, but for a constant
 
   static PosteriorPoint zero(const PosteriorClip& clip);
 };

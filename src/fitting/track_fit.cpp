@@ -162,6 +162,7 @@ class ClipFit {
   }
 
   const Camera& camera() const { return camera_; }
+  double energy() const { return point_.energy; }
   /// How it looks, as it was found, where it was not known.
   AssumedView view() const {
     const Eigen::Vector3d up = camera_.camera_from_world.col(1);
@@ -261,6 +262,7 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
     result.draws = settings ? clip.drawn(prior, *settings, draws) : clip.drawn_by_prior(draws);
   result.motion = clip.motion();
   result.camera = clip.camera();
+  result.energy = clip.energy();
   if (!known.camera) result.view = settings ? clip.view() : known.assumed();
   return result;
 }

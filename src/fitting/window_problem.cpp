@@ -85,6 +85,7 @@ void WindowProblem::solve(bool shared_too, double small_gain, int most_iteration
   ceres::Solver::Summary summary;
   const OneThreadSolver one_thread;
   ceres::Solve(options, &problem_, &summary);
+  x_.energy = summary.final_cost;
   turn_unused();
 }
 

@@ -1,6 +1,7 @@
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "camera/track_resample.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
@@ -94,12 +95,18 @@ class StretchRegeneration {
       stretch.swaps = find_side_swaps(track);
       exchange_sides(track, stretch.swaps);
     }
+    SeenClip seen = see_clip(modalities_, resample_track(track, modalities_.fps),
+                             placement_of(0, told), single_);
+    for (SideSwap& swap : seen.swaps) {
+      for (int* frame : {&swap.first_frame, &swap.last_frame})
+        *frame = std::min(range.frames - 1,
+                          static_cast<int>(std::lround(*frame * track.fps / modalities_.fps)));
+      stretch.swaps.push_back(std::move(swap));
+    }
     for (SideSwap& swap : stretch.swaps) {
       swap.first_frame += range.first;
       swap.last_frame += range.first;
     }
-    SeenClip seen = see_clip(modalities_, resample_track(track, modalities_.fps),
-                             placement_of(0, told), single_);
     stretch.filled = std::move(seen.filled);
     for (const PosePrior& prior : all_(seen.features)) {
       const std::size_t answer = stretch.clips.size();

@@ -6,6 +6,7 @@
 #include "camera/keypoint_map.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "motion_model/keypoint_columns.hpp"
+#include "motion_model/returned_sides.hpp"
 
 namespace mcdbn {
 namespace {
@@ -109,7 +110,16 @@ SeenClip see_clip(const Modalities& modalities, const Track2d& track,
       placement.skeleton ? *placement.skeleton : modalities.pose_features.skeleton();
   const KeypointMap map(keypoints_of_columns(track), skeleton,
                         skeleton_roles(skeleton, placement.joint_map));
-  const Track2d weighted = weighted_by_confidence(track);
+  Track2d weighted = weighted_by_confidence(track);
+  if (rough.fit) {
+    seen.swaps = swapped_spells(weighted, [&](const Track2d& some) {
+      look(map.joints_of(some));
+      return fit_to_track(answer(seen.features), modalities, map.evidence(map.joints_of(some)),
+                          rough, rough.fit)
+          .energy;
+    });
+    exchange_sides(weighted, seen.swaps);
+  }
   Track2d joints = map.joints_of(weighted);
   look(joints);
   MatrixF filled = seen.features;

@@ -3,15 +3,20 @@
 #include "mcdbn/motion_model/seen_clip.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "camera/keypoint_pairs.hpp"
 #include "camera/keypoint_track.hpp"
+#include "camera/track_columns.hpp"
 #include "features/clip_modalities.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
+#include "motion/resample.hpp"
 
 namespace seen_clip_test {
 
@@ -158,6 +163,58 @@ TEST_CASE("seen clips: the view of an unknown camera is found as the clip is see
   CHECK_FALSE(finds_view(scene.modalities, scene.placement));
   scene.placement = {{scene.camera, scene.truth.skeleton}};
   CHECK_FALSE(finds_view(scene.modalities, scene.placement));
+}
+
+TEST_CASE("seen clips: legs that come back with the other's sides get their own") {
+  Scene scene;
+  scene.truth = synthesize({.seconds = 3});
+  scene.exact = project_motion(scene.truth, scene.camera);
+  scene.pose = scene.modalities.encode_pose(scene.truth, scene.camera.camera_from_world);
+  Track2d track = scene.seen(body_25_keypoints());
+  const LimbPairs legs = leg_pairs(track.keypoints);
+  for (const int gap : {33, 52})
+    for (const auto& [left, right] : legs.columns)
+      for (const int column : {left, right}) track.confidence.col(column).segment(gap, 7).setZero();
+  const SeenClip right = scene.see(track);
+  CHECK(right.swaps.empty());
+  CHECK(scene.asked == 2 + 2 * 3);  // each of three spells both ways
+  for (const auto& [first, last] : {std::pair{0, 32}, std::pair{40, 51}, std::pair{59, 89}}) {
+    CAPTURE(first);
+    Track2d exchanged = track;
+    for (int t = first; t <= last; ++t)
+      for (const auto& [left, other] : legs.columns) exchange_columns(exchanged, t, left, other);
+    const SeenClip seen = scene.see(exchanged);
+    CHECK(described(seen.swaps) == fmt::format("legs swapped in frames {}-{}", first, last));
+    CHECK(seen.features == right.features);
+    CHECK((seen.joints.confidence == right.joints.confidence));
+    ClipPlacement unfitted = scene.placement;
+    unfitted.fit.reset();
+    std::swap(unfitted, scene.placement);
+    CHECK(scene.see(exchanged).swaps.empty());
+    std::swap(unfitted, scene.placement);
+  }
+}
+
+TEST_CASE("seen clips: sides that were looked at again are told in the track's own frames") {
+  const Motion fast = synthesize({.fps = 60, .seconds = 3});
+  Scene scene;
+  scene.pose = scene.modalities.encode_pose(resample(fast, 30), scene.camera.camera_from_world);
+  Track2d track = keypoint_track(fast, scene.camera, body_25_keypoints());
+  const LimbPairs legs = leg_pairs(track.keypoints);
+  for (const auto& [left, right] : legs.columns) {
+    for (const int gap : {60, 100})
+      for (const int column : {left, right})
+        track.confidence.col(column).segment(gap, 20).setZero();
+    for (int t = 80; t < 100; ++t) exchange_columns(track, t, left, right);
+  }
+  const auto answer = [&](const MatrixF&) -> MatrixF { return scene.pose; };
+  TrackFindings found;
+  regenerate_clip(
+      scene.modalities, track, scene.placement, answer,
+      [&](const MatrixF& features) { return std::vector<PosePrior>{answer(features)}; }, &found);
+  REQUIRE(found.swaps.size() == 1);
+  CHECK(std::abs(found.swaps[0].first_frame - 80) <= 2);
+  CHECK(std::abs(found.swaps[0].last_frame - 99) <= 2);
 }
 
 TEST_CASE("seen clips: too little of a person is an error") {

@@ -177,6 +177,10 @@ struct FittedClip {
   Track2d shown;  ///< all its joints as the camera sees them; image size as the track's
   Camera camera;  ///< that sees `motion` so, in the skeleton's file units
   AssumedView view = {};  ///< of it, where none was known
+  /// −log of how likely the motion is given prior and track, but for a constant: of two readings of
+  /// a track in which the same joints are seen, that of the lower energy is the likelier. 0 without
+  /// settings.
+  double energy = 0;
   std::vector<Motion> draws =
       {};  ///< as `motion`, of bodies of their own if the skeleton is not known
 };

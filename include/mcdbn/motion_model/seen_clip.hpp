@@ -48,12 +48,16 @@ struct SeenClip {
   /// Of the camera that is assumed where none is known: what was said, and what the clip tells of
   /// pitch and roll where nobody said them: feet stand on level ground.
   AssumedView view;
+  /// What was exchanged besides what find_side_swaps finds, in frames of the model's rate.
+  std::vector<SideSwap> swaps = {};
 };
 
 /// What a model sees of a track. Where the columns are the model's joints by name, that is the
 /// track, its gaps filled (fill_gaps). Where they are a detector's, or another skeleton's, the
 /// joints are told from them by their roles, and what lies between a place and its joint is taken
 /// off as the answer has it, in the rounds that fill the gaps. In these the view is found, too.
+/// Before them, limbs that come back into sight after a while are tried with their sides exchanged,
+/// if there is a fit: the likelier answer tells which they are.
 /// @param track at the model's rate  @param answer as of fill_gaps
 /// @throws InputError if the track shows too little of the model's joints; as fill_gaps
 SeenClip see_clip(const Modalities& modalities, const Track2d& track,
