@@ -16,6 +16,7 @@
 #include "mcdbn/camera/side_swaps.hpp"
 #include "mcdbn/camera/track.hpp"
 #include "mcdbn/camera/track_frame.hpp"
+#include "mcdbn/camera/track_stretches.hpp"
 #include "mcdbn/camera/track_summary.hpp"
 #include "mcdbn/corpus/augmentation.hpp"
 #include "mcdbn/corpus/clip.hpp"
