@@ -151,6 +151,8 @@ int run_program(int argc, char** argv) {
     occupy_standard_streams();
     heed_signals(kInterrupted);
     set_up_messages();
+    // FFmpeg's own words about a film, unless somebody wants them.
+    ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
     CLI::App app{kDescription, "mcdbn-cl"};
     app.set_version_flag("--version", "mcdbn-cl " MCDBN_VERSION);
     app.require_subcommand(1);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
@@ -21,7 +23,7 @@ class Film {
  public:
   Film(const std::filesystem::path& path, int from) : path_(path) {
     cv::Mat skipped;
-    if (!std::filesystem::is_regular_file(path) || !capture_.open(path.string()))
+    if (!std::filesystem::is_regular_file(path) || !opened())
       throw InputError(fmt::format("{}: is not a film that can be read", path.string()));
     for (int frame = 0; frame < from; ++frame) {
       check_interruption();
@@ -46,6 +48,18 @@ class Film {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  /// By what reads films alone: asked for anything, OpenCV takes the name of a file that is none
+  /// for a camera's, and looks for that on USB. Its own words about it are not shown.
+  bool opened() {
+    namespace logging = cv::utils::logging;
+    const logging::LogLevel level = logging::setLogLevel(logging::LOG_LEVEL_SILENT);
+    const bool opened = std::ranges::any_of(
+        std::array{cv::CAP_FFMPEG, cv::CAP_GSTREAMER, cv::CAP_OPENCV_MJPEG},
+        [&](cv::VideoCaptureAPIs reader) { return capture_.open(path_.string(), reader); });
+    logging::setLogLevel(level);
+    return opened;
+  }
+
   std::filesystem::path path_;
   cv::VideoCapture capture_;
 };
