@@ -28,9 +28,7 @@ std::string file_of(const std::string& header, const std::string& data) {
 }
 
 std::string bytes_of(const std::vector<float>& values) {
-  std::string bytes(values.size() * sizeof(float), '\0');
-  std::memcpy(bytes.data(), values.data(), bytes.size());
-  return bytes;
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
 }
 
 json header_of(const std::string& bytes) {
