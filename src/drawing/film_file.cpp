@@ -52,9 +52,17 @@ bool begins_like_a_film(const fs::path& path) {
       kMarks, [&](const Mark& mark) { return head.substr(mark.at).starts_with(mark.bytes); });
 }
 
+/// By what reads films alone: asked for anything, OpenCV takes the name of a film that it cannot
+/// read for a camera's, and looks for that on USB.
+bool opened(cv::VideoCapture& film, const fs::path& path) {
+  return std::ranges::any_of(
+      std::array{cv::CAP_FFMPEG, cv::CAP_GSTREAMER, cv::CAP_OPENCV_MJPEG},
+      [&](cv::VideoCaptureAPIs reader) { return film.open(path.string(), reader); });
+}
+
 bool is_whole(const fs::path& path, int frames) {
-  cv::VideoCapture film(path.string());
-  return film.isOpened() &&
+  cv::VideoCapture film;
+  return opened(film, path) &&
          static_cast<int>(std::lround(film.get(cv::CAP_PROP_FRAME_COUNT))) == frames;
 }
 
@@ -85,7 +93,7 @@ void FilmWriter::finish() {
 
 FilmReader::FilmReader(const fs::path& path, int from) : path_(path) {
   cv::Mat skipped;
-  if (!fs::is_regular_file(path) || !begins_like_a_film(path) || !capture_.open(path.string()))
+  if (!fs::is_regular_file(path) || !begins_like_a_film(path) || !opened(capture_, path))
     throw InputError(fmt::format("{}: is not a film that can be read", path.string()));
   for (int frame = 0; frame < from; ++frame) {
     check_interruption();

@@ -147,4 +147,22 @@ TEST_CASE("render: every option changes what its help says") {
         }}});
 }
 
+TEST_CASE("render --over: a file that is no film is refused in one line of our own") {
+  const ScratchFolder folder;
+  const fs::path clip = folder / "clips/walk_s01_01.bvh", camera = folder / "camera.yaml";
+  const fs::path text = folder.write("text.mp4", "no film");
+  REQUIRE(run_cli(fmt::format("synthesize --action walk --clips 1 --subjects 1 --seconds 1 -o '{}'",
+                              clip.parent_path().string()))
+              .exit_code == 0);
+  write_camera(camera, place_camera(mcdbn::load_clip(clip), {.azimuth_deg = 80, .distance = 300}));
+  const CliResult result =
+      run_cli(fmt::format("render '{}' --over '{}' --camera '{}' --quiet -o '{}'", clip.string(),
+                          text.string(), camera.string(), (folder / "over.mp4").string()));
+  CHECK(result.exit_code == 3);
+  CHECK(result.standard_error.find(
+            fmt::format("mcdbn-cl: error: {}: is not a film", text.string())) != std::string::npos);
+  CHECK(result.standard_error.find("OpenCV") == std::string::npos);
+  CHECK(result.standard_error.find("moov") == std::string::npos);
+}
+
 }  // namespace render_options_test
