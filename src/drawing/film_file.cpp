@@ -52,8 +52,8 @@ bool begins_like_a_film(const fs::path& path) {
       kMarks, [&](const Mark& mark) { return head.substr(mark.at).starts_with(mark.bytes); });
 }
 
-/// By what reads films alone: asked for anything, OpenCV takes the name of a file that is none for
-/// a camera's, and looks for that on USB.
+/// By what reads films alone: asked for anything, OpenCV takes the name of a film that it cannot
+/// read for a camera's, and looks for that on USB.
 bool open_film(cv::VideoCapture& film, const fs::path& path) {
   return std::ranges::any_of(
       std::array{cv::CAP_FFMPEG, cv::CAP_GSTREAMER, cv::CAP_OPENCV_MJPEG},
