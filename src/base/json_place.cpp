@@ -29,9 +29,7 @@ std::string kind_in_words(const json& value) {
 std::string JsonPlace::where() const {
   constexpr std::size_t kLongest = 100;  // of a path; keys may be of any length
   if (path_.empty()) return file_;
-  const bool whole = path_.size() <= kLongest;
-  return fmt::format("{}: {}{}", file_, whole ? "" : "...",
-                     printable_line(whole ? path_ : path_.substr(path_.size() - kLongest)));
+  return fmt::format("{}: {}", file_, printable_end(path_, kLongest));
 }
 
 void JsonPlace::fail(const std::string& what) const {

@@ -55,6 +55,11 @@ std::string printable_line(std::string text) {
   return printable(text);
 }
 
+std::string printable_end(const std::string& text, std::size_t longest) {
+  if (text.size() <= longest) return printable_line(text);
+  return "..." + printable_line(text.substr(text.size() - longest));
+}
+
 std::string shown(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   return fmt::format("'{}{}'", printable_line(std::string(text.substr(0, kLongest))),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,9 @@ std::string printable(std::string_view text);
 
 /// The same in one line: line ends are spaces.
 std::string printable_line(std::string text);
+
+/// The same, of a text that is longer its end.
+std::string printable_end(const std::string& text, std::size_t longest);
 
 /// A piece of input in quotes, for messages: not more than its beginning, and printable.
 std::string shown(std::string_view text);

@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 namespace mcdbn {
 namespace {
 
+constexpr std::size_t kLongestName = 200;  ///< that a message repeats
 constexpr const char* kExample = "give tables such as [[clip]] with file = \"walk/02_01.bvh\"";
 
 ListedClip clip_from(const fs::path& path, const toml::table& table) {
@@ -42,7 +43,7 @@ ListedClip clip_from(const fs::path& path, const toml::table& table) {
   std::error_code error;  // of names that no file can have, too
   if (!fs::is_regular_file(clip.file, error))
     fail_at(path, table.source(),
-            fmt::format("no such file: {}", printable_line(clip.file.string())));
+            fmt::format("no such file: {}", printable_end(clip.file.string(), kLongestName)));
   return clip;
 }
 

@@ -36,3 +36,8 @@ TEST_CASE("shown: what terminals obey beyond ASCII is escaped, other letters are
   CHECK(printable("\xE2\x80\xA8") == "\\xe2\\x80\\xa8");
   CHECK(printable("\xE2\x80\xA6 \xE2\x81\xAA") == "\xE2\x80\xA6 \xE2\x81\xAA");
 }
+
+TEST_CASE("shown: of a long text its end, in one line") {
+  CHECK(printable_end("a\nb\x1b", 4) == "a b\\x1b");
+  CHECK(printable_end("walks/of/one.bvh", 7) == "...one.bvh");
+}
