@@ -51,6 +51,7 @@ int run_command(std::string& request, char* name, char** environment) {
 }
 
 int serve(int, char** arguments, char** environment) {
+  unsetenv("LD_PRELOAD");  // a linker that PoCL starts is to link
   for (std::uint32_t length = 0; read_all(&length, sizeof length);) {
     std::string request(length, '\0');
     if (!read_all(request.data(), length)) return 1;
