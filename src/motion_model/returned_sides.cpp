@@ -25,17 +25,18 @@ std::vector<SideSwap> swapped_spells(Track2d track,
   for (const SideSwap& spell : limb_spells(track)) {
     const Eigen::Index first = std::max<Eigen::Index>(0, spell.first_frame - around),
                        end = std::min<Eigen::Index>(track.frames(), spell.last_frame + 1 + around);
-    const auto energy_of = [&](const Track2d& whole) {
-      return energy(some_frames(whole, first, end - first));
-    };
-    Track2d exchanged = track;
-    exchange_sides(exchanged, {spell});
+    const Track2d before = some_frames(track, first, end - first);
+    SideSwap swap = spell;  // counted from there
+    swap.first_frame -= static_cast<int>(first);
+    swap.last_frame -= static_cast<int>(first);
+    Track2d exchanged = before;
+    exchange_sides(exchanged, {swap});
     try {
-      if (energy_of(exchanged) > energy_of(track) - kClearly) continue;
+      if (energy(exchanged) > energy(before) - kClearly) continue;
     } catch (const InputError&) {  // not enough of a body
       continue;
     }
-    track = std::move(exchanged);
+    replace_frames(track, first, exchanged);
     swaps.push_back(spell);
   }
   return swaps;

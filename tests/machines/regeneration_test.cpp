@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
+#include "machines/random_crbm.hpp"
 #include "machines/regeneration_reference.hpp"
 #include "machines/two_modalities.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -19,15 +20,7 @@ namespace {
 constexpr std::size_t kTrack = 6, kPose = 9, kHidden = 7, kTop = 5, kShared = 4, kOrder = 2;
 
 CrbmParameters layer(std::size_t visible, std::size_t hidden, VisibleKind kind, unsigned seed) {
-  CrbmParameters p = CrbmParameters::zeros({visible, hidden, kOrder, kind});
-  p.W = random_matrix(visible, hidden, seed, 0.4F);
-  p.A = random_matrix(kOrder * visible, visible, seed + 1, 0.1F);
-  p.B = random_matrix(kOrder * visible, hidden, seed + 2, 0.2F);
-  p.a = random_matrix(1, visible, seed + 3, 0.3F);
-  p.b = random_matrix(1, hidden, seed + 4, 0.3F);
-  if (kind == VisibleKind::binary)
-    p.visible_mean = (random_matrix(1, visible, seed + 5).array() + 1.0F) / 2.0F;
-  return p;
+  return random_layer(visible, hidden, kOrder, kind, seed);
 }
 
 /// A small MCDBN of two layers a modality, with parameters as after a training.
