@@ -6,11 +6,13 @@
 #include "camera/track_resample.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
+#include "motion/interpolated_pose.hpp"
 #include "motion/joint_uncertainty.hpp"
 #include "motion/resample.hpp"
 #include "motion/retarget.hpp"
 #include "motion_model/pose_priors.hpp"
 #include "motion_model/recent_track.hpp"
+#include "motion_model/track_parts.hpp"
 
 namespace mcdbn {
 namespace {
@@ -59,106 +61,166 @@ class OtherSkeleton {
   SkeletonRoles roles_;
 };
 
-/// Frames of a clip as they were regenerated, once for each answer.
-struct Stretch {
-  FrameRange range;
-  std::vector<FittedClip> clips;
+/// What other parts of a track are told: the body and the camera that one has found.
+struct FoundBody {
+  Camera camera;
+  Skeleton skeleton;
+};
+
+/// A part as it was regenerated, once for each answer, at the track's rate.
+struct RegeneratedPart {
+  TrackPart part;
+  std::vector<Motion> motions;
+  std::vector<FoundBody> bodies;
+  MatrixD uncertainty;
   TrackFeatures::FillCount filled;
   std::vector<SideSwap> swaps;
 };
 
 /// The longest stretch tells of which body and camera the others are, if nobody says it.
-class StretchRegeneration {
+class PartRegeneration {
  public:
-  StretchRegeneration(const Modalities& modalities, const Track2d& track,
-                      const ClipPlacement& placement, const PoseAnswer& single,
-                      const PoseAnswers& all)
-      : modalities_(modalities), track_(track), placement_(placement), single_(single), all_(all) {
+  /// @param placement of the skeleton that is regenerated, which `other` moves to the wanted one
+  PartRegeneration(const Modalities& modalities, const Track2d& track,
+                   const ClipPlacement& placement, const OtherSkeleton& other,
+                   const PoseAnswer& single, const PoseAnswers& all)
+      : modalities_(modalities),
+        track_(track),
+        placement_(placement),
+        other_(other),
+        single_(single),
+        all_(all) {
     placement_.detected = !joined_by_name(track, modalities.track_features);
   }
 
-  std::vector<Stretch> regenerated(const std::vector<FrameRange>& ranges) const {
-    std::vector<Stretch> stretches(ranges.size());
-    const auto longest = static_cast<std::size_t>(
-        std::ranges::max_element(ranges, {}, &FrameRange::frames) - ranges.begin());
-    stretches[longest] = regenerated(ranges[longest], nullptr);
-    for (std::size_t i = 0; i < ranges.size(); ++i)
-      if (i != longest) stretches[i] = regenerated(ranges[i], &stretches[longest]);
-    return stretches;
+  std::vector<RegeneratedPart> regenerated(const std::vector<FrameRange>& stretches) {
+    std::vector<SideSwap> swaps;
+    std::vector<TrackPart> parts;
+    std::size_t first_of_longest = 0;
+    int longest = -1;
+    for (const FrameRange& stretch : stretches) {
+      if (placement_.detected) put_sides_right(stretch, swaps);
+      if (stretch.frames > longest) {
+        longest = stretch.frames;
+        first_of_longest = parts.size();
+      }
+      for (const TrackPart& part : parts_of(track_, stretch)) parts.push_back(part);
+    }
+    std::vector<RegeneratedPart> done(parts.size());
+    done[first_of_longest] = regenerated(parts[first_of_longest], nullptr);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (i != first_of_longest) done[i] = regenerated(parts[i], &done[first_of_longest]);
+    done.front().swaps.insert(done.front().swaps.begin(), swaps.begin(), swaps.end());
+    return done;
   }
 
  private:
-  Stretch regenerated(const FrameRange& range, const Stretch* told) const {
-    Stretch stretch{range, {}, {}, {}};
-    Track2d track = some_frames(track_, range.first, range.frames);
-    if (placement_.detected) {
-      stretch.swaps = find_side_swaps(track);
-      exchange_sides(track, stretch.swaps);
-    }
-    SeenClip seen = see_clip(modalities_, resample_track(track, modalities_.fps),
-                             placement_of(0, told), single_);
+  /// Adds what was exchanged.
+  void put_sides_right(const FrameRange& stretch, std::vector<SideSwap>& swaps) {
+    Track2d part = some_frames(track_, stretch.first, stretch.frames);
+    const std::vector<SideSwap> found = find_side_swaps(part);
+    if (found.empty()) return;
+    exchange_sides(part, found);
+    replace_frames(track_, stretch.first, part);
+    for (SideSwap swap : found) swaps.push_back(moved(std::move(swap), stretch.first));
+  }
+
+  RegeneratedPart regenerated(const TrackPart& part, const RegeneratedPart* told) const {
+    RegeneratedPart done{part, {}, {}, {}, {}, {}};
+    const FrameRange& range = part.range;
+    SeenClip seen =
+        see_clip(modalities_,
+                 resample_track(some_frames(track_, range.first, range.frames), modalities_.fps),
+                 placement_of(0, told), single_);
     for (SideSwap& swap : seen.swaps) {
       for (int* frame : {&swap.first_frame, &swap.last_frame})
         *frame = std::min(range.frames - 1,
-                          static_cast<int>(std::lround(*frame * track.fps / modalities_.fps)));
-      stretch.swaps.push_back(std::move(swap));
+                          static_cast<int>(std::lround(*frame * track_.fps / modalities_.fps)));
+      // What ends in frames that it shares was found in the part before.
+      if (swap.last_frame >= part.shared) done.swaps.push_back(moved(std::move(swap), range.first));
     }
-    for (SideSwap& swap : stretch.swaps) {
-      swap.first_frame += range.first;
-      swap.last_frame += range.first;
-    }
-    stretch.filled = std::move(seen.filled);
+    done.filled = std::move(seen.filled);
     for (const PosePrior& prior : all_(seen.features)) {
-      const std::size_t answer = stretch.clips.size();
+      const std::size_t answer = done.motions.size();
       ClipPlacement placement = placement_of(answer, told);
       placement.found = seen.view;
-      stretch.clips.push_back(
+      const FittedClip clip =
           fit_to_track(prior, modalities_, seen.joints, placement, placement.fit,
-                       answer == 0 ? placement.uncertainty_draws : PosteriorDraws{}));
+                       answer == 0 ? placement.uncertainty_draws : PosteriorDraws{});
+      done.motions.push_back(at_tracks_rate(clip.motion, range));
+      done.bodies.push_back({clip.camera, clip.motion.skeleton});
+      if (clip.draws.empty()) continue;
+      std::vector<Motion> draws;
+      for (const Motion& draw : clip.draws) draws.push_back(at_tracks_rate(draw, range));
+      done.uncertainty = joint_uncertainty(done.motions.back(), draws);
     }
-    return stretch;
+    return done;
   }
 
-  ClipPlacement placement_of(std::size_t answer, const Stretch* told) const {
+  ClipPlacement placement_of(std::size_t answer, const RegeneratedPart* told) const {
     ClipPlacement placement = placement_;
     if (told == nullptr) return placement;
-    const FittedClip& clip = told->clips[answer];
-    placement.camera = clip.camera;
+    placement.camera = told->bodies[answer].camera;
     if (!placement.skeleton) placement.detected = true;  // a body that was found is not exact
-    placement.skeleton = clip.motion.skeleton;
+    placement.skeleton = told->bodies[answer].skeleton;
     return placement;
   }
 
+  Motion at_tracks_rate(const Motion& motion, const FrameRange& range) const {
+    return other_.moved(with_frames(resample(motion, track_.fps), range.frames));
+  }
+
+  static SideSwap moved(SideSwap swap, int frames) {
+    swap.first_frame += frames;
+    swap.last_frame += frames;
+    return swap;
+  }
+
   const Modalities& modalities_;
-  const Track2d& track_;
+  Track2d track_;  ///< sides put right on the way
   ClipPlacement placement_;
+  const OtherSkeleton& other_;
   const PoseAnswer& single_;
   const PoseAnswers& all_;
 };
 
-/// Of all stretches together.
-TrackFeatures::FillCount filled_in(const std::vector<Stretch>& stretches) {
-  TrackFeatures::FillCount all{0, 0, stretches.front().filled.unseen};
-  const auto unseen_in = [](const Stretch& stretch, const std::string& joint) {
-    return std::ranges::find(stretch.filled.unseen, joint) != stretch.filled.unseen.end();
+/// Of all parts together; what two of them share counts twice.
+TrackFeatures::FillCount filled_in(const std::vector<RegeneratedPart>& parts) {
+  TrackFeatures::FillCount all{0, 0, parts.front().filled.unseen};
+  const auto unseen_in = [](const RegeneratedPart& part, const std::string& joint) {
+    return std::ranges::find(part.filled.unseen, joint) != part.filled.unseen.end();
   };
-  for (const Stretch& stretch : stretches) {
-    all.interpolated += stretch.filled.interpolated;
-    all.missing += stretch.filled.missing;
-    std::erase_if(all.unseen, [&](const auto& joint) { return !unseen_in(stretch, joint); });
+  for (const RegeneratedPart& part : parts) {
+    all.interpolated += part.filled.interpolated;
+    all.missing += part.filled.missing;
+    std::erase_if(all.unseen, [&](const auto& joint) { return !unseen_in(part, joint); });
   }
-  for (const Stretch& stretch : stretches)
+  for (const RegeneratedPart& part : parts)
     all.missing +=
-        stretch.range.frames * static_cast<int>(stretch.filled.unseen.size() - all.unseen.size());
+        part.part.range.frames * static_cast<int>(part.filled.unseen.size() - all.unseen.size());
   return all;
 }
 
-MatrixD stacked(MatrixD above, const MatrixD& below) {
-  if (above.rows() == 0) return below;
-  const Eigen::Index rows = above.rows();
-  above.conservativeResize(rows + below.rows(), Eigen::NoChange);
-  above.bottomRows(below.rows()) = below;
-  return above;
+/// Puts a part behind what stands; over the frames that both have it fades in.
+void join(Motion& whole, const Motion& motion, const TrackPart& part) {
+  for (int t = 0; t < part.range.frames; ++t) {
+    const int frame = part.range.first + t;
+    const RowVectorD own = motion.channels.row(t);
+    if (part.shared == 0) {
+      whole.channels.row(frame) = own;
+      continue;
+    }
+    const RowVectorD before = t < part.shared ? RowVectorD(whole.channels.row(frame)) : own;
+    whole.channels.row(frame) = interpolated_pose(whole.skeleton, before, own, part.share(t),
+                                                  whole.channels.row(std::max(0, frame - 1)));
+  }
+}
+
+void join(MatrixD& whole, const MatrixD& rows, const TrackPart& part) {
+  for (int t = 0; t < part.range.frames; ++t) {
+    auto stands = whole.row(part.range.first + t);
+    stands = (1 - part.share(t)) * stands + part.share(t) * rows.row(t);
+  }
 }
 
 }  // namespace
@@ -170,35 +232,28 @@ std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d&
   TrackStretches found = find_stretches(track);
   Track2d steady = track;
   leave_out(steady, found.strays);
-  const StretchRegeneration regeneration(modalities, steady, other.placement(wanted), single, all);
-  const std::vector<Stretch> stretches = regeneration.regenerated(found.stretches);
-  std::vector<Motion> motions;
+  const std::vector<RegeneratedPart> parts =
+      PartRegeneration(modalities, steady, other.placement(wanted), other, single, all)
+          .regenerated(found.stretches);
+  std::vector<Motion> motions = parts.front().motions;
+  for (Motion& motion : motions)
+    motion.channels = MatrixD::Zero(track.frames(), motion.channels.cols());
   MatrixD uncertainty;
-  for (const Stretch& stretch : stretches) {
-    const auto as_track = [&](const Motion& motion) {
-      return other.moved(with_frames(resample(motion, track.fps), stretch.range.frames));
-    };
-    for (std::size_t i = 0; i < stretch.clips.size(); ++i) {
-      Motion motion = as_track(stretch.clips[i].motion);
-      if (i == 0 && !stretch.clips[i].draws.empty()) {
-        std::vector<Motion> draws;
-        for (const Motion& draw : stretch.clips[i].draws) draws.push_back(as_track(draw));
-        uncertainty = stacked(std::move(uncertainty), joint_uncertainty(motion, draws));
-      }
-      if (i < motions.size())
-        motions[i].channels = stacked(std::move(motions[i].channels), motion.channels);
-      else
-        motions.push_back(std::move(motion));
-    }
+  if (const MatrixD& first = parts.front().uncertainty; first.size() > 0)
+    uncertainty = MatrixD::Zero(track.frames(), first.cols());
+  for (const RegeneratedPart& part : parts) {
+    for (std::size_t i = 0; i < motions.size(); ++i) join(motions[i], part.motions[i], part.part);
+    if (uncertainty.size() > 0) join(uncertainty, part.uncertainty, part.part);
   }
   if (!findings) return motions;
-  *findings = {filled_in(stretches),
+  *findings = {filled_in(parts),
                {},
-               stretches.front().clips.front().camera,
+               parts.front().bodies.front().camera,
                std::move(uncertainty),
                std::move(found)};
-  for (const Stretch& stretch : stretches)
-    findings->swaps.insert(findings->swaps.end(), stretch.swaps.begin(), stretch.swaps.end());
+  for (const RegeneratedPart& part : parts)
+    findings->swaps.insert(findings->swaps.end(), part.swaps.begin(), part.swaps.end());
+  std::ranges::sort(findings->swaps, {}, &SideSwap::first_frame);
   return motions;
 }
 

@@ -121,14 +121,16 @@ TEST_CASE("regenerate stretches: strays are left out, and what is said is of the
           std::swap((*values)(t, of.find("left_" + joint)),
                     (*values)(t, of.find("right_" + joint)));
   };
-  exchange(track, 65, 4);
   track.y_px.middleRows(20, 3).array() += 3 * track.height_px;
+  const auto as_it_was = scene.regenerated(track, scene.known);
+  exchange(track, 65, 4);
   TrackFindings found;
   const auto got = scene.regenerated(track, scene.known, &found);
   CHECK(found.stretches.strays == std::vector<FrameRange>{{20, 3}});
   REQUIRE(found.swaps.size() == 1);
   CHECK(found.swaps[0].first_frame == 65);
   CHECK(found.swaps[0].last_frame == 68);
+  CHECK(got.front().channels == as_it_was.front().channels);
   CHECK(found.uncertainty.rows() == kFrames);
   CHECK(found.uncertainty.cwiseAbs().minCoeff() >= 0);
   leave_out(track, found.stretches.strays);
