@@ -127,6 +127,12 @@ void print_record(const nlohmann::ordered_json& record) {
     fmt::print("{:<44}  failed: {}\n", name, printable(record.value("error", "")));
 }
 
+/// Before anything is trained. @throws ConfigError of the first that cannot be
+void check_settings(const TrainingOptions& settings, const SweepFile& file) {
+  for (const SweepConfiguration& configuration : file.configurations)
+    settings.resolve(configuration).validate();
+}
+
 void train_sweep(const CommandContext& context, Device& device, const TrainOptions& options,
                  const std::vector<ListedClip>& clips, const SweepFile& file) {
   std::optional<ProgressLine> progress;
@@ -186,6 +192,7 @@ void run_train(const CommandContext& context, const TrainOptions& options,
   const auto clips = find_listed_clips(options.data);
   std::optional<SweepFile> sweep;
   if (!options.sweep.empty()) sweep = read_sweep_file(options.sweep);
+  if (sweep) check_settings(options.settings, *sweep);
   Device device = Device::open({context.platform, context.device});
   if (sweep) return train_sweep(context, device, options, clips, *sweep);
   const std::filesystem::path from = start_of(options);

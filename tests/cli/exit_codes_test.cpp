@@ -98,6 +98,8 @@ TEST_CASE("exit codes: numbers out of any range are 2, NaN is in none, messages 
                    return text;
                  }())
           .string();
+  const std::string last_impossible =
+      folder.write("impossible.toml", "test = ['t']\n[grid]\norder = [1, 5000]\n").string();
   const std::string project = "project " + clip + " -o " + out,
                     train = "train " + clip + " -o " + out,
                     render = "render " + clip + " -o " + out + ".png",
@@ -136,7 +138,9 @@ TEST_CASE("exit codes: numbers out of any range are 2, NaN is in none, messages 
            {train + " --gaussian-rate 1e300", 2, "--gaussian-rate must be above 0 and at most 100"},
            {train + " --fine-tuning-windows 1000000000", 2, "--fine-tuning-windows must be"},
            {train + " --phases 1e9", 2, "--phases must be a whole number"},
-           {train + " --sweep " + grid, 2, "10000000 configurations; a sweep has 10000 at most"}}) {
+           {train + " --sweep " + grid, 2, "10000000 configurations; a sweep has 10000 at most"},
+           {train + " --sweep " + last_impossible, 2,
+            "impossible.toml:3: order must be at least 0 and at most 1000"}}) {
     check_case(one);
     CHECK(run_cli(one.arguments).standard_error.size() < 300 + out.size());
   }
