@@ -201,7 +201,7 @@ ClipPlacement placement_of(const RegenerateOptions& options, const std::optional
     placement.skeleton_channels = std::move(clip.channels);
   }
   placement.fit = track_fit(options.fit);
-  // The network alone always says how sure it is: that costs next to nothing.
+  // The network alone always says how sure it is: that costs less than a fit.
   const bool single = options.sampling.samples.value_or(1) == 1;
   if (!options.uncertainty.empty() || (single && !placement.fit))
     placement.uncertainty_draws = {kUncertaintyDraws, seed};
