@@ -207,6 +207,12 @@ std::vector<SideSwap> find_side_swaps(const Track2d& track, const SideSwapSettin
   return swaps;
 }
 
+SideSwap moved(SideSwap swap, int frames) {
+  swap.first_frame += frames;
+  swap.last_frame += frames;
+  return swap;
+}
+
 void exchange_sides(Track2d& track, const std::vector<SideSwap>& swaps) {
   for (const SideSwap& swap : swaps)
     for (std::size_t k = 0; k < swap.left.size(); ++k)

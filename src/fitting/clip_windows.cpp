@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/fade_in.hpp"
+
 namespace mcdbn {
 
 std::vector<ClipWindow> windows_of(Eigen::Index frames) {
@@ -16,8 +18,7 @@ std::vector<ClipWindow> windows_of(Eigen::Index frames) {
 }
 
 double share_of_window(const ClipWindow& window, Eigen::Index known, Eigen::Index t) {
-  const Eigen::Index shared = known - window.first;
-  return t < shared ? static_cast<double>(t + 1) / static_cast<double>(shared + 1) : 1.0;
+  return fade_in(static_cast<double>(t), static_cast<double>(known - window.first));
 }
 
 }  // namespace mcdbn

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "camera/track_resample.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
@@ -81,16 +82,15 @@ struct RegeneratedPart {
 class PartRegeneration {
  public:
   /// @param placement of the skeleton that is regenerated, which `other` moves to the wanted one
-  PartRegeneration(const Modalities& modalities, const Track2d& track,
-                   const ClipPlacement& placement, const OtherSkeleton& other,
-                   const PoseAnswer& single, const PoseAnswers& all)
+  PartRegeneration(const Modalities& modalities, Track2d track, ClipPlacement placement,
+                   const OtherSkeleton& other, const PoseAnswer& single, const PoseAnswers& all)
       : modalities_(modalities),
-        track_(track),
-        placement_(placement),
+        track_(std::move(track)),
+        placement_(std::move(placement)),
         other_(other),
         single_(single),
         all_(all) {
-    placement_.detected = !joined_by_name(track, modalities.track_features);
+    placement_.detected = !joined_by_name(track_, modalities.track_features);
   }
 
   std::vector<RegeneratedPart> regenerated(const std::vector<FrameRange>& stretches) {
@@ -170,12 +170,6 @@ class PartRegeneration {
     return other_.moved(with_frames(resample(motion, track_.fps), range.frames));
   }
 
-  static SideSwap moved(SideSwap swap, int frames) {
-    swap.first_frame += frames;
-    swap.last_frame += frames;
-    return swap;
-  }
-
   const Modalities& modalities_;
   Track2d track_;  ///< sides put right on the way
   ClipPlacement placement_;
@@ -203,16 +197,16 @@ TrackFeatures::FillCount filled_in(const std::vector<RegeneratedPart>& parts) {
 
 /// Puts a part behind what stands; over the frames that both have it fades in.
 void join(Motion& whole, const Motion& motion, const TrackPart& part) {
+  if (part.shared == 0) {
+    whole.channels.middleRows(part.range.first, part.range.frames) = motion.channels;
+    return;
+  }
   for (int t = 0; t < part.range.frames; ++t) {
     const int frame = part.range.first + t;
     const RowVectorD own = motion.channels.row(t);
-    if (part.shared == 0) {
-      whole.channels.row(frame) = own;
-      continue;
-    }
     const RowVectorD before = t < part.shared ? RowVectorD(whole.channels.row(frame)) : own;
     whole.channels.row(frame) = interpolated_pose(whole.skeleton, before, own, part.share(t),
-                                                  whole.channels.row(std::max(0, frame - 1)));
+                                                  whole.channels.row(frame - 1));
   }
 }
 
@@ -232,12 +226,13 @@ std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d&
   TrackStretches found = find_stretches(track);
   Track2d steady = track;
   leave_out(steady, found.strays);
-  const std::vector<RegeneratedPart> parts =
-      PartRegeneration(modalities, steady, other.placement(wanted), other, single, all)
-          .regenerated(found.stretches);
-  std::vector<Motion> motions = parts.front().motions;
-  for (Motion& motion : motions)
-    motion.channels = MatrixD::Zero(track.frames(), motion.channels.cols());
+  PartRegeneration regeneration(modalities, std::move(steady), other.placement(wanted), other,
+                                single, all);
+  const std::vector<RegeneratedPart> parts = regeneration.regenerated(found.stretches);
+  std::vector<Motion> motions;
+  for (const Motion& first : parts.front().motions)
+    motions.push_back(
+        {first.skeleton, first.frame_time_s, MatrixD::Zero(track.frames(), first.channels.cols())});
   MatrixD uncertainty;
   if (const MatrixD& first = parts.front().uncertainty; first.size() > 0)
     uncertainty = MatrixD::Zero(track.frames(), first.cols());

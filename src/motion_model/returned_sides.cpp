@@ -26,11 +26,8 @@ std::vector<SideSwap> swapped_spells(Track2d track,
     const Eigen::Index first = std::max<Eigen::Index>(0, spell.first_frame - around),
                        end = std::min<Eigen::Index>(track.frames(), spell.last_frame + 1 + around);
     const Track2d before = some_frames(track, first, end - first);
-    SideSwap swap = spell;  // counted from there
-    swap.first_frame -= static_cast<int>(first);
-    swap.last_frame -= static_cast<int>(first);
     Track2d exchanged = before;
-    exchange_sides(exchanged, {swap});
+    exchange_sides(exchanged, {moved(spell, -static_cast<int>(first))});
     try {
       if (energy(exchanged) > energy(before) - kClearly) continue;
     } catch (const InputError&) {  // not enough of a body

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/fade_in.hpp"
 #include "mcdbn/camera/track.hpp"
 #include "mcdbn/camera/track_stretches.hpp"
 
@@ -13,8 +14,8 @@ struct TrackPart {
   FrameRange range;
   int shared = 0;  ///< of its first frames, those that the part before it has too
 
-  /// How much this part counts in its frame `t`, beside the one before: it fades in.
-  double share(int t) const { return t < shared ? (t + 1.0) / (shared + 1.0) : 1.0; }
+  /// How much this part counts in its frame `t`, beside the one before.
+  double share(int t) const { return fade_in(t, shared); }
 };
 
 /// Parts of five minutes, each with two seconds of its neighbours on either side: further away

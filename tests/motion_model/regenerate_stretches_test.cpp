@@ -11,6 +11,7 @@
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion_model/recent_track.hpp"
+#include "motion_model/several_answers.hpp"
 
 namespace regenerate_stretches_test {
 
@@ -46,17 +47,12 @@ struct Scene {
                                      joint_set("COCO_17").keypoints, camera));
   }
   std::vector<Motion> regenerated(const Track2d& of, const ClipPlacement& placement,
-                                  TrackFindings* findings = nullptr, int answers = 1) const {
+                                  TrackFindings* findings = nullptr,
+                                  std::size_t answers = 1) const {
     const auto single = [&](const MatrixF& features) -> PosePrior {
       return MatrixF(MatrixF::Zero(features.rows(), modalities.pose_scale.output_dimension()));
     };
-    const auto all = [&](const MatrixF& features) {
-      std::vector<PosePrior> priors(static_cast<std::size_t>(answers), single(features));
-      for (int i = 0; i < answers; ++i)
-        priors[static_cast<std::size_t>(i)].mean.array() += 0.3F * static_cast<float>(i);
-      return priors;
-    };
-    return regenerate_clip(modalities, of, placement, single, all, findings);
+    return regenerate_clip(modalities, of, placement, single, several(single, answers), findings);
   }
 };
 

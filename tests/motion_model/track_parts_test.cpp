@@ -13,6 +13,7 @@
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion_model/recent_track.hpp"
+#include "motion_model/several_answers.hpp"
 
 namespace track_parts_test {
 
@@ -63,12 +64,7 @@ struct SlowWalk {
       return features.rows() < kFirstEnd ? MatrixF(pose.bottomRows(features.rows()))
                                          : MatrixF(pose.topRows(features.rows()));
     };
-    const auto all = [&](const MatrixF& features) {
-      std::vector<PosePrior> priors(2, single(features));
-      priors[1].mean.array() += 0.3F;
-      return priors;
-    };
-    return regenerate_clip(modalities, of, placement, single, all, findings);
+    return regenerate_clip(modalities, of, placement, single, several(single, 2), findings);
   }
 };
 

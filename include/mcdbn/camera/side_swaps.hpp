@@ -56,6 +56,9 @@ struct SideSwap {
 /// @param track with keypoints; without them nothing is found
 std::vector<SideSwap> find_side_swaps(const Track2d& track, const SideSwapSettings& settings = {});
 
+/// The same in a track that has so many frames more before it, or fewer.
+SideSwap moved(SideSwap swap, int frames);
+
 /// Exchanges what find_side_swaps found.
 void exchange_sides(Track2d& track, const std::vector<SideSwap>& swaps);
 
