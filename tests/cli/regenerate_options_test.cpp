@@ -11,7 +11,6 @@
 #include "library_calls.hpp"
 #include "mcdbn/camera/camera.hpp"
 #include "mcdbn/camera/track.hpp"
-#include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/joint_map.hpp"
@@ -354,65 +353,6 @@ TEST_CASE("regenerate: what holds where an option is not said") {
   Call drawn = bare;
   drawn.temperature = 0.6;
   check_same(drawn, answer);
-}
-
-TEST_CASE("regenerate --to track: 2D from a clip, as the library makes it") {
-  if (!have_device()) return;
-  const TinyPipeline& pipeline = TinyPipeline::instance();
-  const ScratchFolder folder;
-  make_track(folder / "seen.csv", folder / "camera.yaml",
-             "--camera-azimuth -50 --image-size 640 480");
-  const mcdbn::Model model = load_model(usual_device(), pipeline.model());
-  const mcdbn::Motion clip = mcdbn::load_clip(first_test_clip(), {.fps = model.modalities.fps});
-  const auto wanted = [&](const mcdbn::RegenerationOptions& options,
-                          const std::optional<mcdbn::Camera>& camera = {}) {
-    std::vector<std::string> texts;
-    for (const mcdbn::Track2d& track : regenerate_track(model, clip, options, camera)) {
-      write_track_csv(folder / "wanted.csv", track);
-      texts.push_back(mcdbn::read_text_file(folder / "wanted.csv"));
-    }
-    return texts;
-  };
-  const std::string plain = fmt::format("regenerate --model '{}' --to track --input '{}' -o '{}'",
-                                        pipeline.model().string(), first_test_clip().string(),
-                                        (folder / "out.csv").string());
-  const auto written = [&](const std::string& options, const std::vector<const char*>& files) {
-    const CliResult result = run_cli(plain + options);
-    CAPTURE(result.standard_error);
-    REQUIRE(result.exit_code == 0);
-    CHECK(result.standard_output.empty());
-    std::vector<std::string> texts;
-    for (const char* file : files) texts.push_back(mcdbn::read_text_file(folder / file));
-    return texts;
-  };
-  mcdbn::RegenerationOptions options;
-  options.sampling = model.network.sampling;
-  const auto answer = written("", {"out.csv"});
-  CHECK(answer == wanted(options));
-  CHECK(mcdbn::read_track_csv(folder / "out.csv").frames() == clip.frames());
-  const auto seen =
-      written(fmt::format(" --camera '{}'", (folder / "camera.yaml").string()), {"out.csv"});
-  CHECK(seen == wanted(options, mcdbn::read_camera(folder / "camera.yaml")));
-  CHECK(seen != answer);
-  options.samples = 2;
-  options.temperature = 0.7;
-  options.seed = 9;
-  options.sampling = {2, 3, false, 1.0};
-  CHECK(written(" --samples 2 --temperature 0.7 --seed 9 --gibbs-steps 2 --mrbm-gibbs-steps 3",
-                {"out_01.csv", "out_02.csv"}) == wanted(options));
-
-  for (const char* other : {"--fit none", "--fit track", "--skeleton clip.bvh", "--camera-pitch 3",
-                            "--camera-roll 3", "--camera-fov 50"}) {
-    CAPTURE(other);
-    const CliResult refused = run_cli(plain + " " + other);
-    CHECK(refused.exit_code == 2);
-    CHECK(refused.standard_error.find("is for --to pose") != std::string::npos);
-  }
-  const CliResult no_clip =
-      run_cli(fmt::format("regenerate --model '{}' --to track --input '{}' -o o.csv",
-                          pipeline.model().string(), (folder / "seen.csv").string()));
-  CHECK(no_clip.exit_code == 3);
-  CHECK(no_clip.standard_error.find("seen.csv") != std::string::npos);
 }
 
 }  // namespace regenerate_options_test
