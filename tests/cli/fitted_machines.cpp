@@ -9,9 +9,6 @@
 
 namespace mcdbn::test {
 
-const std::string kShortFit =
-    " --hidden 5 --batch 20 --gaussian-epochs 2 --binary-epochs 2 --quiet";
-
 const FittedMachines& FittedMachines::instance() {
   static const FittedMachines machines;
   return machines;

@@ -10,7 +10,8 @@
 namespace mcdbn::test {
 
 /// Settings with which a fit takes no time.
-extern const std::string kShortFit;
+inline const std::string kShortFit =
+    " --hidden 5 --batch 20 --gaussian-epochs 2 --binary-epochs 2 --quiet";
 
 /// Data of both kinds in files, 60 rows of 5 values, and machines that were fitted to them, made
 /// once for all tests of a file.

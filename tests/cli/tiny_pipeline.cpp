@@ -34,11 +34,6 @@ std::string clips_of(const fs::path& folder, int subject) {
 
 }  // namespace
 
-const std::string kTinyGreedy =
-    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2";
-const std::string kTiny =
-    kTinyGreedy + " --fine-tuning-steps 3 --fine-tuning-windows 4 --augment-views 1";
-
 CliResult synthesize(const fs::path& folder) {
   return run_cli(
       fmt::format("synthesize --action walk --clips 4 --subjects 2 --seconds 1.2 --seed 5 -o '{}'",
