@@ -39,7 +39,7 @@ void report(const GenerationHealth& health) {
   constexpr double kLeast = 0.5, kMost = 1.5;  // shares of the training data's deviation
   std::vector<double> deviation(health.deviation.begin(), health.deviation.end());
   std::sort(deviation.begin(), deviation.end());
-  const std::size_t cycle = *std::min_element(health.cycle.begin(), health.cycle.end());
+  const std::size_t cycle = health.shortest_of_cycles();
   spdlog::info(
       "its channels deviate {:.2f} to {:.2f} times as far as in training (median {:.2f}); {}",
       deviation.front(), deviation.back(), deviation[deviation.size() / 2],

@@ -67,6 +67,13 @@ Eigen::Matrix3d camera_rotation(double azimuth_deg, double elevation_deg) {
   return rotation;
 }
 
+std::vector<CameraPlacement> placements_around(const CameraPlacement& first, std::size_t count) {
+  std::vector<CameraPlacement> placements(count, first);
+  for (std::size_t i = 0; i < count; ++i)
+    placements[i].azimuth_deg += 360.0 * static_cast<double>(i) / static_cast<double>(count);
+  return placements;
+}
+
 Camera place_camera(const Motion& motion, const CameraPlacement& placement) {
   return place_camera(joint_positions(motion), placement);
 }

@@ -57,10 +57,20 @@ Pair pair_of(const Motion& motion, const Track2d& track, const Camera& camera,
           modalities.pose_values(motion, camera.camera_from_world)};
 }
 
-/// As the usual camera sees the motion.
-Pair seen_pair(const Motion& motion, const Modalities& modalities) {
-  const Camera camera = place_camera(motion, modalities.camera);
-  return pair_of(motion, project_motion(motion, camera), camera, modalities);
+/// As the model's camera sees the motion from each of its directions.
+void add_seen(const Motion& motion, const Modalities& modalities, std::vector<Pair>& pairs) {
+  for (const CameraPlacement& placement :
+       placements_around(modalities.camera, modalities.directions)) {
+    const Camera camera = place_camera(motion, placement);
+    pairs.push_back(pair_of(motion, project_motion(motion, camera), camera, modalities));
+  }
+}
+
+/// All of the clips in turn.
+std::vector<Pair> seen_pairs(const std::vector<Motion>& motions, const Modalities& modalities) {
+  std::vector<Pair> pairs;
+  for (const Motion& motion : motions) add_seen(motion, modalities, pairs);
+  return pairs;
 }
 
 void add_pairs(const std::vector<Pair>& pairs, TrainingSet& set) {
@@ -102,7 +112,8 @@ struct SampledClips {
     TrainingSet set{std::move(modalities), {}, {}, {}, {}, {}};
     for (const ClipRecord& record : clips.records()) set.clips.push_back(record.clip);
     const ClipGroups groups(clips);
-    for (std::size_t i = 0; i < pieces.size(); ++i) groups.add(pieces[i].clip, phases[i], set);
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      groups.add(pieces[i].clip, phases[i] * set.modalities.directions, set);
     return set;
   }
 };
@@ -135,11 +146,12 @@ TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& sett
                                  {},
                                  settings.fps,
                                  settings.camera,
+                                 with_views ? 1 : settings.directions,
                                  true});
   if (with_views) set.new_poses = pose_pool_for(clips, settings);
   Modalities& modalities = set.modalities;
-  std::vector<Pair> pairs;
-  for (const Motion& motion : sampled.motions) pairs.push_back(seen_pair(motion, modalities));
+  std::vector<Pair> pairs = seen_pairs(sampled.motions, modalities);
+  const std::size_t of_clips = pairs.size();
   RandomKey key{seed, 0, random_streams::kScalingViews, 0};
   for (const ClipPiece& piece : sampled.pieces) {
     if (!with_views) break;
@@ -151,7 +163,7 @@ TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& sett
   }
   modalities.pose_scale = Standardizer::fit(members(pairs, &Pair::pose));
   modalities.track_scale = Standardizer::fit(members(pairs, &Pair::track));
-  pairs.resize(sampled.motions.size());  // without views
+  pairs.resize(of_clips);  // without views
   add_pairs(pairs, set);
   return set;
 }
@@ -161,9 +173,7 @@ TrainingSet encoded_training_set(const ClipStore& clips, const Modalities& modal
   const SampledClips sampled(clips, settings);
   TrainingSet set = sampled.set(modalities);
   if (with_views) set.new_poses = pose_pool_for(clips, settings);
-  std::vector<Pair> pairs;
-  for (const Motion& motion : sampled.motions) pairs.push_back(seen_pair(motion, modalities));
-  add_pairs(pairs, set);
+  add_pairs(seen_pairs(sampled.motions, modalities), set);
   return set;
 }
 

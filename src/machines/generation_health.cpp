@@ -46,6 +46,13 @@ std::size_t shortest_cycle(const MatrixF& sequence, std::size_t longest) {
   return 0;
 }
 
+std::size_t GenerationHealth::shortest_of_cycles() const {
+  std::size_t shortest = 0;
+  for (const std::size_t frames : cycle)
+    if (frames > 0 && (shortest == 0 || frames < shortest)) shortest = frames;
+  return shortest;
+}
+
 std::size_t GenerationHealth::slow_sequences() const {
   std::size_t slow = 0;
   for (std::size_t i = 0; i < seed_speed.size(); ++i)
@@ -53,20 +60,22 @@ std::size_t GenerationHealth::slow_sequences() const {
   return slow;
 }
 
+double mean_speed(const MatrixF& sequence) {
+  return std::sqrt(change(sequence, 1));
+}
+
 GenerationHealth generation_health(const std::vector<MatrixF>& sequences,
-                                   const std::vector<MatrixF>& seeds) {
-  if (!seeds.empty() && sequences.size() % seeds.size() != 0)
-    throw ShapeError(fmt::format("{} sequences cannot have gone on from {} seeds alike",
-                                 sequences.size(), seeds.size()));
+                                   const std::vector<double>& seed_speed) {
+  if (!seed_speed.empty() && sequences.size() != seed_speed.size())
+    throw ShapeError(fmt::format("{} sequences, {} speeds of what they went on from",
+                                 sequences.size(), seed_speed.size()));
   GenerationHealth health;
-  for (const MatrixF& seed : seeds)
-    health.seed_speed.insert(health.seed_speed.end(), sequences.size() / seeds.size(),
-                             std::sqrt(change(seed, 1)));
+  health.seed_speed = seed_speed;
   health.deviation = deviation_of(sequences);
   for (const MatrixF& sequence : sequences) {
     const Eigen::Index late =
         std::min<Eigen::Index>(sequence.rows(), GenerationHealth::kLateFrames);
-    health.late_speed.push_back(std::sqrt(change(sequence.bottomRows(late), 1)));
+    health.late_speed.push_back(mean_speed(sequence.bottomRows(late)));
     health.cycle.push_back(shortest_cycle(sequence));
   }
   return health;

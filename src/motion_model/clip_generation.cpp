@@ -37,6 +37,15 @@ struct PreparedSeed {
   std::optional<HumanoidRig> rig;  ///< where the model is the humanoid's and the seed is not
 };
 
+/// Of each direction that the network has seen clips from, camera_from_world.
+std::vector<Eigen::Matrix3d> directions_of(const Modalities& modalities) {
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const CameraPlacement& placement :
+       placements_around(modalities.camera, modalities.directions))
+    rotations.push_back(camera_at_origin(placement).camera_from_world);
+  return rotations;
+}
+
 PreparedSeed prepared(const Model& model, const Motion& seed) {
   const Modalities& modalities = model.modalities;
   PreparedSeed own;
@@ -51,6 +60,29 @@ PreparedSeed prepared(const Model& model, const Motion& seed) {
                     counted(own.motion.frames(), "frame"), modalities.fps, needed));
   return own;
 }
+
+/// What the samples go on from, one after another.
+struct SeedEnds {
+  Eigen::Index frames;
+  std::vector<MatrixF> features = {};  ///< the last frames
+  std::vector<double> speed = {};      ///< mean_speed of the whole seed
+
+  /// @param directions camera_from_world; the samples take them in turn
+  void add(const Modalities& modalities, const Motion& seed,
+           const std::vector<Eigen::Matrix3d>& directions, std::size_t samples) {
+    const std::size_t first = features.size();
+    for (std::size_t i = 0; i < samples; ++i) {
+      if (i < directions.size()) {
+        const MatrixF seen = modalities.encode_pose(seed, directions[i]);
+        features.emplace_back(seen.bottomRows(frames));
+        speed.push_back(mean_speed(seen));
+      } else {
+        features.push_back(features[first + i % directions.size()]);
+        speed.push_back(speed[first + i % directions.size()]);
+      }
+    }
+  }
+};
 
 /// @throws ConfigError for more numbers than kernels count to, in 32 bits
 void check_amount(const Crbm& layer, std::size_t sequences, const GenerationOptions& options) {
@@ -84,26 +116,29 @@ Motion decoded(const Modalities& modalities, const MatrixF& pose, const Prepared
 std::vector<Motion> generate_clips(const Model& model, const std::vector<SeedClip>& seeds,
                                    const GenerationOptions& options, GenerationHealth* health) {
   const Modalities& modalities = model.modalities;
-  const Eigen::Matrix3d camera_from_world = camera_at_origin(modalities.camera).camera_from_world,
-                        axes_from_world = modalities.pose_axes(camera_from_world);
+  const Cdbn& cdbn = model.network.cdbns[kPose];
+  const std::vector<Eigen::Matrix3d> directions = directions_of(modalities);
   std::vector<PreparedSeed> prepared_seeds;
-  std::vector<MatrixF> features;
+  SeedEnds ends{static_cast<Eigen::Index>(seed_frames(cdbn))};
   for (const SeedClip& seed : seeds) {
     try {
       prepared_seeds.push_back(prepared(model, seed.motion));
-      features.push_back(modalities.encode_pose(prepared_seeds.back().motion, camera_from_world));
+      ends.add(modalities, prepared_seeds.back().motion, directions, options.samples);
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", seed.name, error.what()));
     }
   }
-  for (const Crbm& layer : model.network.cdbns[kPose].layers)
+  for (const Crbm& layer : cdbn.layers)
     check_amount(layer, seeds.size() * options.samples, options);
-  const auto poses = generate(model.network.cdbns[kPose], features, options);
-  if (health) *health = generation_health(poses, features);
+  GenerationOptions of_each = options;
+  of_each.samples = 1;
+  const auto poses = generate(cdbn, ends.features, of_each);
+  if (health) *health = generation_health(poses, ends.speed);
   std::vector<Motion> motions;
   for (std::size_t i = 0; i < poses.size(); ++i)
     motions.push_back(
-        decoded(modalities, poses[i], prepared_seeds[i / options.samples], axes_from_world));
+        decoded(modalities, poses[i], prepared_seeds[i / options.samples],
+                modalities.pose_axes(directions[i % options.samples % directions.size()])));
   return motions;
 }
 

@@ -88,6 +88,7 @@ json modalities_json(const Modalities& modalities) {
           {"track_scale", modalities.track_scale.to_json()},
           {"fps", modalities.fps},
           {"camera", camera_json(modalities.camera)},
+          {"directions", modalities.directions},
           {"level_view", modalities.level_view}};
 }
 
@@ -100,7 +101,9 @@ Modalities modalities_from(const JsonPlace& entry) {
                         Standardizer::from_json(track_scale.value(), track_scale.where()),
                         entry["fps"].number(kFrameRate_hz),
                         camera_from(entry["camera"])};
-  // Models from before there was one do not say it.
+  // Models from before there were these do not say them.
+  if (entry.has("directions"))
+    modalities.directions = entry["directions"].count(Modalities::kDirections);
   if (entry.has("level_view")) modalities.level_view = entry["level_view"].truth();
   check_joints(track, modalities);
   check_dimension(pose_scale, modalities.pose_scale.input_dimension(),

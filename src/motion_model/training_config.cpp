@@ -24,6 +24,7 @@ TrainingConfig TrainingConfig::generation() {
   TrainingConfig config;
   static_cast<LearningSettings&>(config) = LearningSettings::generation();
   config.phases = 4;
+  config.directions = 4;
   return config;
 }
 

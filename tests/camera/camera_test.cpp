@@ -40,6 +40,18 @@ TEST_CASE("camera rotation: azimuth 0 looks along -z, +90 stands on +x, elevatio
   }
 }
 
+TEST_CASE("placements around: evenly, from the first on, all else as it is") {
+  const CameraPlacement first{35, 12, 4.0, 50, 640, 480};
+  CHECK(placements_around(first, 1) == std::vector<CameraPlacement>{first});
+  const auto all = placements_around(first, 5);
+  REQUIRE(all.size() == 5);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CameraPlacement want = first;
+    want.azimuth_deg = 35 + 72.0 * static_cast<double>(i);
+    CHECK(all[i] == want);
+  }
+}
+
 TEST_CASE("placed camera: the whole clip is in view, and not smaller than it needs to be") {
   const Motion motion = test::swinging(test::small_body(), 120);
   for (const double azimuth : {0.0, 30.0, 95.0, 200.0}) {

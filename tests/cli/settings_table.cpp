@@ -30,6 +30,7 @@ const std::vector<SettingRow>& setting_rows() {
       SETTING("seed", 7, seed),
       SETTING("fps", 25, fps),
       SETTING("phases", 2, phases),
+      SETTING("directions", 3, directions),
       SWITCH("keep-first-frame", 1, keep_first_frame),
       SETTING("order", 3, order),
       SETTING("hidden", 9, hidden),

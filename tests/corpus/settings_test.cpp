@@ -15,6 +15,7 @@ const std::vector<Expected<CorpusSettings>>& corpus_settings() {
   static const std::vector<Expected<C>> settings = {
       {"fps", [](C& c) { return at(c.fps); }, "30"},
       {"phases", [](C& c) { return at(c.phases); }, "1"},
+      {"directions", [](C& c) { return at(c.directions); }, "1"},
       {"keep-first-frame", [](C& c) { return at(c.keep_first_frame); }, "false"},
       {"augment.views", [](C& c) { return at(c.augment.views); }, "20"},
       {"augment.mirror", [](C& c) { return at(c.augment.mirror); }, "true"},
@@ -74,6 +75,8 @@ TEST_CASE("corpus settings: what is out of range is refused by its name") {
     refused(name, 0, "at least 1");
     accepted(name, 1);
   }
+  refused("directions", 0, "at least 1 and at most 36");
+  refused("directions", 37, "at least 1 and at most 36");
   for (const char* name : {"augment.limbs-exchanged", "augment.limbs-turned",
                            "augment.arms-anywhere", "augment.leaning", "augment.turning-round"}) {
     refused(name, -0.01, "at least 0 and at most 1");

@@ -83,31 +83,35 @@ void check_scale(const Standardizer& scale, const MatrixD& values) {
 
 /// The whole of make_training_set once more: what is encoded, and what the scaling knows.
 void check_set(const TrainingFiles& walks, const CorpusConfig& config,
-               const std::vector<int>& phases, int views) {
+               const std::vector<int>& phases, int views, std::size_t directions = 1) {
   const TrainingSet set = make_training_set(walks.files(), config, nullptr);
   const Modalities& own = set.modalities;
   CHECK(own.fps == config.fps);
   CHECK(own.camera == config.camera);
   CHECK(own.level_view);
+  CHECK(own.directions == directions);
   const auto level_track = [&](const Track2d& track, const Camera& camera) {
     return turn_track(track, camera, level_camera(camera, config.camera.field_of_view_deg));
   };
   const std::vector<Motion> clips = clips_of(walks, config, phases);
-  REQUIRE(set.tracks.size() == clips.size());
-  REQUIRE(set.poses.size() == clips.size());
+  REQUIRE(set.tracks.size() == directions * clips.size());
+  REQUIRE(set.poses.size() == directions * clips.size());
   Columns tracks, poses;
   std::size_t frames = 0;
-  for (std::size_t i = 0; i < clips.size(); ++i) {
-    const Camera camera = place_camera(clips[i], config.camera);
-    const MatrixD track = own.track_features.encode(
-                      level_track(project_motion(clips[i], camera), camera)),
-                  pose =
-                      own.pose_features.encode(clips[i], level_rotation(camera.camera_from_world));
+  for (std::size_t i = 0; i < set.poses.size(); ++i) {
+    const Motion& clip = clips[i / directions];
+    CameraPlacement placement = config.camera;
+    placement.azimuth_deg +=
+        360.0 / static_cast<double>(directions) * static_cast<double>(i % directions);
+    const Camera camera = place_camera(clip, placement);
+    const MatrixD track =
+                      own.track_features.encode(level_track(project_motion(clip, camera), camera)),
+                  pose = own.pose_features.encode(clip, level_rotation(camera.camera_from_world));
     CHECK(set.tracks[i] == own.track_scale.apply(track));
     CHECK(set.poses[i] == own.pose_scale.apply(pose));
     tracks.add(track);
     poses.add(pose);
-    frames += static_cast<std::size_t>(clips[i].frames());
+    frames += static_cast<std::size_t>(clip.frames());
   }
   CHECK(set.frames() == frames);
   AugmentationSettings in_sight = config.augment;
@@ -165,6 +169,25 @@ TEST_CASE("clips are taken on as many grids as were asked for and as their own r
   config.fps = 30.0;  // exactly four and two
   config.phases = 9;
   check_set(walks, config, {4, 2, 2}, 0);
+}
+
+TEST_CASE("clips are seen from as many directions as were asked for, where there are no views") {
+  const TrainingFiles walks(kWalks);
+  CorpusConfig config = settings();
+  config.directions = 4;
+  check_set(walks, config, {1, 1, 1}, 3);  // views are from all around by themselves
+  config.with_views = false;
+  config.phases = 3;
+  check_set(walks, config, {3, 2, 2}, 0, 4);
+  using Numbers = std::vector<std::size_t>;
+  config.phases = 1;
+  config.directions = 2;
+  const TrainingSet set = make_training_set(walks.files(), config, nullptr);
+  CHECK(set.people == Numbers{0, 0, 1, 1, 0, 0});
+  // A model that is trained on keeps its own.
+  const auto clips = load_clips(walks.files(), config.keep_first_frame, nullptr);
+  config.directions = 1;
+  CHECK(encoded_training_set(clips, set.modalities, config, false).poses == set.poses);
 }
 
 TEST_CASE("a training set and views of it: who is seen, and who does what where that was said") {

@@ -174,7 +174,9 @@ TEST_CASE("generate_clips: several seeds go on each on its own person, and healt
           path_of(got[i], "Hips"));
       CHECK(largest(got[i].channels - there.channels) < 1e-6);
     }
-    const GenerationHealth want = generation_health(poses, features);
+    std::vector<double> speeds;  // two samples of each
+    for (const MatrixF& seed : features) speeds.insert(speeds.end(), 2, mean_speed(seed));
+    const GenerationHealth want = generation_health(poses, speeds);
     CHECK(health.deviation == want.deviation);
     CHECK(health.late_speed == want.late_speed);
     CHECK(health.seed_speed == want.seed_speed);
@@ -182,6 +184,37 @@ TEST_CASE("generate_clips: several seeds go on each on its own person, and healt
     with_stranger[1].motion.channels = MatrixD(seeds[1].motion.channels.topRows(2));
     CHECK_THROWS_WITH_AS(generate_clips(model, with_stranger, options),
                          doctest::Contains("other: the seed clip has 2 frames"), InputError);
+  });
+}
+
+TEST_CASE("generate_clips: samples are seen from the directions that the model learnt, in turn") {
+  on_every_device([&](Device& device) {
+    Scene scene;
+    scene.modalities.directions = 3;
+    const Model model = scene.model(device);
+    const std::vector<SeedClip> seeds{{"one", other_person(90, 30)},
+                                      {"other", swinging(small_body(), 60)}};
+    GenerationOptions options = some_options();
+    options.temperature = 0;  // nothing else tells samples apart
+    options.samples = 5;
+    GenerationHealth health;
+    const auto got = generate_clips(model, seeds, options, &health);
+    REQUIRE(got.size() == 10);
+    options.samples = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      CAPTURE(i);
+      Model turned = model;
+      turned.modalities.camera.azimuth_deg += 120.0 * static_cast<double>(i);
+      turned.modalities.directions = 1;
+      GenerationHealth alone;
+      const auto want = generate_clips(turned, seeds, options, &alone);
+      for (std::size_t seed = 0; seed < 2; ++seed)
+        for (std::size_t sample = i; sample < 5; sample += 3) {
+          CHECK(largest(got[5 * seed + sample].channels - want[seed].channels) < 1e-4);
+          CHECK(health.seed_speed[5 * seed + sample] == alone.seed_speed[seed]);
+        }
+      if (i > 0) CHECK(largest(got[i].channels - got[0].channels) > 0.1);
+    }
   });
 }
 

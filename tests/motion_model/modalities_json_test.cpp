@@ -53,4 +53,13 @@ TEST_CASE("modalities: JSON keeps the level view; a model that does not speak of
   }
 }
 
+TEST_CASE("modalities: JSON keeps the directions; a model that does not say them has one") {
+  Modalities modalities = modalities_of({swinging(small_body(), 20)}, {});
+  modalities.directions = 7;
+  nlohmann::json json = modalities_json(modalities);
+  CHECK(modalities_from({json, "file"}).directions == 7);
+  json.erase("directions");
+  CHECK(modalities_from({json, "file"}).directions == 1);
+}
+
 }  // namespace modalities_json_test

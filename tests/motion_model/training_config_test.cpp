@@ -50,6 +50,7 @@ TEST_CASE("training config: presets are those of learning") {
   CHECK(changed_by(TrainingConfig::paper()) == changed_by(LearningSettings::paper()));
   Values generation = changed_by(LearningSettings::generation());
   generation["phases"] = "4";
+  generation["directions"] = "4";
   CHECK(changed_by(TrainingConfig::generation()) == generation);
   for (const TrainingConfig& config : {TrainingConfig{}, TrainingConfig::greedy(),
                                        TrainingConfig::paper(), TrainingConfig::generation()})

@@ -61,6 +61,9 @@ struct CameraPlacement {
   }
 };
 
+/// That placement and others, evenly around the figure, each further to its left.
+std::vector<CameraPlacement> placements_around(const CameraPlacement& first, std::size_t count);
+
 /// camera_from_world of that azimuth and elevation, with the world's +y up.
 Eigen::Matrix3d camera_rotation(double azimuth_deg, double elevation_deg);
 

@@ -27,6 +27,7 @@ enum class SkeletonUse {
 struct CorpusSettings {
   double fps = 30.0;
   std::size_t phases = 1;
+  std::size_t directions = 1;
   bool keep_first_frame = false;
   SkeletonUse skeleton = SkeletonUse::shared;  ///< no number: a choice of load_training_clips
   JointMap joint_map = {};                     ///< no number: roles of clips' joints, said by hand
@@ -44,6 +45,11 @@ struct CorpusSettings {
                   "times that each clip is sampled, shifted, where its own rate allows: a fast "
                   "clip's other frames say something, too"},
           self.phases);
+    visit(
+        Setting{"directions", Modalities::kDirections, "directions",
+                "from how many, evenly around, each clip is seen where nothing is fine-tuned: one "
+                "who walks away is no rarity then"},
+        self.directions);
     visit(Setting{"keep-first-frame", on_or_off(), "", "keep a leading calibration pose"},
           self.keep_first_frame);
     visit_group("augment", self.augment, visit);
@@ -71,8 +77,9 @@ struct TrainingSet {
   std::size_t frames() const;
 };
 
-/// Resamples each clip on `phases` shifted grids, projects it through the camera and learns the
-/// features and their scaling. Of more than some two hours pieces stand for all (clip_pieces.hpp).
+/// Resamples each clip on `phases` shifted grids, projects it through the camera, without views
+/// from `directions` all around, and learns the features and their scaling. Of more than some two
+/// hours pieces stand for all (clip_pieces.hpp).
 /// @param clips at their own rate (load_clips)
 /// @param with_views the scaling is learnt from augmented views, too (make_augmented_views)
 /// @throws InputError

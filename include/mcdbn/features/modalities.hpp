@@ -13,11 +13,16 @@ namespace mcdbn {
 
 /// How motion and 2D tracks become the network's standardized rows and back (docs/concepts.md).
 struct Modalities {
+  static constexpr Range kDirections = within(1, 36);
+
   PoseFeatures pose_features;
   TrackFeatures track_features;
   Standardizer pose_scale, track_scale;
   double fps = 30.0;
   CameraPlacement camera;  ///< the view that the training tracks were projected through
+  /// From how many directions clips as they are were seen (placements_around `camera`): motion that
+  /// the network generates may be turned as many ways.
+  std::size_t directions = 1;
   /// Whether the network sees and answers in the camera's level view (level_camera, with `camera`'s
   /// field of view), so that its axes are gravity and the camera's heading; else in the camera's
   /// own, as models did before there was one.

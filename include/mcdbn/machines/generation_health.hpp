@@ -15,11 +15,13 @@ struct GenerationHealth {
   /// Of each sequence, RMS change of a channel from frame to frame over the last kLateFrames: next
   /// to nothing where it came to a stop.
   std::vector<double> late_speed;
-  /// Of each sequence, the same of what it went on from, all its frames; empty where nobody said.
+  /// Of each sequence, mean_speed of what it went on from; empty where nobody said.
   std::vector<double> seed_speed = {};
   /// Of each sequence, the shortest lag in frames after which it comes back to where it was
   /// (shortest_cycle).
   std::vector<std::size_t> cycle;
+  /// Of those that come back at all; 0 if none does.
+  std::size_t shortest_of_cycles() const;
 
   static constexpr int kLateFrames = 200;
   /// How many sequences move at less than kSlow of their seed's speed in the end.
@@ -28,11 +30,13 @@ struct GenerationHealth {
 };
 
 /// @param sequences standardized, [frames x visible] each
-/// @param seeds what they went on from, as many sequences of each, one seed's after another's; or
-/// none
-/// @throws ShapeError if the sequences are no multiple of the seeds
+/// @param seed_speed mean_speed of what each went on from; or empty
+/// @throws ShapeError if there are not as many of both
 GenerationHealth generation_health(const std::vector<MatrixF>& sequences,
-                                   const std::vector<MatrixF>& seeds = {});
+                                   const std::vector<double>& seed_speed = {});
+
+/// RMS change of a channel from frame to frame.
+double mean_speed(const MatrixF& sequence);
 
 /// The first lag from 2 frames on at which the mean squared change has a minimum that is below
 /// kComesBack of what it was at the largest on the way there: a walk's stride. 0 if there is none
