@@ -38,7 +38,7 @@ TrainingConfig TrainingConfig::general() {
   config.augment.leaning = 0.25;
   config.augment.turning_round = 0.25;
   config.augment.gravity_deg = 1.5;
-  config.fine_tuning.steps = 20000;
+  config.fine_tuning.steps = 30000;
   config.fine_tuning.view_uses = 16;
   config.fine_tuning.weight_decay = 0.1;
   config.fine_tuning.windows = 40;
