@@ -19,8 +19,6 @@ namespace {
 /// Of the time that a default run takes the greedy stages' part, where fine-tuning follows: what
 /// progress shows. On 43 CMU walks fine-tuning took 405 of 456 s, reading clips included.
 constexpr double kGreedyShare = 0.1;
-/// The same where fine-tuning ends: how far answers deviate is learnt then, a minute of 50.
-constexpr double kTunedShare = 0.98;
 
 /// An observer of one stage that shows it as the part `from` … `to` of the run.
 EpochObserver part_of_run(const EpochObserver& observer, double from, double to) {
@@ -130,7 +128,7 @@ TrainedNetwork train_network(Device& device, const TrainingSet& data, const Clip
     modalities.push_back({modality.name, modality.dimension(), modality.kind});
   Mcdbn start = from != nullptr ? *from : random_start(device, modalities, config);
   const EpochObserver tuning =
-      part_of_run(observer, config.fine_tuning.from_greedy ? kGreedyShare : 0.0, kTunedShare);
+      part_of_run(observer, config.fine_tuning.from_greedy ? kGreedyShare : 0.0, 1.0);
   if (learns_from_fresh_views(clips, config)) {
     const FreshViewSource views(clips, data, config);
     start = greedy_start(device, views, std::move(start), config, observer, checkpoints);
