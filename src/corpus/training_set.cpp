@@ -82,6 +82,7 @@ void add_pairs(const std::vector<Pair>& pairs, TrainingSet& set) {
 
 std::vector<const Motion*> pointers(const std::vector<Motion>& motions) {
   std::vector<const Motion*> all;
+  all.reserve(motions.size());
   for (const Motion& motion : motions) all.push_back(&motion);
   return all;
 }

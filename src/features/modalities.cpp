@@ -31,7 +31,7 @@ MatrixF Modalities::encode_pose(const Motion& clip,
 
 MatrixD Modalities::pose_in_camera(const MatrixF& standardized,
                                    const Eigen::Matrix3d& camera_from_world) const {
-  const MatrixD values = pose_scale.invert(standardized);
+  MatrixD values = pose_scale.invert(standardized);
   if (!level_view) return values;
   return pose_features.turned(values, camera_from_world * pose_axes(camera_from_world).transpose());
 }

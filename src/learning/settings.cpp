@@ -65,7 +65,7 @@ LearningSettings LearningSettings::generation() {
   settings.gaussian.rate = settings.gaussian.rate_B = 3e-3;
   settings.gaussian.rate_A = 1e-4;
   settings.gaussian.history_noise = 1.0;
-  settings.gaussian.epochs = 120;
+  settings.gaussian.epochs = 200;
   settings.gaussian.final_rate = 0.05;
   settings.gaussian.cosine = true;
   settings.people_power = 0;

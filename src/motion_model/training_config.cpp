@@ -25,6 +25,9 @@ TrainingConfig TrainingConfig::generation() {
   static_cast<LearningSettings&>(config) = LearningSettings::generation();
   config.phases = 4;
   config.directions = 4;
+  // As many mini-batches as from one.
+  for (std::size_t* epochs : {&config.gaussian.epochs, &config.binary.epochs, &config.mrbm.epochs})
+    *epochs /= config.directions;
   return config;
 }
 

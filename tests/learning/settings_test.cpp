@@ -144,7 +144,7 @@ TEST_CASE("learning settings: the generation preset is one layer by CD-1 with no
                                                              {"gaussian.rate-A", "0.0001"},
                                                              {"gaussian.rate-B", "0.003"},
                                                              {"gaussian.history-noise", "1"},
-                                                             {"gaussian.epochs", "120"},
+                                                             {"gaussian.epochs", "200"},
                                                              {"gaussian.final-rate", "0.05"},
                                                              {"gaussian.cosine", "true"},
                                                              {"binary.epochs", "50"},

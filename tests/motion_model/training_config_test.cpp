@@ -51,6 +51,9 @@ TEST_CASE("training config: presets are those of learning") {
   Values generation = changed_by(LearningSettings::generation());
   generation["phases"] = "4";
   generation["directions"] = "4";
+  generation["gaussian.epochs"] = "50";  // learning's have a fourth of the frames
+  generation["binary.epochs"] = "12";
+  generation["mrbm.epochs"] = "7";
   CHECK(changed_by(TrainingConfig::generation()) == generation);
   for (const TrainingConfig& config : {TrainingConfig{}, TrainingConfig::greedy(),
                                        TrainingConfig::paper(), TrainingConfig::generation()})
