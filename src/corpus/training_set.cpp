@@ -57,19 +57,16 @@ Pair pair_of(const Motion& motion, const Track2d& track, const Camera& camera,
           modalities.pose_values(motion, camera.camera_from_world)};
 }
 
-/// As the model's camera sees the motion from each of its directions.
-void add_seen(const Motion& motion, const Modalities& modalities, std::vector<Pair>& pairs) {
-  for (const CameraPlacement& placement :
-       placements_around(modalities.camera, modalities.directions)) {
-    const Camera camera = place_camera(motion, placement);
-    pairs.push_back(pair_of(motion, project_motion(motion, camera), camera, modalities));
-  }
-}
-
-/// All of the clips in turn.
+/// As the model's camera sees each motion from each of its directions, those of a motion in a row.
 std::vector<Pair> seen_pairs(const std::vector<Motion>& motions, const Modalities& modalities) {
+  const auto placements = placements_around(modalities.camera, modalities.directions);
   std::vector<Pair> pairs;
-  for (const Motion& motion : motions) add_seen(motion, modalities, pairs);
+  pairs.reserve(motions.size() * placements.size());
+  for (const Motion& motion : motions)
+    for (const CameraPlacement& placement : placements) {
+      const Camera camera = place_camera(motion, placement);
+      pairs.push_back(pair_of(motion, project_motion(motion, camera), camera, modalities));
+    }
   return pairs;
 }
 
