@@ -40,6 +40,36 @@ Mcdbn quiet_network(Device& device, const Modalities& modalities) {
   return network;
 }
 
+/// Its answer is the mean pose but for the left forearm, which points one way where the feature
+/// LeftHand x is above `threshold`, and the other way where it is below.
+Mcdbn hand_network(Device& device, const Modalities& modalities, float threshold) {
+  CrbmParameters seeing =
+      CrbmParameters::zeros({static_cast<std::size_t>(modalities.track_scale.output_dimension()), 2,
+                             1, VisibleKind::gaussian});
+  const std::vector<std::string>& joints = modalities.track_features.joint_names();
+  const auto hand = std::ranges::find(joints, "LeftHand") - joints.begin();
+  seeing.W(2 * hand, 0) = 20;
+  seeing.b(0, 0) = -20 * threshold;
+  MrbmParameters joining = MrbmParameters::zeros(two_modalities(2, 2, 1));
+  joining.W[0](0, 0) = joining.W[1](0, 0) = 10;
+  joining.b(0, 0) = -10;
+  joining.a[1](0, 0) = -5;
+  CrbmParameters answering =
+      CrbmParameters::zeros({static_cast<std::size_t>(modalities.pose_scale.output_dimension()), 2,
+                             1, VisibleKind::gaussian});
+  const std::vector<std::string> features = modalities.pose_features.feature_names();
+  for (std::size_t i = 0; i < features.size(); ++i)
+    if (features[i].starts_with("LeftForeArm_x_axis")) {
+      const auto feature = static_cast<Eigen::Index>(i);
+      answering.W(feature, 0) = 4;
+      answering.a(0, feature) = -2;
+    }
+  Mcdbn network{std::vector<Cdbn>(2), Mrbm(device, joining), kLookAhead, 4};
+  network.cdbns[0].layers.emplace_back(device, seeing);
+  network.cdbns[1].layers.emplace_back(device, answering);
+  return network;
+}
+
 Motion walk(int clip, int frames, double fps) {
   SynthesisOptions options;
   options.clip = clip;
@@ -106,18 +136,27 @@ Motion followed(LiveRegeneration& live, const Track2d& track) {
   return motion;
 }
 
-/// Mean distance of the joints from the root, mm of a 1.7 m body, from frame `first` on.
+/// Joints from the root, mm of a 1.7 m body. [frames x 3·joints]
+MatrixD places_mm(const Motion& motion) {
+  const MatrixD all = joint_positions(motion);
+  return 1000 / file_units_per_metre(motion.skeleton) *
+         (all - all.leftCols(3).replicate(1, all.cols() / 3));
+}
+
+/// Mean distance between two motions' joints, from frame `first` on.
 double apart_mm(const Motion& one, const Motion& other, Eigen::Index first = 0) {
-  const auto places = [&](const Motion& motion) -> MatrixD {
-    const MatrixD all = joint_positions(motion);
-    return 1000 / file_units_per_metre(motion.skeleton) *
-           (all - all.leftCols(3).replicate(1, all.cols() / 3));
-  };
-  const MatrixD off = (places(one) - places(other)).bottomRows(one.frames() - first);
+  const MatrixD off = (places_mm(one) - places_mm(other)).bottomRows(one.frames() - first);
   double sum = 0;
   for (Eigen::Index column = 0; column < off.cols(); column += 3)
     sum += off.middleCols<3>(column).rowwise().norm().mean();
   return 3 * sum / static_cast<double>(off.cols());
+}
+
+/// Mean distance between two motions' joint of that name in those frames.
+double joint_apart_mm(const Motion& one, const Motion& other, const std::string& joint,
+                      Eigen::Index first, Eigen::Index frames) {
+  const MatrixD off = places_mm(one) - places_mm(other);
+  return off.block(first, 3 * one.skeleton.find(joint), frames, 3).rowwise().norm().mean();
 }
 
 }  // namespace
@@ -242,6 +281,39 @@ TEST_CASE("live: missing joints follow from the others and by the frames around"
     const Motion whole = regenerate_clip(model, scene.track, scene.placement(), {}).front();
     CHECK(got.channels.allFinite());
     CHECK(apart_mm(got, scene.clip) < apart_mm(whole, scene.clip) + 5);
+  });
+}
+
+TEST_CASE(
+    "live: a joint that is missing for long is shown to the network where the solution has it") {
+  on_every_device([](Device& device) {
+    Scene scene;
+    scene.view.azimuth_deg += 120;  // from there the hand is not where its mean is
+    scene.camera = place_camera(scene.clip, scene.view);
+    scene.track = project_motion(scene.clip, scene.camera);
+    const Model model{hand_network(device, scene.modalities, -0.5F), scene.modalities, {}, {}};
+    const auto got = [&] {
+      LiveRegeneration live(model, scene.track, scene.placement());
+      return followed(live, scene.track);
+    };
+    const int hand = scene.track.find("LeftHand"), first = 15, frames = 30;
+    hide(scene.track, first, frames, hand);
+    const Motion missing = got();
+    const Track2d solution = project_motion(missing, scene.camera);
+    const auto with_hand = [&](double aside_px) {
+      for (int t = first; t < first + frames; ++t) {
+        scene.track.x_px(t, hand) = solution.x_px(t, solution.find("LeftHand")) + aside_px;
+        scene.track.y_px(t, hand) = solution.y_px(t, solution.find("LeftHand"));
+        scene.track.confidence(t, hand) = 1e-6;  // for the network, and next to nothing to the fit
+      }
+      return got();
+    };
+    // Ten frames later the network no longer looks back at what was seen.
+    const auto hand_apart_mm = [&](const Motion& one, const Motion& other) {
+      return joint_apart_mm(one, other, "LeftHand", first + 10, frames - 10);
+    };
+    CHECK(hand_apart_mm(with_hand(0), missing) < 5);
+    CHECK(hand_apart_mm(with_hand(400), missing) > 100);
   });
 }
 
