@@ -37,7 +37,7 @@ TEST_CASE("a hundred trainings leave no OpenCL object and need no more memory th
     CHECK(layer::objects().empty());
     return used_bytes();
   };
-  const double few = train(2), many = train(8);
+  [[maybe_unused]] const double few = train(2), many = train(8);
 #ifndef __SANITIZE_ADDRESS__  // which keeps what was freed for a while
   // Less than what a training reads; PoCL keeps some 400 KB of each device that was opened.
   constexpr double kMost = 10e6;
