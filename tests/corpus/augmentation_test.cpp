@@ -41,7 +41,8 @@ TEST_CASE("a view is the same for the same key, and another for another") {
   const AugmentedView first = view(kKey);
   CHECK(first.motion.channels == view(kKey).motion.channels);
   CHECK(first.track.x_px == view(kKey).track.x_px);
-  CHECK(first.motion.channels != view(other).motion.channels);
+  const MatrixD ours = first.motion.channels, others = view(other).motion.channels;
+  CHECK((ours.rows() != others.rows() || ours != others));
 }
 
 TEST_CASE("without settings a view is the clip itself, at another phase") {

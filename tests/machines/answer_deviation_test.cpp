@@ -59,9 +59,9 @@ TEST_CASE("answer deviation: the deviations of drawn residuals are found again")
       (found.of(problem.code).array() / problem.deviations.array()).log().square().mean();
   CHECK(std::sqrt(off) < 0.04);
   // In every column r/sigma is 1 on average, whatever the residuals' distribution.
-  const auto ratios = problem.residuals.array() / found.of(problem.code).array();
+  const MatrixF ratios = problem.residuals.array() / found.of(problem.code).array();
   for (Eigen::Index j = 0; j < kVisible; ++j)
-    CHECK(ratios.square().matrix().col(j).mean() == doctest::Approx(1).epsilon(1e-3));
+    CHECK(ratios.col(j).array().square().mean() == doctest::Approx(1).epsilon(1e-3));
   CHECK_THROWS_AS(AnswerDeviation::fit(problem.code, MatrixF(3, kVisible)), ShapeError);
   CHECK_THROWS_AS(AnswerDeviation::fit(MatrixF(1, 2), MatrixF(1, 2)), ShapeError);
 }
@@ -71,8 +71,8 @@ TEST_CASE("answer deviation: calibrated on others it is as large as their residu
   AnswerDeviation found = AnswerDeviation::fit(problem.code, problem.residuals);
   const MatrixF before = found.of(problem.code), theirs = 3.0F * problem.residuals;
   found.calibrate(theirs, before);
-  const auto ratios = theirs.array() / found.of(problem.code).array();
-  CHECK(ratios.square().mean() == doctest::Approx(1).epsilon(1e-3));
+  const MatrixF ratios = theirs.array() / found.of(problem.code).array();
+  CHECK(ratios.array().square().mean() == doctest::Approx(1).epsilon(1e-3));
   CHECK_THROWS_AS(found.calibrate(theirs, MatrixF(1, 1)), ShapeError);
 }
 

@@ -85,7 +85,7 @@ TEST_CASE("fine-tuning lowers its loss, and the same seed gives the same bits") 
   const TrainingSet views =
       make_augmented_views(load_clips(run.files), run.data->modalities, run.config);
   REQUIRE(views.poses.size() == 4);
-  CHECK(views.poses[0] != views.poses[1]);
+  CHECK((views.poses[0].rows() != views.poses[1].rows() || views.poses[0] != views.poses[1]));
   on_every_device([&](Device& device) {
     std::vector<double> losses;
     const auto observer = [&](const EpochReport& report) {
