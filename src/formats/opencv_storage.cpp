@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <exception>
+#include <iterator>
 #include <sstream>
 
 #include "mcdbn/base/errors.hpp"
@@ -56,25 +60,22 @@ double OpencvStorage::number(const std::string& name) const {
 
 OpencvStorage::Values OpencvStorage::matrix(const std::string& name) const {
   const cv::FileNode found = node(name);
-  cv::Mat values;
+  const bool list = found.isSeq();
+  Values matrix{1, 1, {}};
   try {
-    if (found.isSeq()) {
-      std::vector<double> list;
-      found >> list;
-      values = cv::Mat(list, true);
-    } else {
-      found >> values;
-    }
+    (list ? found : found["data"]) >> matrix.values;
+    matrix.rows = list ? static_cast<int>(matrix.values.size()) : static_cast<int>(found["rows"]);
+    if (!list) matrix.columns = static_cast<int>(found["cols"]);
   } catch (const std::exception&) {
     throw InputError(where(name) + " cannot be read; give an opencv-matrix");
   }
-  if (values.empty() || values.channels() != 1)
+  // OpenCV would make room for as many as the file says before it counts them.
+  const auto said = static_cast<std::int64_t>(matrix.rows) * matrix.columns;
+  if (matrix.rows < 1 || said != std::ssize(matrix.values))
     throw InputError(where(name) + " is not a matrix of numbers; give an opencv-matrix");
-  cv::Mat doubles;
-  values.convertTo(doubles, CV_64F);
-  if (!cv::checkRange(doubles))
+  if (!std::ranges::all_of(matrix.values, [](double value) { return std::isfinite(value); }))
     throw InputError(where(name) + " holds a number that is not finite; correct it");
-  return {doubles.rows, doubles.cols, {doubles.begin<double>(), doubles.end<double>()}};
+  return matrix;
 }
 
 Eigen::Matrix3d OpencvStorage::square(const std::string& name, const std::string& what) const {
