@@ -69,7 +69,7 @@ INLINE void update_bias(int column, const int ld, int rows, float mean, global c
                         int at, global float* parameters, global float* gradients,
                         global float* states, int size, float8 rule) {
   floatN sum = (floatN)(0.0f);
-  for (int i = 0; i < rows; ++i) sum += loadN(i * ld + column, change);
+  for (int i = 0; i < rows; ++i) sum = add_in_order(sum, loadN(i * ld + column, change));
   update(parameters, gradients, states, size, at + column, -mean * sum, rule);
 }
 

@@ -21,7 +21,7 @@
 INLINE floatN sum_of_changes(global const float* data, global const float* end, int rows,
                              const int ld) {
   floatN sum = (floatN)(0.0f);
-  for (int i = 0; i < rows; ++i) sum += loadN(i * ld, end) - loadN(i * ld, data);
+  for (int i = 0; i < rows; ++i) sum = add_in_order(sum, loadN(i * ld, end) - loadN(i * ld, data));
   return sum;
 }
 

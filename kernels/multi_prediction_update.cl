@@ -34,7 +34,7 @@
 INLINE void add_column_sum(global float* sums, global const float* x, int rows, const int ld,
                            bool resumes) {
   floatN sum = resumes ? loadN(0, sums) : (floatN)(0.0f);
-  for (int i = 0; i < rows; ++i) sum += loadN(i * ld, x);
+  for (int i = 0; i < rows; ++i) sum = add_in_order(sum, loadN(i * ld, x));
   storeN(sum, 0, sums);
 }
 
