@@ -9,6 +9,9 @@ EpochObserver shown_on(ProgressLine& progress) {
     progress.show(fmt::format("{} epoch {}/{}  loss {:.4f}  {:.0f} windows/s", report.stage,
                               report.epoch, report.epochs, report.loss, report.windows_per_s),
                   report.overall_progress);
+    // A minute and more after a long training.
+    if (report.stage == "fine-tuning" && report.overall_progress >= 1)
+      progress.show("learning how sure its answers are");
   };
 }
 

@@ -5,7 +5,7 @@
 
 namespace mcdbn::cli {
 
-/// Shows each epoch.
+/// Shows each epoch, and what follows the last one of fine-tuning.
 EpochObserver shown_on(ProgressLine& progress);
 
 }  // namespace mcdbn::cli

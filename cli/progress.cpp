@@ -40,8 +40,14 @@ void ProgressLine::show(const std::string& what, double fraction) {
   if (quiet_ || (!due && fraction < 1.0)) return;
   last_shown_ = now;
   const double left_s = fraction > 0 ? elapsed_s() * (1.0 - fraction) / fraction : 0.0;
-  const std::string line =
-      fmt::format("{:3.0f} %  {}  {} left", 100.0 * fraction, what, duration_text(left_s));
+  put(fmt::format("{:3.0f} %  {}  {} left", 100.0 * fraction, what, duration_text(left_s)));
+}
+
+void ProgressLine::show(const std::string& what) {
+  if (!quiet_) put(what);
+}
+
+void ProgressLine::put(const std::string& line) {
   if (terminal_)
     fmt::print(stderr, "\r\033[K{}", line);
   else

@@ -16,10 +16,14 @@ class ProgressLine {
 
   /// @param fraction done, 0 … 1; adds the time left by the rate so far
   void show(const std::string& what, double fraction);
+  /// Of what comes when all that is counted is done.
+  void show(const std::string& what);
   double elapsed_s() const;
 
  private:
   using Clock = std::chrono::steady_clock;
+  void put(const std::string& line);
+
   bool quiet_, terminal_;
   bool line_open_ = false;
   Clock::time_point start_ = Clock::now();

@@ -42,6 +42,7 @@ TEST_CASE("train says how far it is: in the end no time is left") {
   const auto last = messages.find("100 %  fine-tuning epoch 3/3  loss ");
   REQUIRE(last != std::string::npos);
   CHECK(messages.substr(0, messages.find('\n', last)).ends_with(" windows/s  0 s left"));
+  CHECK(messages.find("\nlearning how sure its answers are\n", last) != messages.npos);
 }
 
 TEST_CASE("train --stages leaves stages out") {
