@@ -140,10 +140,10 @@ TEST_CASE("each part of the loss and each direction weighs as its setting says")
 TEST_CASE("fine-tuning that blows up is stopped and says what to lower") {
   FineTuningCase small(kClips, {{{{3, 1}}, {{4, 1}}}}, 5);
   small.config.fine_tuning.steps = 100;
-  small.config.fine_tuning.rate = 2.0;
+  small.config.fine_tuning.rate = 20;
   on_every_device([&](Device& device) {
     CHECK_THROWS_AS(small.train(device), DivergenceError);
-    CHECK_THROWS_WITH(small.train(device), doctest::Contains("`fine-tuning.rate` (now 2)"));
+    CHECK_THROWS_WITH(small.train(device), doctest::Contains("`fine-tuning.rate` (now 20)"));
   });
 }
 
