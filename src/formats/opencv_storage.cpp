@@ -2,16 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <exception>
-#include <iterator>
 #include <sstream>
 
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
+namespace {
+
+/// How many numbers an opencv-matrix says that it has, whatever their channels.
+double said_numbers(const cv::FileNode& matrix) {
+  if (!matrix["rows"].empty())
+    return static_cast<double>(matrix["rows"]) * static_cast<double>(matrix["cols"]);
+  double numbers = 1;
+  for (const cv::FileNode& size : matrix["sizes"]) numbers *= static_cast<double>(size);
+  return numbers;
+}
+
+}  // namespace
 
 OpencvStorage::OpencvStorage(const CameraSource& source) : source_(source) {
   const auto fail = [&] {
@@ -60,22 +68,26 @@ double OpencvStorage::number(const std::string& name) const {
 
 OpencvStorage::Values OpencvStorage::matrix(const std::string& name) const {
   const cv::FileNode found = node(name);
-  const bool list = found.isSeq();
-  Values matrix{1, 1, {}};
+  cv::Mat values;
   try {
-    (list ? found : found["data"]) >> matrix.values;
-    matrix.rows = list ? static_cast<int>(matrix.values.size()) : static_cast<int>(found["rows"]);
-    if (!list) matrix.columns = static_cast<int>(found["cols"]);
+    if (found.isSeq()) {
+      std::vector<double> list;
+      found >> list;
+      values = cv::Mat(list, true);
+    } else if (!found.isMap() || said_numbers(found) <= static_cast<double>(found["data"].size())) {
+      // Else OpenCV would make room for as many as the file says before it counts them.
+      found >> values;
+    }
   } catch (const std::exception&) {
     throw InputError(where(name) + " cannot be read; give an opencv-matrix");
   }
-  // OpenCV would make room for as many as the file says before it counts them.
-  const auto said = static_cast<std::int64_t>(matrix.rows) * matrix.columns;
-  if (matrix.rows < 1 || said != std::ssize(matrix.values))
+  if (values.empty() || values.channels() != 1)
     throw InputError(where(name) + " is not a matrix of numbers; give an opencv-matrix");
-  if (!std::ranges::all_of(matrix.values, [](double value) { return std::isfinite(value); }))
+  cv::Mat doubles;
+  values.convertTo(doubles, CV_64F);
+  if (!cv::checkRange(doubles))
     throw InputError(where(name) + " holds a number that is not finite; correct it");
-  return matrix;
+  return {doubles.rows, doubles.cols, {doubles.begin<double>(), doubles.end<double>()}};
 }
 
 Eigen::Matrix3d OpencvStorage::square(const std::string& name, const std::string& what) const {

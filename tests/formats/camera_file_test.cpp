@@ -76,6 +76,7 @@ TEST_CASE("camera files: what is wrong is named with its file and line") {
         Case{"   rows: 3", "   rows: 9", "camera_matrix"},
         // What a reader that makes room first would try, and say that it cannot.
         Case{"   rows: 3", "   rows: 1000000000", "camera_matrix is not a matrix of numbers"},
+        Case{"   dt: d", "   dt: \"2d\"", "camera_matrix cannot be read"},
         Case{"800.", "-1.", ":5: camera_matrix"},
         Case{", 0.4 ]", " ]", ":10: distortion_coefficients has 3"},
         Case{"rvec: [ 0., ", "rvec: [ ", ":11: rvec has not 3"},
