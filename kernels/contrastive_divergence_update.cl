@@ -14,6 +14,7 @@
 //   VEC=1,4,8,16 ROWS=4,8,16 PANEL_TILES=1,3 CHUNK=128 GAUSSIAN= SAMPLE=
 //   VEC=1,16 GROUP=1,64,256 ROWS=4,8 COLUMNS=1,2,3,4
 //   VISIBLE=1,97 HIDDEN=1,97 ORDER_A=0,1,5 ORDER_B=0,5 OPTIMIZER=none,momentum,adam,momentum_l1,adam_l1
+//   VEC=1,4 UNROLL=16
 
 #include "crbm_shape.clh"
 #include "weight_tile.clh"
@@ -69,6 +70,7 @@ INLINE void update_bias(int column, const int ld, int rows, float mean, global c
                         int at, global float* parameters, global float* gradients,
                         global float* states, int size, float8 rule) {
   floatN sum = (floatN)(0.0f);
+  UNROLLED
   for (int i = 0; i < rows; ++i) sum = add_in_order(sum, loadN(i * ld + column, change));
   update(parameters, gradients, states, size, at + column, -mean * sum, rule);
 }
@@ -98,6 +100,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void cd_update(
   }
   if (vector == H_LD / VEC) {
     float sum = 0.0f;
+    UNROLLED
     for (int i = 0; i < rows; ++i) sum += loss[i];
     *loss_sum += loss_scale * sum;
   }

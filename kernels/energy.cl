@@ -5,6 +5,7 @@
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 GAUSSIAN=0,1
 //   VEC=1,4,8,16 SAMPLE=1
+//   VEC=1,4 UNROLL=16
 
 #include "units.clh"
 
@@ -31,6 +32,7 @@ kernel void free_energy(global const float* v, int v_offset, int v_ld, global co
   bias += row * bias_ld;
   input += row * input_ld;
   float seen = 0.0f;
+  UNROLLED
   for (int i = 0; i < visible; ++i) {
 #if GAUSSIAN
     const float d = v[i] - bias[i];
@@ -86,6 +88,7 @@ kernel void anneal(global const float* input, int input_ld, int hidden, global c
   v += row * v_ld;
   sample += row * sample_ld;
   float seen = 0.0f;
+  UNROLLED
   for (int i = 0; i < visible; ++i) seen = fma(v[i], d[i], seen);
   float gained = (after - before) * seen;
   for (int j = 0; j < hidden; j += VEC) {

@@ -20,6 +20,7 @@
 //   VEC=1,16 A_ROWS=1 ACTIVATION=none,sigmoid,relu,centered_sigmoid,sigmoid_gradient,relu_gradient,centered_sigmoid_gradient
 //   BIAS=none,row,matrix ACTIVATION=none,sigmoid,relu,centered_sigmoid,sigmoid_gradient,relu_gradient,centered_sigmoid_gradient SAMPLE=0,1,2,3
 //   VEC=1,4,8,16 SAMPLE=0,1,2,3
+//   VEC=1,4 UNROLL=16
 
 #include "epilogue.clh"
 
@@ -52,6 +53,7 @@
 INLINE void add_rows(floatN sum[TILE_ROWS][COLUMNS], const int first, const int count,
                      global const float* a, const int a_row[TILE_ROWS], B_SPACE const float* b,
                      int ldb, int k) {
+  UNROLLED
   for (int i = 0; i < k; ++i) {
     floatN b_row[COLUMNS];
 #pragma unroll
@@ -70,6 +72,7 @@ INLINE void add_outer_rows(floatN sum[TILE_ROWS][COLUMNS], const int first, cons
                            global const float* a, int a_offset, int lda, global const int* a_rows,
                            int a_first, int a_shift, int row0, global const float* b, int ldb,
                            int k) {
+  UNROLLED
   for (int i = 0; i < k; ++i) {
     floatN b_row[COLUMNS];
 #pragma unroll

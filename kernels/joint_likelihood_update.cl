@@ -13,6 +13,7 @@
 //   VEC=1,4,8,16 ROWS=4,8,16 PANEL_TILES=1,3 CHUNK=128 SAMPLE= STEPS= BINARY=
 //   VEC=1,16 GROUP=1,64,256 ROWS=4,8 COLUMNS=1,2,3,4
 //   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97 OPTIMIZER=none,momentum,adam
+//   VEC=1,4 UNROLL=16
 
 #include "mrbm_shape.clh"
 #include "weight_tile.clh"
@@ -21,6 +22,7 @@
 INLINE floatN sum_of_changes(global const float* data, global const float* end, int rows,
                              const int ld) {
   floatN sum = (floatN)(0.0f);
+  UNROLLED
   for (int i = 0; i < rows; ++i) sum = add_in_order(sum, loadN(i * ld, end) - loadN(i * ld, data));
   return sum;
 }
@@ -53,6 +55,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void joint_likelihood_
   if (column == H_LD) {
     for (int m = 0; m < MODALITIES; ++m) {
       float sum = 0.0f;
+      UNROLLED
       for (int i = 0; i < rows; ++i) sum += loss[m * stride + i];
       loss_sums[m] += sum / (float)(rows * UNITS(m));
     }

@@ -21,6 +21,7 @@
 //   VEC=1,16 GROUP=1,64,256 ROWS=4,8 COLUMNS=1,2,3,4
 //   MODALITIES=2,3 VISIBLE=,1,97 LARGEST=97 HIDDEN=1,97 STEPS=1,10
 //   OPTIMIZER=none,momentum,adam
+//   VEC=1,4 UNROLL=16
 
 #include "mrbm_shape.clh"
 #include "weight_tile.clh"
@@ -34,6 +35,7 @@
 INLINE void add_column_sum(global float* sums, global const float* x, int rows, const int ld,
                            bool resumes) {
   floatN sum = resumes ? loadN(0, sums) : (floatN)(0.0f);
+  UNROLLED
   for (int i = 0; i < rows; ++i) sum = add_in_order(sum, loadN(i * ld, x));
   storeN(sum, 0, sums);
 }
@@ -111,6 +113,7 @@ INLINE void update_w(int tile, int partial_rows, const int units, int pieces,
   const int row0 = tile / (H_LD / VEC) * ROWS, column = tile % (H_LD / VEC) * VEC;
   floatN sum[ROWS][COLUMNS];
   clear_tile(sum, 1);
+  UNROLLED
   for (int piece = 0; piece < pieces; ++piece)
     add_tile(sum, 1, partial + (piece * partial_rows + row0) * H_LD, H_LD, column);
   update_tile(sum, 1, 1.0f, units - row0, H_LD, w_at + row0 * H_LD, column, parameters, gradients,
@@ -151,6 +154,7 @@ kernel void multi_prediction_update(
   if (column != H_LD) return;
   for (int m = 0; m < MODALITIES; ++m) {
     float sum = 0.0f;
+    UNROLLED
     for (int i = 0; i < rows; ++i) sum += loss[m * rows + i];
     loss_sums[m] += sum / (float)(rows * UNITS(m));
   }

@@ -3,10 +3,16 @@
 // global: (floats / VEC)
 //
 // Variants that `scripts/lint kernels` compiles:
+//   GROUP=1,256
 //   VEC=1,4,8,16 SCALED=,1 OPTIMIZER=none,momentum,adam,momentum_l1,adam_l1 SAMPLE=
+//   VEC=1,4 UNROLL=16
 
 #include "units.clh"
 #include "optimizer.clh"
+
+#ifndef GROUP
+#define GROUP 1
+#endif
 
 // The floats from `first` on by their gradients. With SCALED the gradient is `scale` times what
 // `gradients` holds.
@@ -30,6 +36,7 @@ kernel void sum_squares(global const float* x, int first, int vectors, global fl
                         int slot) {
   const int item = get_global_id(0), items = get_global_size(0);
   floatN sum = (floatN)(0.0f);
+  UNROLLED
   for (int i = item; i < vectors; i += items) {
     const floatN value = loadN(first + i * VEC, x);
     sum = fma(value, value, sum);
@@ -37,10 +44,18 @@ kernel void sum_squares(global const float* x, int first, int vectors, global fl
   squares[slot + item] = sum_lanes(sum);
 }
 
-// scale[0] = what brings the length of a gradient, whose parts' squares these are, to at most `longest`
-kernel void limit_scale(global const float* squares, int count, float longest, global float* scale) {
+// scale[0] = what brings the length of a gradient, whose parts' squares these are, to at most `longest`.
+// global: (GROUP), local: (GROUP)
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void limit_scale(
+    global const float* squares, int count, float longest, global float* scale) {
+  local float sums[GROUP];
   float sum = 0.0f;
-  for (int i = 0; i < count; ++i) sum += squares[i];
+  UNROLLED
+  for (int i = get_local_id(0); i < count; i += GROUP) sum += squares[i];
+  sums[get_local_id(0)] = sum;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  if (get_local_id(0) > 0) return;
+  for (int i = 1; i < GROUP; ++i) sum += sums[i];
   const float length = sqrt(sum);
   scale[0] = length > longest ? longest / length : 1.0f;
 }

@@ -4,6 +4,7 @@
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 CHAINS=16
+//   VEC=1,4 UNROLL=16
 
 #include "types.clh"
 

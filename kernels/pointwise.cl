@@ -5,6 +5,7 @@
 //   BIAS=none,row,matrix ACTIVATION=none,sigmoid,relu,centered_sigmoid,sigmoid_gradient,relu_gradient,centered_sigmoid_gradient SAMPLE=0,1,2,3
 //   VEC=1,4,8,16 ACTIVATION=none,sigmoid,relu,centered_sigmoid,sigmoid_gradient,relu_gradient,centered_sigmoid_gradient
 //   VEC=1,4,8,16 SAMPLE=0,1,2,3
+//   VEC=1,4 UNROLL=16
 
 #include "epilogue.clh"
 
@@ -161,6 +162,7 @@ kernel void column_sum(global const float* in, int in_offset, int ld, int rows, 
   const int column = get_global_id(0) * VEC;
   if (column >= columns) return;
   floatN sum = (floatN)(0.0f);
+  UNROLLED
   for (int row = 0; row < rows; ++row) sum += loadN(in_offset + row * ld + column, in);
   sum *= scale;
   if (beta != 0.0f) sum = fma((floatN)(beta), loadN(column, out), sum);

@@ -4,6 +4,7 @@
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16
+//   VEC=1,4 UNROLL=16
 
 #include "types.clh"
 
@@ -15,6 +16,7 @@ kernel void squared_error_rows(global const float* x, int x_offset, int x_ld,
   x += x_offset + row * x_ld;
   y += y_offset + row * y_ld;
   float sum = 0.0f;
+  UNROLLED
   for (int c = 0; c < columns; ++c) sum = fma(x[c] - y[c], x[c] - y[c], sum);
   partial[row] = sum;
 }
@@ -40,6 +42,7 @@ kernel void cross_entropy_rows(global const float* x, int x_offset, int x_ld,
 kernel void accumulate(global const float* partial, int rows, float scale,
                        global float* accumulator, int slot) {
   float sum = 0.0f;
+  UNROLLED
   for (int row = 0; row < rows; ++row) sum += partial[row];
   accumulator[slot] += scale * sum;
 }
@@ -51,6 +54,7 @@ kernel void block_sum(global const float* in, int ld, int rows, int blocks, int 
   const int row = get_global_id(1);
   if (column >= columns) return;
   floatN sum = (floatN)(0.0f);
+  UNROLLED
   for (int t = 0; t < blocks; ++t) sum += loadN((t * rows + row) * ld + column, in);
   storeN(sum, row * out_ld + column, out);
 }

@@ -4,6 +4,7 @@
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16
+//   VEC=1,4 UNROLL=16
 
 #include "types.clh"
 
@@ -17,6 +18,7 @@ kernel void pull_to_target(global float* hidden_data, global float* hidden_chang
   const int column = get_global_id(0) * VEC;
   if (column >= columns) return;
   floatN sum = (floatN)(0.0f);
+  UNROLLED
   for (int row = 0; row < rows; ++row) sum += loadN(row * ld + column, hidden_data);
   const floatN mask = column_mask(column, columns);
   const floatN average = kept * loadN(column, activity) + (1.0f - kept) * (sum / (float)rows);
@@ -36,6 +38,7 @@ kernel void deviation_update(global const float* data, global const float* recon
   const int column = get_global_id(0) * VEC;
   if (column >= columns) return;
   floatN sum = (floatN)(0.0f);
+  UNROLLED
   for (int row = 0; row < rows; ++row) {
     const floatN u = loadN(row * ld + column, data);
     sum = fma(u, u - loadN(row * ld + column, reconstruction), sum);

@@ -13,6 +13,7 @@
 //   ACTIVATION= BIAS= GAUSSIAN= HIDDEN= SAMPLE= ORDER_B=0
 //   VEC=1,16 GROUP=1,256 ROWS=1,32 COLUMNS=1,8 ORDER_B=0
 //   VISIBLE=1,97 ORDER_A=1,5 ORDER_B=0 ACTIVATION=none,sigmoid_gradient,centered_sigmoid_gradient
+//   VEC=1,4 UNROLL=16
 
 #include "frame_ring.clh"
 #include "epilogue.clh"

@@ -32,15 +32,18 @@ Tuning default_tuning(const DeviceInfo& info) {
   // Some drivers prefer single floats, which they join to vectors by themselves.
   if (!info.is_gpu)
     return cpu_tuning(std::max(info.preferred_vector_width, info.native_vector_width));
-  // Single lanes that coalesce, of which four keep enough work in flight.
-  return limited({.vector_width = 4,
-                  .largest_rows = 4,
-                  .accumulators = 4,
-                  .group = 64,
-                  .update_rows = 4,
-                  .product_rows = 4,
+  // Neighbouring work-items take neighbouring floats. A mini-batch has few rows for so many compute
+  // units: a row is shared by as many work-items as it can use, and each has many loads under way.
+  return limited({.vector_width = 1,
+                  .largest_rows = 8,
+                  .accumulators = 1,
+                  .group = 256,
+                  .update_rows = 8,
+                  .product_rows = 1,
                   .transposed_rows = 4,
-                  .summed_rows = 0},
+                  .summed_rows = 0,
+                  .unroll = 16,
+                  .clblast_from = 8 << 20},
                  info);
 }
 

@@ -151,6 +151,7 @@ Device::Device(const DeviceInfo& info)
     context_ = cl::Context(device_);
     queue_ = cl::CommandQueue(context_, device_);
     programs_ = std::make_unique<ProgramCache>(context_, device_);
+    programs_->set_unroll(tuning_.unroll);
   } catch (const cl::Error& error) {
     throw device_error(info.name, "opening the device", error);
   } catch (const std::out_of_range&) {
@@ -170,8 +171,8 @@ void Device::keep_launch_times(bool keep) {
   keeps_launch_times_ = keep;
 }
 
-void Device::keep_launch(const cl::Kernel& kernel, const cl::Event& event) {
-  kept_launches_.emplace_back(kernel, event);
+void Device::keep_launch(std::string kernel, const cl::Event& event) {
+  kept_launches_.emplace_back(std::move(kernel), event);
 }
 
 std::vector<LaunchTime> Device::take_launch_times() {
@@ -180,13 +181,17 @@ std::vector<LaunchTime> Device::take_launch_times() {
   times.reserve(kept_launches_.size());
   checked(info_.name, "times of launches", [&] {
     for (const auto& [kernel, event] : kept_launches_)
-      times.push_back({trimmed(kernel.getInfo<CL_KERNEL_FUNCTION_NAME>()),
-                       event.getProfilingInfo<CL_PROFILING_COMMAND_QUEUED>(),
+      times.push_back({kernel, event.getProfilingInfo<CL_PROFILING_COMMAND_QUEUED>(),
                        event.getProfilingInfo<CL_PROFILING_COMMAND_START>(),
                        event.getProfilingInfo<CL_PROFILING_COMMAND_END>()});
   });
   kept_launches_.clear();
   return times;
+}
+
+void Device::set_tuning(const Tuning& tuning) {
+  tuning_ = limited(tuning, info_);
+  programs_->set_unroll(tuning_.unroll);
 }
 
 void Device::finish() {

@@ -122,16 +122,18 @@ void gemm_clblast(const Rows& a, const Rows& b, const Rows& c, float alpha, floa
   }
   const std::size_t k = b.count;
   cl_command_queue queue = device.queue()();
+  cl_event event = nullptr;  // of the last of its kernels
   const auto status = clblast::Gemm<float>(
       clblast::Layout::kRowMajor, transpose_a, clblast::Transpose::kNo, c.count, c.columns, k,
       alpha, left->matrix->buffer()(), static_cast<std::size_t>(left->offset()),
       static_cast<std::size_t>(left->stride()), b.matrix->buffer()(),
       static_cast<std::size_t>(b.offset()), static_cast<std::size_t>(b.stride()), beta,
       c.matrix->buffer()(), static_cast<std::size_t>(c.offset()),
-      static_cast<std::size_t>(c.stride()), &queue);
+      static_cast<std::size_t>(c.stride()), &queue, device.keeps_launch_times() ? &event : nullptr);
   if (status != clblast::StatusCode::kSuccess)
     throw DeviceError(fmt::format("{}: CLBlast's product: {}", device.info().name,
                                   opencl_failure(static_cast<cl_int>(status))));
+  if (event != nullptr) device.keep_launch("clblast_gemm", cl::Event(event));
   device.count_launch();
 }
 
@@ -158,8 +160,13 @@ void add_transposed_a(const Rows& a, const Rows& b, const Rows& c, float alpha, 
          c.stride(), to_int(c.count), to_int(c.columns), to_int(b.count), alpha, beta);
 }
 
-bool goes_to_clblast(const Rows& c, std::size_t k, GemmBackend backend) {
-  if (k == 0 || backend == GemmBackend::own) return false;
+/// Histories one frame apart: CLBlast takes no rows that overlap.
+bool overlaps_itself(const Rows& a) {
+  return a.index == nullptr && a.columns > static_cast<std::size_t>(a.stride());
+}
+
+bool goes_to_clblast(const Rows& a, const Rows& c, std::size_t k, GemmBackend backend) {
+  if (k == 0 || backend == GemmBackend::own || overlaps_itself(a)) return false;
   if (backend == GemmBackend::clblast) return true;
   const std::int64_t from = c.matrix->device().tuning().clblast_from;
   return from > 0 && static_cast<std::int64_t>(c.count * c.columns * k) >= from;
@@ -198,7 +205,7 @@ Defines epilogue_defines(const GemmOptions& options) {
 void gemm(const Rows& a, const Rows& b, const Rows& c, const GemmOptions& options) {
   require_operands(a, b, c, options);
   if (c.count == 0 || c.columns == 0) return;
-  if (goes_to_clblast(c, b.count, options.backend)) {
+  if (goes_to_clblast(a, c, b.count, options.backend)) {
     gemm_clblast(a, b, c, options.alpha, options.beta, clblast::Transpose::kNo);
     if (options.bias || options.activation != Activation::none ||
         options.sampling != Sampling::none)
@@ -215,7 +222,7 @@ void gemm_transposed_a(const Rows& a, const Rows& b, const Rows& c, float alpha,
           "gemm_transposed_a: C's shape is not that of AᵀB");
   require(b.index == nullptr && c.index == nullptr, "gemm_transposed_a: only A may be indexed");
   if (c.count == 0 || c.columns == 0) return;
-  if (goes_to_clblast(c, b.count, backend)) {
+  if (goes_to_clblast(a, c, b.count, backend)) {
     gemm_clblast(a, b, c, alpha, beta, clblast::Transpose::kYes);
     return;
   }

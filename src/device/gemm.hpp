@@ -19,7 +19,8 @@ enum class Activation {
 /// uniform u (Maddison et al. 2017).
 enum class Sampling { none, bernoulli, gaussian, concrete };
 /// Who multiplies: our register-tiled kernel, or CLBlast followed by the epilogue as a kernel;
-/// tuned: whichever Device::tuning() names for a product of that size.
+/// tuned: whichever Device::tuning() names for a product of that size. Rows of A that overlap are
+/// always ours.
 enum class GemmBackend { own, clblast, tuned };
 
 /// What happens to a product before it is stored: f(alpha·A·B + beta·C + bias), and a draw from it.

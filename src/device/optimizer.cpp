@@ -1,5 +1,6 @@
 #include "device/optimizer.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "device/kernel_arguments.hpp"
@@ -13,6 +14,18 @@ std::size_t states_of(OptimizerKind kind) {
 
 std::size_t vectors_of(const Device& device, std::size_t floats) {
   return floats / static_cast<std::size_t>(vector_width(device));
+}
+
+/// Work-items that sum up an entry's squares.
+std::size_t square_parts(const Device& device) {
+  return device.info().is_gpu ? 1024 : 64;
+}
+
+/// Work-items that add up the parts.
+std::size_t limit_group(const Device& device) {
+  const DeviceInfo& info = device.info();
+  if (!info.is_gpu) return 1;
+  return std::min({std::size_t{256}, info.largest_group, info.largest_group_sides[0]});
 }
 
 cl::Kernel& optimizer_kernel(Device& device, const char* name, Defines defines = {}) {
@@ -93,7 +106,8 @@ void Optimizer::update(const std::function<UpdateRule(const ParameterShape&)>& r
 
 GradientLimit::GradientLimit(const Parameters& parameters)
     : parameters_(parameters),
-      squares_(parameters.device(), 1, kParts * parameters.entries().size()),
+      parts_(square_parts(parameters.device())),
+      squares_(parameters.device(), 1, parts_ * parameters.entries().size()),
       scale_(parameters.device(), 1, 1) {}
 
 void GradientLimit::measure(const Matrix& gradients, float longest) {
@@ -101,13 +115,14 @@ void GradientLimit::measure(const Matrix& gradients, float longest) {
   Device& device = scale_.device();
   int slot = 0;
   for (const Parameters::Entry& entry : parameters_.entries()) {
-    launch(device, optimizer_kernel(device, "sum_squares"), {{kParts, 1}}, gradients.buffer(),
+    launch(device, optimizer_kernel(device, "sum_squares"), {{parts_, 1}}, gradients.buffer(),
            to_int(entry.first), to_int(vectors_of(device, entry.floats())), squares_.buffer(),
            slot);
-    slot += to_int(kParts);
+    slot += to_int(parts_);
   }
-  launch(device, optimizer_kernel(device, "limit_scale"), {}, squares_.buffer(), slot, longest,
-         scale_.buffer());
+  const std::size_t group = limit_group(device);
+  launch(device, optimizer_kernel(device, "limit_scale", {{"GROUP", to_int(group)}}),
+         {{group, 1}, {group, 1}}, squares_.buffer(), slot, longest, scale_.buffer());
 }
 
 void fast_update(Matrix& fast, Matrix& sum, const Parameters& parameters, const Matrix& gradients,

@@ -89,8 +89,8 @@ class GradientLimit {
   const Matrix& scale() const { return scale_; }  ///< [1 x 1]
 
  private:
-  static constexpr std::size_t kParts = 64;
   Parameters parameters_;
+  std::size_t parts_;  ///< of an entry, each summed up by a work-item
   Matrix squares_, scale_;
 };
 

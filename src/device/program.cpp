@@ -128,7 +128,8 @@ ProgramCache::ProgramCache(cl::Context context, cl::Device device)
 
 cl::Kernel& ProgramCache::kernel(const std::string& file, const std::string& name,
                                  const Defines& defines) {
-  const std::string key = key_of(file, name, defines);
+  std::string key = key_of(file, name, defines);
+  if (unroll_ > 1) key.append(" UNROLL=").append(std::to_string(unroll_));
   auto found = kernels_.find(key);
   if (found == kernels_.end()) {
     try {
@@ -140,7 +141,8 @@ cl::Kernel& ProgramCache::kernel(const std::string& file, const std::string& nam
   return found->second;
 }
 
-cl::Program& ProgramCache::program(const std::string& file, const Defines& defines) {
+cl::Program& ProgramCache::program(const std::string& file, Defines defines) {
+  if (unroll_ > 1) defines["UNROLL"] = unroll_;
   const std::string options = options_of(defines);
   const std::string key = file + ' ' + options;
   auto found = programs_.find(key);

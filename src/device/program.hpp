@@ -30,11 +30,14 @@ class ProgramCache {
  public:
   ProgramCache(cl::Context context, cl::Device device);
 
+  /// Of every kernel from here on (types.clh).
+  void set_unroll(int rounds) { unroll_ = rounds; }
+
   /// @throws DeviceError with the build log
   cl::Kernel& kernel(const std::string& file, const std::string& name, const Defines& defines = {});
 
  private:
-  cl::Program& program(const std::string& file, const Defines& defines);
+  cl::Program& program(const std::string& file, Defines defines);
   cl::Program build(const std::string& source, const std::string& options);
   cl::Program built_from_source(const std::string& source, const std::string& options);
   /// Nothing if the build goes well. @throws cl::Error if it fails otherwise than by its source
@@ -45,6 +48,7 @@ class ProgramCache {
   cl::Device device_;
   std::string device_name_, device_key_;
   bool keeps_binaries_;
+  int unroll_ = 1;
   std::map<std::string, cl::Program> programs_;
   std::map<std::string, cl::Kernel> kernels_;
 };

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kKind = "tuning";
 
 std::string key_of(const DeviceInfo& info) {
-  return "4|" + info.platform_name + '|' + info.name + '|' + info.driver_version + '|' +
+  return "5|" + info.platform_name + '|' + info.name + '|' + info.driver_version + '|' +
          std::to_string(info.compute_units);
 }
 
@@ -31,7 +31,7 @@ bool makes_sense(const Tuning& tuning) {
          is_in(tuning.update_columns, 1, 4) && is_in(tuning.product_columns, 1, 4) &&
          is_in(tuning.transposed_columns, 1, 4) && tuning.product_rows >= 1 &&
          tuning.product_rows <= 16 && is_one_of(tuning.transposed_rows, {4, 8, 16}) &&
-         tuning.summed_rows >= 0 && tuning.clblast_from >= 0;
+         tuning.summed_rows >= 0 && is_in(tuning.unroll, 1, 32) && tuning.clblast_from >= 0;
 }
 
 }  // namespace
@@ -56,7 +56,8 @@ std::vector<Tuning> tuning_candidates(const DeviceInfo& info, const Tuning& from
   if (info.is_gpu) {
     vary(&Tuning::vector_width, {1, 4});
     vary(&Tuning::largest_rows, {2, 4, 8});
-    vary(&Tuning::group, {32, 64, 128});
+    vary(&Tuning::group, {64, 128, 256});
+    vary(&Tuning::unroll, {1, 4, 8, 16});
     vary(&Tuning::update_rows, {4, 8});
   } else {
     vary(&Tuning::vector_width, {8, 16, 4});
@@ -86,6 +87,7 @@ std::optional<Tuning> load_tuning(const DeviceInfo& info) {
     tuning.product_rows = json.at("product_rows");
     tuning.transposed_rows = json.at("transposed_rows");
     tuning.summed_rows = json.at("summed_rows");
+    tuning.unroll = json.at("unroll");
     tuning.clblast_from = json.at("clblast_from");
     if (makes_sense(tuning)) return tuning;
   } catch (const nlohmann::json::exception&) {
@@ -106,6 +108,7 @@ void store_tuning(const DeviceInfo& info, const Tuning& tuning) {
                                {"product_rows", tuning.product_rows},
                                {"transposed_rows", tuning.transposed_rows},
                                {"summed_rows", tuning.summed_rows},
+                               {"unroll", tuning.unroll},
                                {"clblast_from", tuning.clblast_from}};
   write_cache_entry(kKind, key_of(info), json.dump());
 }

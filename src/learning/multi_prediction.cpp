@@ -22,9 +22,10 @@ std::optional<RowTile> choose_tile(const Mrbm& mrbm, std::size_t batch) {
   return choose_chain_tile(mrbm.device(), shape, batch);
 }
 
-/// Parts as long as each other, but for the last.
-std::size_t rows_of_part(std::size_t batch, std::size_t most) {
-  return ceil_divide(batch, std::max<std::size_t>(1, ceil_divide(batch, most)));
+/// Parts as long as each other, but for the last. A GPU wants as many rows at once as there are.
+std::size_t rows_of_part(const Device& device, std::size_t batch, std::size_t most_on_cpu) {
+  if (device.info().is_gpu) return batch;
+  return ceil_divide(batch, std::max<std::size_t>(1, ceil_divide(batch, most_on_cpu)));
 }
 
 std::vector<std::size_t> all_but(std::size_t modality, std::size_t modalities) {
@@ -38,7 +39,8 @@ std::vector<std::size_t> all_but(std::size_t modality, std::size_t modalities) {
 
 MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
                                  OptimizerKind optimizer)
-    : MultiPrediction(mrbm, batch, settings, choose_tile(mrbm, rows_of_part(batch, kMostPartRows)),
+    : MultiPrediction(mrbm, batch, settings,
+                      choose_tile(mrbm, rows_of_part(mrbm.device(), batch, kMostPartRows)),
                       optimizer) {}
 
 MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
@@ -47,7 +49,7 @@ MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettin
       settings_(settings),
       steps_(settings.mean_field_steps),
       batch_(batch),
-      part_rows_(tile ? rows_of_part(batch, kMostPartRows) : batch),
+      part_rows_(tile ? rows_of_part(mrbm.device(), batch, kMostPartRows) : batch),
       tile_(tile),
       block_(whole_blocks(part_rows_, tile)),
       optimizer_(mrbm.parameters(), optimizer),

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdlib>
 #include <memory>
 #include <random>
 #include <vector>
@@ -12,13 +13,15 @@
 namespace mcdbn::test {
 
 /// Every OpenCL device of this machine, or those that MCDBN_PLATFORM and MCDBN_DEVICE name, opened
-/// once, so that programs are built once. Never closed:
-/// at the end of a process the OpenCL platform may be gone before its devices.
+/// once, so that programs are built once; with MCDBN_AS_GPU set all are taken for GPUs. Never
+/// closed: at the end of a process the OpenCL platform may be gone before its devices.
 inline std::vector<Device>& devices() {
   static std::vector<Device>& open = *[] {
     auto all = std::make_unique<std::vector<Device>>();
-    for (const DeviceInfo& info : matching_devices(DeviceSelection::from_environment()))
+    for (DeviceInfo info : matching_devices(DeviceSelection::from_environment())) {
+      info.is_gpu = info.is_gpu || std::getenv("MCDBN_AS_GPU") != nullptr;
       all->emplace_back(info);
+    }
     return all.release();
   }();
   return open;
@@ -32,6 +35,13 @@ void on_every_device(Body&& body) {
     INFO("device: ", device.info().platform_name, ", ", device.info().name);
     body(device);
   }
+}
+
+/// The same device, taken for a GPU: its settings, work-groups and launches, on any machine.
+inline Device as_gpu(const Device& device) {
+  DeviceInfo info = device.info();
+  info.is_gpu = true;
+  return Device(info);
 }
 
 /// A whole buffer with its padding columns: [rows x stride].

@@ -105,13 +105,14 @@ void check_history(Device& device, const History& shape, GemmBackend backend) {
   CHECK(gathered.intact());
 }
 
-/// The same moment of several sequences that lie one after another.
+/// The same moment of several sequences that lie one after another, or, with more frames than a
+/// sequence has, rows that overlap.
 void check_strided(Device& device, std::size_t sequences, std::size_t length, std::size_t columns,
                    std::size_t frames) {
   CAPTURE(sequences);
   CAPTURE(columns);
   CAPTURE(frames);
-  const MatrixF all = random_matrix(sequences * length, columns, 4);
+  const MatrixF all = random_matrix(sequences * length + frames, columns, 4);
   const Matrix all_device = Matrix::from_host(device, all);
   const std::size_t width = frames == 1 ? columns : frames * all_device.stride();
   MatrixF rows =
@@ -123,11 +124,25 @@ void check_strided(Device& device, std::size_t sequences, std::size_t length, st
           all.row(static_cast<Eigen::Index>(s * length + 1 + q));
   const MatrixF weights = random_matrix(width, 5, 5);
   const Matrix weights_device = Matrix::from_host(device, weights);
-  const GuardedBlock out(device, sequences, 5);
-  gemm(Rows::strided(all_device, 1, sequences, length, frames), weights_device, out.rows());
-  const auto want = reference::product(rows.cast<double>(), weights.cast<double>());
-  CHECK(misfit(out.values(), want.value, want.bound) == "");
-  CHECK(out.intact());
+  const Rows strided = Rows::strided(all_device, 1, sequences, length, frames);
+  const MatrixF errors = random_matrix(sequences, 5, 6);
+  const Matrix errors_device = Matrix::from_host(device, errors);
+  for (const GemmBackend backend : {GemmBackend::own, GemmBackend::clblast}) {
+    GemmOptions options;
+    options.backend = backend;
+    const GuardedBlock out(device, sequences, 5);
+    gemm(strided, weights_device, out.rows(), options);
+    const auto want = reference::product(rows.cast<double>(), weights.cast<double>());
+    CHECK(misfit(out.values(), want.value, want.bound) == "");
+    CHECK(out.intact());
+
+    const GuardedBlock statistics(device, width, 5);
+    gemm_transposed_a(strided, errors_device, statistics.rows(), 1.0F, 0.0F, backend);
+    const auto want_statistics =
+        reference::product(rows.transpose().cast<double>(), errors.cast<double>());
+    CHECK(misfit(statistics.values(), want_statistics.value, want_statistics.bound) == "");
+    CHECK(statistics.intact());
+  }
 }
 
 }  // namespace
@@ -147,10 +162,11 @@ TEST_CASE("histories of five frames at the model's sizes, on both back ends") {
   });
 }
 
-TEST_CASE("small: rows a step apart, one frame and several") {
+TEST_CASE("small: rows a step apart, one frame and several, rows that overlap") {
   on_every_device([](Device& device) {
     check_strided(device, 3, 4, 5, 1);
     check_strided(device, 7, 6, 17, 3);
+    check_strided(device, 5, 1, 17, 3);
   });
 }
 

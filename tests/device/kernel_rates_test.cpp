@@ -21,9 +21,11 @@ struct Step {
   Step(Device& device, std::size_t size)
       : a(device, size, size), b(device, size, size), c(device, size, size), row(device, 1, size) {}
   void run() {
-    gemm(a, b, c);
+    GemmOptions own;
+    own.backend = GemmBackend::own;
+    gemm(a, b, c, own);
     column_sum(c, 1.0F, 0.0F, row);
-    gemm(a, b, c);
+    gemm(a, b, c, own);
   }
 };
 
@@ -53,6 +55,22 @@ TEST_CASE("kernel rates: a step's launches by kernel, in order, with the work th
     CHECK_FALSE(device.keeps_launch_times());
     step.run();
     CHECK(device.take_launch_times().empty());
+  });
+}
+
+TEST_CASE("kernel rates: a product of CLBlast's counts as a launch with a time") {
+  on_every_device([](Device& device) {
+    const Matrix a(device, 64, 64), b(device, 64, 64);
+    Matrix c(device, 64, 64);
+    GemmOptions options;
+    options.backend = GemmBackend::clblast;
+    const auto run = [&] { gemm(a, b, c, options); };
+    run();
+    const StepTimes times = time_kernels(device, run, {}, 3);
+    REQUIRE(times.kernels.size() == 1);
+    CHECK(times.kernels[0].work.kernel == "clblast_gemm");
+    CHECK(times.kernels[0].launches == 1);
+    CHECK(times.kernels[0].seconds > 0);
   });
 }
 

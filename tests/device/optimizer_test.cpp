@@ -123,6 +123,27 @@ const UpdateRule kRules[] = {{.rate = 1e-3F, .momentum = 0.0F, .weight_decay = 0
                              {.rate = 1e-3F, .momentum = 0.9F, .weight_decay = 2e-4F},
                              {.rate = 0.1F, .momentum = 0.5F, .weight_decay = 0.1F}};
 
+void check_gradient_limit(Device& device) {
+  const MatrixF first = random_matrix(7, 17, 1), second = random_matrix(1, 3, 2);
+  const Parameters parameters(device, {{.name = "first", .rows = 7, .columns = 17},
+                                       {.name = "second", .rows = 1, .columns = 3}});
+  const Matrix gradients = Matrix::like(parameters.all());
+  Parameters both = parameters.in(gradients);
+  both.upload("first", first);
+  both.upload("second", second);
+  MatrixF all(1, first.size() + second.size());
+  all << first.reshaped<Eigen::RowMajor>().transpose(), second;
+  const Bounded length = reference::square_root(total(times(exact(all), exact(all))));
+  const auto half_length = static_cast<float>(0.5 * length.value(0));
+  GradientLimit limit(parameters);
+  limit.measure(gradients, half_length);
+  check_within(limit.scale().to_host(),
+               quotient(exact(MatrixF::Constant(1, 1, half_length)), length));
+  limit.measure(gradients, 4.0F * half_length);
+  CHECK(limit.scale().to_host()(0) == 1.0F);
+  CHECK_THROWS_AS(limit.measure(Matrix(device, 1, 16), 1.0F), ShapeError);
+}
+
 }  // namespace
 
 TEST_CASE("small: momentum with weight decay") {
@@ -215,25 +236,11 @@ TEST_CASE("small: every parameter moves by its own gradient and rule") {
 TEST_CASE(
     "small: a long gradient is cut to the length that is allowed, a short one is left alone") {
   on_every_device([](Device& device) {
-    const MatrixF first = random_matrix(7, 17, 1), second = random_matrix(1, 3, 2);
-    const Parameters parameters(device, {{.name = "first", .rows = 7, .columns = 17},
-                                         {.name = "second", .rows = 1, .columns = 3}});
-    const Matrix gradients = Matrix::like(parameters.all());
-    Parameters both = parameters.in(gradients);
-    both.upload("first", first);
-    both.upload("second", second);
-    MatrixF all(1, first.size() + second.size());
-    all << first.reshaped<Eigen::RowMajor>().transpose(), second;
-    const Bounded length = reference::square_root(total(times(exact(all), exact(all))));
-    const auto half_length = static_cast<float>(0.5 * length.value(0));
-    GradientLimit limit(parameters);
-    limit.measure(gradients, half_length);
-    check_within(limit.scale().to_host(),
-                 quotient(exact(MatrixF::Constant(1, 1, half_length)), length));
-    limit.measure(gradients, 4.0F * half_length);
-    CHECK(limit.scale().to_host()(0) == 1.0F);
-    CHECK_THROWS_AS(limit.measure(Matrix(device, 1, 16), 1.0F), ShapeError);
+    check_gradient_limit(device);
+    Device gpu = as_gpu(device);  // whose work-items share the sum
+    check_gradient_limit(gpu);
 
+    const MatrixF first = random_matrix(7, 17, 1);
     // Adam with a scale is Adam on the scaled gradient, to the bit.
     const float half = 0.375F;
     const auto run = [&](const MatrixF& gradient, const Matrix* with) {

@@ -162,6 +162,35 @@ TEST_CASE("small: kernels are read from MCDBN_KERNEL_DIR, with what they include
   });
 }
 
+TEST_CASE("small: kernels are built with the rounds to unroll that the device is tuned to") {
+  on_every_device([](Device& open) {
+    const ScratchFolder folder;
+    folder.write("rounds.cl",
+                 "#ifndef UNROLL\n#define UNROLL 1\n#endif\n"
+                 "kernel void rounds(global int* out) { out[0] = UNROLL; }\n");
+    const ScopedVariable kernels("MCDBN_KERNEL_DIR", (folder / "").string());
+    const ScopedVariable cache("XDG_CACHE_HOME", (folder / "cache").string());
+    const auto rounds = [](Device& device) {
+      const cl::Buffer out(device.context(), CL_MEM_READ_WRITE, sizeof(cl_int));
+      launch(device, device.programs().kernel("rounds.cl", "rounds"), {}, out);
+      cl_int answer = 0;
+      device.queue().enqueueReadBuffer(out, CL_TRUE, 0, sizeof answer, &answer);
+      return answer;
+    };
+    Device device(open.info());
+    CHECK(rounds(device) == device.tuning().unroll);
+    for (const int unroll : {7, 1, 7}) {
+      Tuning tuning = device.tuning();
+      tuning.unroll = unroll;
+      device.set_tuning(tuning);
+      CHECK(rounds(device) == unroll);
+    }
+    Device gpu = as_gpu(open);
+    CHECK(rounds(gpu) == default_tuning(gpu.info()).unroll);
+    CHECK(gpu.tuning().unroll > 1);
+  });
+}
+
 TEST_CASE("what the driver's compiler warns of is not written among our messages") {
   on_every_device([](Device& open) {
     const ScratchFolder folder;

@@ -45,6 +45,7 @@ const Tuning kTuned{.vector_width = 8,
                     .transposed_rows = 8,
                     .transposed_columns = 2,
                     .summed_rows = 64,
+                    .unroll = 4,
                     .clblast_from = 1000};
 
 }  // namespace
@@ -116,7 +117,7 @@ TEST_CASE("tuning: blocks of rows fill the compute units evenly and fit local me
   });
 }
 
-TEST_CASE("tuning: every candidate's products are the same bits as the default's") {
+TEST_CASE("tuning: every candidate's products are the same bits as the default's, a GPU's too") {
   on_every_device([](Device& device) {
     const Matrix a = Matrix::from_host(device, random_matrix(13, 29, 1));
     const Matrix b = Matrix::from_host(device, random_matrix(29, 37, 2));
@@ -127,9 +128,13 @@ TEST_CASE("tuning: every candidate's products are the same bits as the default's
       return c.to_host();
     };
     const MatrixF want = product();
-    for (const Tuning& tuning : tuning_candidates(device.info(), default_tuning(device.info()))) {
-      device.set_tuning(tuning);
-      CHECK(product() == want);
+    for (const bool is_gpu : {false, true}) {
+      DeviceInfo info = device.info();
+      info.is_gpu = is_gpu;
+      for (const Tuning& tuning : tuning_candidates(info, default_tuning(info))) {
+        device.set_tuning(tuning);
+        CHECK(product() == want);
+      }
     }
     device.set_tuning(usual);
   });

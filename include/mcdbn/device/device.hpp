@@ -75,7 +75,7 @@ class Device {
   /// The user's tuned choices for this device, else what suits its kind.
   const Tuning& tuning() const { return tuning_; }
   /// As far as the device takes it.
-  void set_tuning(const Tuning& tuning) { tuning_ = limited(tuning, info_); }
+  void set_tuning(const Tuning& tuning);
   /// Waits until everything enqueued has run. @throws DeviceError
   void finish();
   /// Kernel launches since the device was opened: `bench` reports launches a step.
@@ -85,9 +85,10 @@ class Device {
   /// Whether from here on the time of every kernel launch is kept, which costs a little of it.
   /// @throws DeviceError
   void keep_launch_times(bool keep);
-  /// Whether launches have to be kept by keep_launch.
+  /// Whether launches have to be kept by keep_launch; of several kernels of a library at once, the
+  /// last.
   bool keeps_launch_times() const { return keeps_launch_times_; }
-  void keep_launch(const cl::Kernel& kernel, const cl::Event& event);
+  void keep_launch(std::string kernel, const cl::Event& event);
   /// Those of the launches since the last call, in order; waits for the queue. @throws DeviceError
   std::vector<LaunchTime> take_launch_times();
 
@@ -100,7 +101,7 @@ class Device {
   std::unique_ptr<ProgramCache> programs_;
   std::uint64_t launch_count_ = 0;
   bool keeps_launch_times_ = false;
-  std::vector<std::pair<cl::Kernel, cl::Event>> kept_launches_;
+  std::vector<std::pair<std::string, cl::Event>> kept_launches_;
 };
 
 }  // namespace mcdbn

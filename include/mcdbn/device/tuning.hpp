@@ -27,6 +27,9 @@ struct Tuning {
   /// of C read them again and again, which doubles the speed of sums over thousands of rows. 0:
   /// all.
   int summed_rows = 128;
+  /// Rounds of a sum's loop that are made one (UNROLL in types.clh): a GPU has that many loads
+  /// under way, where a single one is waited for. A CPU reads ahead by itself.
+  int unroll = 1;
   /// Products of at least so many multiply-adds go to CLBlast; 0: none.
   std::int64_t clblast_from = 0;
   bool operator==(const Tuning&) const = default;
