@@ -26,6 +26,7 @@ namespace mcdbn::cli {
 namespace {
 
 constexpr std::size_t kPaperSamples = 10;  // regenerations of each clip, section V
+constexpr double kPaperTemperature = 1.0;  // drawn as the model draws them
 constexpr const char *kExact = "exact", *kDetector = "detector";
 constexpr double kTestShare = 0.9;  // of the time, about; the rest goes to the distributions' fits
 
@@ -52,6 +53,10 @@ void apply_protocol(EvaluateOptions& options) {
   if (options.actions.empty()) options.actions = paper ? "by-folder" : "together";
   if (options.fit.empty()) options.fit = paper ? kFitNone : kFitTrack;
   options.run.fit = track_fit(options.fit);
+  if (!paper) return;
+  SamplingOptions& sampling = options.sampling;
+  sampling.samples = sampling.samples.value_or(kPaperSamples);
+  sampling.temperature = sampling.temperature.value_or(kPaperTemperature);
 }
 
 /// The tracks that every method is to see.
@@ -134,8 +139,7 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
     run.camera = model.modalities.camera;
     if (options.azimuth_deg) run.camera.azimuth_deg = *options.azimuth_deg;
     if (options.elevation_deg) run.camera.elevation_deg = *options.elevation_deg;
-    run.regeneration = options.sampling.regeneration(
-        model.network, context.seed, options.protocol == "paper" ? kPaperSamples : 1);
+    run.regeneration = options.sampling.regeneration(model.network, context.seed);
     run.uncertainty_draws = {options.uncertainty_draws, context.seed};
     report.temperature = run.regeneration.temperature;
     add_training_views(model, run);

@@ -12,9 +12,7 @@ struct SamplingOptions {
   std::optional<std::size_t> samples, gibbs_steps, mrbm_gibbs_steps;
   std::optional<double> temperature;
 
-  /// @param usual_samples where none are asked for
-  RegenerationOptions regeneration(const Mcdbn& network, std::uint64_t seed,
-                                   std::size_t usual_samples = 1) const;
+  RegenerationOptions regeneration(const Mcdbn& network, std::uint64_t seed) const;
 };
 
 void add_sampling_options(CLI::App& command, SamplingOptions& options, const char* samples_help);

@@ -70,12 +70,13 @@ std::vector<std::string> by_library(const Call& call) {
   if (call.fit == "none") placement.fit.reset();
   mcdbn::RegenerationOptions options;
   options.samples = call.samples.value_or(1);
-  options.temperature = call.temperature.value_or(options.samples > 1 ? 1.0 : 0.0);
   options.seed = call.seed.value_or(1);
   options.sampling = model.network.sampling;
   if (call.gibbs_steps) options.sampling = {*call.gibbs_steps, 0, false, 1.0};
   if (call.mrbm_gibbs_steps)
     options.sampling = {call.gibbs_steps.value_or(0), *call.mrbm_gibbs_steps, false, 1.0};
+  const bool anew = call.gibbs_steps || call.mrbm_gibbs_steps;
+  options.temperature = call.temperature.value_or(options.samples == 1 ? 0.0 : anew ? 1.0 : 2.0);
   std::vector<std::string> texts;
   for (const mcdbn::Motion& motion :
        regenerate_clip(model, mcdbn::read_track_csv(call.track), placement, options))
@@ -161,7 +162,16 @@ TEST_CASE("regenerate: every option changes what its help says") {
   };
   std::vector<OptionRow> rows = {
       row("--seed", [](Call& c) { c.seed = 9; }),
-      row("--temperature", [](Call& c) { c.temperature = 0.3; }),
+      {"--temperature",
+       [&] {
+         Call changed = plain;
+         changed.temperature = 0.3;
+         check_same(changed, before);
+         changed.temperature.reset();
+         check_same(changed, before);
+         changed.mrbm_gibbs_steps = 1;
+         check_same(changed, before);
+       }},
       row("--samples", [](Call& c) { c.samples = 3; }),
       row("--gibbs-steps", [](Call& c) { c.gibbs_steps = 3; }),
       row("--mrbm-gibbs-steps", [](Call& c) { c.mrbm_gibbs_steps = 2; }),
