@@ -10,6 +10,7 @@
 #include "corpus/pose_pool.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion/humanoid.hpp"
+#include "motion/mean_body.hpp"
 #include "motion/resample.hpp"
 
 namespace mcdbn {
@@ -116,11 +117,22 @@ struct SampledClips {
   }
 };
 
-/// Of a humanoid the model's skeleton is nobody's in particular.
-PoseFeatures fitted_features(const std::vector<const Motion*>& clips) {
-  PoseFeatures features = PoseFeatures::fit(clips);
-  if (!is_humanoid(features.skeleton())) return features;
-  return PoseFeatures::restored(canonical_humanoid(), features.root(), features.joints(),
+/// The first skeleton of each person.
+std::vector<Skeleton> people_in(const ClipStore& clips) {
+  const ClipGroups groups(clips);
+  std::vector<Skeleton> people;
+  for (std::size_t i = 0; i < clips.count(); ++i)
+    if (groups.people()[i] == people.size()) people.push_back(clips.records()[i].skeleton);
+  return people;
+}
+
+/// The model's skeleton is nobody's in particular: who is not known is most like the mean of those
+/// who are.
+PoseFeatures fitted_features(const std::vector<const Motion*>& motions, const ClipStore& clips) {
+  const PoseFeatures features = PoseFeatures::fit(motions);
+  Skeleton skeleton =
+      is_humanoid(features.skeleton()) ? canonical_humanoid() : mean_body(people_in(clips));
+  return PoseFeatures::restored(std::move(skeleton), features.root(), features.joints(),
                                 features.fixed_channels());
 }
 
@@ -135,7 +147,7 @@ std::size_t TrainingSet::frames() const {
 TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& settings,
                               std::uint64_t seed, bool with_views) {
   const SampledClips sampled(clips, settings);
-  PoseFeatures pose_features = fitted_features(pointers(sampled.motions));
+  PoseFeatures pose_features = fitted_features(pointers(sampled.motions), clips);
   TrackFeatures track_features =
       TrackFeatures::for_skeleton(pose_features.skeleton(), pose_features.root());
   TrainingSet set = sampled.set({std::move(pose_features),

@@ -10,6 +10,7 @@
 #include "corpus/training_files.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
+#include "motion/mean_body.hpp"
 #include "motion/resample.hpp"
 
 namespace training_set_test {
@@ -142,6 +143,25 @@ TEST_CASE("a training set: every clip encoded and scaled for itself and for its 
   check_set(walks, config, {1, 1, 1}, 3);
   config.augment.views = 9;  // four say enough about the scale
   check_set(walks, config, {1, 1, 1}, 4);
+}
+
+TEST_CASE("a training set: the model's body is the mean of its people's, each counted once") {
+  const TrainingFiles walks({{1, 1}, {1, 2}, {2, 1}});
+  const auto skeleton = [&](std::size_t file) { return raw_clip(walks.files()[file]).skeleton; };
+  const auto bones = [](const Skeleton& of) {
+    MatrixD offsets(of.joint_count(), 3);
+    for (int j = 0; j < of.joint_count(); ++j)
+      offsets.row(j) = of.joints[static_cast<std::size_t>(j)].offset.transpose();
+    return offsets;
+  };
+  const auto trained = [&](std::size_t first, std::size_t count) {
+    const std::vector<std::filesystem::path> files(walks.files().begin() + first,
+                                                   walks.files().begin() + first + count);
+    return bones(make_training_set(files, settings(), nullptr).modalities.pose_features.skeleton());
+  };
+  CHECK(trained(0, 3) == bones(mean_body({skeleton(0), skeleton(2)})));
+  CHECK((trained(0, 3) - bones(skeleton(0))).norm() > 1e-3);
+  CHECK(trained(0, 2) == bones(skeleton(0)));
 }
 
 TEST_CASE("a training set: what detectors see is scaled by their errors too") {
