@@ -23,7 +23,7 @@ class PoseFeatures {
   static constexpr int kBlock = 6;  ///< numbers of one orientation; the blocks stand first
 
   int dimension() const;
-  const Skeleton& skeleton() const { return skeleton_; }  ///< of the first training clip
+  const Skeleton& skeleton() const { return skeleton_; }  ///< fitted: the first clip's
   /// Where the root velocity's three features begin; the height stands before them.
   int velocity_feature() const { return dimension() - 3; }
   int root() const { return root_; }  ///< the moving root: a joint of skeleton()
