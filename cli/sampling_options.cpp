@@ -21,8 +21,7 @@ double usual_temperature(const Mcdbn& network, const RegenerationOptions& option
 
 }  // namespace
 
-RegenerationOptions SamplingOptions::regeneration(const Mcdbn& network,
-                                                  std::uint64_t seed) const {
+RegenerationOptions SamplingOptions::regeneration(const Mcdbn& network, std::uint64_t seed) const {
   RegenerationOptions options;
   options.samples = samples.value_or(1);
   options.seed = seed;
@@ -42,7 +41,8 @@ void add_sampling_options(CLI::App& command, SamplingOptions& options, const cha
   command
       .add_option(
           "--temperature", options.temperature,
-          "0: the mean-field answer; from there on: sampled variations, further and further from it "
+          "0: the mean-field answer; from there on: sampled variations, further and further from "
+          "it "
           "(default: 2 with several samples; 1 if they are drawn anew in every frame or the model "
           "was trained to be sampled; else 0)")
       ->check(in_range(within(0, kHottest)));

@@ -12,7 +12,8 @@ namespace {
 
 /// Some drivers count the zero at its end.
 std::string name_of(const cl::Kernel& kernel) {
-  return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>().c_str();
+  const std::string name = kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
+  return name.substr(0, name.find('\0'));
 }
 
 }  // namespace
