@@ -41,8 +41,7 @@ void add_sampling_options(CLI::App& command, SamplingOptions& options, const cha
   command
       .add_option(
           "--temperature", options.temperature,
-          "0: the mean-field answer; from there on: sampled variations, further and further from "
-          "it "
+          "0: the mean-field answer; above, variations that stray further and further from it "
           "(default: 2 with several samples; 1 if they are drawn anew in every frame or the model "
           "was trained to be sampled; else 0)")
       ->check(in_range(within(0, kHottest)));
