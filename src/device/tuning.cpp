@@ -10,6 +10,8 @@ namespace mcdbn {
 namespace {
 
 constexpr const char* kKind = "tuning";
+/// Work-items that a group of CLBlast's products may have.
+constexpr std::size_t kClblastGroup = 256;
 
 std::string key_of(const DeviceInfo& info) {
   return "5|" + info.platform_name + '|' + info.name + '|' + info.driver_version + '|' +
@@ -40,6 +42,7 @@ Tuning limited(Tuning tuning, const DeviceInfo& info) {
   const std::size_t most = std::min(info.largest_group, info.largest_group_sides[0]);
   if (static_cast<std::size_t>(tuning.group) > most)
     tuning.group = static_cast<int>(std::max<std::size_t>(most, 1));
+  if (most < kClblastGroup) tuning.clblast_from = 0;
   return tuning;
 }
 

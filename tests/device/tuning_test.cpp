@@ -117,6 +117,20 @@ TEST_CASE("tuning: blocks of rows fill the compute units evenly and fit local me
   });
 }
 
+TEST_CASE("tuning: groups that a device does not take are made smaller, and CLBlast's left out") {
+  DeviceInfo info = some_device();
+  info.largest_group = 256;
+  info.largest_group_sides[0] = info.largest_group_sides[1] = 256;
+  Tuning tuning = kTuned;
+  tuning.group = 64;
+  CHECK(limited(tuning, info) == tuning);
+  info.largest_group_sides[0] = 32;
+  Tuning smaller = tuning;
+  smaller.group = 32;
+  smaller.clblast_from = 0;
+  CHECK(limited(tuning, info) == smaller);
+}
+
 TEST_CASE("tuning: every candidate's products are the same bits as the default's, a GPU's too") {
   on_every_device([](Device& device) {
     const Matrix a = Matrix::from_host(device, random_matrix(13, 29, 1));

@@ -38,7 +38,8 @@ struct Tuning {
 /// What suits most CPUs or GPUs.
 Tuning default_tuning(const DeviceInfo& info);
 
-/// `tuning` with no larger work-groups than the device takes.
+/// `tuning` with no larger work-groups than the device takes, and without CLBlast where its groups
+/// are larger.
 Tuning limited(Tuning tuning, const DeviceInfo& info);
 
 /// The default and its variants, one parameter changed in each: what a tuner tries and what the
