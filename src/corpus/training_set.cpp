@@ -122,7 +122,7 @@ std::vector<Skeleton> people_in(const ClipStore& clips) {
   const ClipGroups groups(clips);
   std::vector<Skeleton> people;
   for (std::size_t i = 0; i < clips.count(); ++i)
-    if (groups.people()[i] == people.size()) people.push_back(clips.records()[i].skeleton);
+    if (groups.people()[i] == people.size()) people.push_back(clips.record(i).skeleton);
   return people;
 }
 

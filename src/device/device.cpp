@@ -143,20 +143,19 @@ Device Device::open(const DeviceSelection& selection) {
   return Device(gpu != fitting.end() ? *gpu : fitting.front());
 }
 
-Device::Device(const DeviceInfo& info)
-    : info_(info), tuning_(limited(load_tuning(info).value_or(default_tuning(info)), info)) {
+Device::Device(const DeviceInfo& info) : info_(info) {
   try {
     const auto platform = platforms().at(static_cast<std::size_t>(info.platform_index));
     device_ = devices_of(platform).at(static_cast<std::size_t>(info.device_index));
     context_ = cl::Context(device_);
     queue_ = cl::CommandQueue(context_, device_);
     programs_ = std::make_unique<ProgramCache>(context_, device_);
-    programs_->set_unroll(tuning_.unroll);
   } catch (const cl::Error& error) {
     throw device_error(info.name, "opening the device", error);
   } catch (const std::out_of_range&) {
     throw DeviceError(fmt::format("no such device: {}", info.name));
   }
+  set_tuning(load_tuning(info).value_or(default_tuning(info)));
 }
 
 Device::Device(Device&&) noexcept = default;
@@ -172,7 +171,7 @@ void Device::keep_launch_times(bool keep) {
 }
 
 void Device::keep_launch(std::string kernel, const cl::Event& event) {
-  kept_launches_.emplace_back(std::move(kernel), event);
+  kept_launches_.emplace_back(trimmed(std::move(kernel)), event);
 }
 
 std::vector<LaunchTime> Device::take_launch_times() {

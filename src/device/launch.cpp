@@ -8,15 +8,6 @@
 #include "device/opencl_errors.hpp"
 
 namespace mcdbn {
-namespace {
-
-/// Some drivers count the zero at its end.
-std::string name_of(const cl::Kernel& kernel) {
-  const std::string name = kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
-  return name.substr(0, name.find('\0'));
-}
-
-}  // namespace
 
 void keep_pace(Device& device) {
   using Clock = std::chrono::steady_clock;
@@ -58,14 +49,15 @@ void enqueue(Device& device, const cl::Kernel& kernel, const LaunchSize& size) {
   device.queue().enqueueNDRangeKernel(kernel, cl::NullRange,
                                       cl::NDRange(size.global[0], size.global[1]), local, nullptr,
                                       device.keeps_launch_times() ? &event : nullptr);
-  if (device.keeps_launch_times()) device.keep_launch(name_of(kernel), event);
+  if (device.keeps_launch_times())
+    device.keep_launch(kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(), event);
   device.count_launch();
 }
 
 DeviceError launch_error(const Device& device, const cl::Kernel& kernel, const cl::Error& error) {
   std::string name = "a kernel";
   try {
-    name = "kernel " + name_of(kernel);
+    name = "kernel " + kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
   } catch (const cl::Error&) {
     // a device that is lost may not even tell that
   }

@@ -69,37 +69,41 @@ class Windows {
   IndexBuffer index_;
 };
 
+/// Products with rows that are read in place, against the same rows spelled out.
+void check_products(Device& device, const Rows& rows, const MatrixF& spelled_out,
+                    std::size_t hidden, GemmBackend backend) {
+  const auto width = static_cast<std::size_t>(spelled_out.cols());
+  // Weights in the padding rows do not matter, as the frames' padding is zero.
+  const MatrixF weights = random_matrix(width, hidden, 2);
+  const Matrix weights_device = Matrix::from_host(device, weights);
+  const GuardedBlock bias(device, rows.count, hidden);
+  GemmOptions options;
+  options.backend = backend;
+  gemm(rows, weights_device, bias.rows(), options);
+  const auto want_bias = reference::product(spelled_out.cast<double>(), weights.cast<double>());
+  CHECK(misfit(bias.values(), want_bias.value, want_bias.bound) == "");
+  CHECK(bias.intact());
+
+  // eq 38, 39: history × (data − reconstruction)
+  const MatrixF difference = random_matrix(rows.count, hidden, 3);
+  const Matrix difference_device = Matrix::from_host(device, difference);
+  const GuardedBlock statistics(device, width, hidden);
+  gemm_transposed_a(rows, difference_device, statistics.rows(), 0.01F, 0.0F, backend);
+  const auto want_statistics =
+      reference::product(spelled_out.transpose().cast<double>(), difference.cast<double>(), 0.01F);
+  CHECK(misfit(statistics.values(), want_statistics.value, want_statistics.bound) == "");
+  CHECK(statistics.intact());
+}
+
 void check_history(Device& device, const History& shape, GemmBackend backend) {
   CAPTURE(shape.visible);
   CAPTURE(shape.order);
   CAPTURE(shape.windows);
   const Windows windows(device, shape);
   const MatrixF history = windows.host_rows();
-  const auto width = static_cast<std::size_t>(history.cols());
+  check_products(device, windows.device_rows(), history, shape.hidden, backend);
 
-  // Weights in the padding rows do not matter, as the frames' padding is zero.
-  const MatrixF weights = random_matrix(width, shape.hidden, 2);
-  const Matrix weights_device = Matrix::from_host(device, weights);
-  const GuardedBlock bias(device, shape.windows, shape.hidden);
-  GemmOptions options;
-  options.backend = backend;
-  gemm(windows.device_rows(), weights_device, bias.rows(), options);
-  const auto want_bias = reference::product(history.cast<double>(), weights.cast<double>());
-  CHECK(misfit(bias.values(), want_bias.value, want_bias.bound) == "");
-  CHECK(bias.intact());
-
-  // eq 38, 39: history × (data − reconstruction)
-  const MatrixF difference = random_matrix(shape.windows, shape.hidden, 3);
-  const Matrix difference_device = Matrix::from_host(device, difference);
-  const GuardedBlock statistics(device, width, shape.hidden);
-  gemm_transposed_a(windows.device_rows(), difference_device, statistics.rows(), 0.01F, 0.0F,
-                    backend);
-  const auto want_statistics =
-      reference::product(history.transpose().cast<double>(), difference.cast<double>(), 0.01F);
-  CHECK(misfit(statistics.values(), want_statistics.value, want_statistics.bound) == "");
-  CHECK(statistics.intact());
-
-  const GuardedBlock gathered(device, shape.windows, width);
+  const GuardedBlock gathered(device, shape.windows, static_cast<std::size_t>(history.cols()));
   gather(windows.device_rows(), gathered.rows());
   CHECK(gathered.values() == history);
   CHECK(gathered.intact());
@@ -122,25 +126,15 @@ void check_strided(Device& device, std::size_t sequences, std::size_t length, st
       rows.block(static_cast<Eigen::Index>(s), static_cast<Eigen::Index>(q * all_device.stride()),
                  1, static_cast<Eigen::Index>(columns)) =
           all.row(static_cast<Eigen::Index>(s * length + 1 + q));
-  const MatrixF weights = random_matrix(width, 5, 5);
-  const Matrix weights_device = Matrix::from_host(device, weights);
-  const Rows strided = Rows::strided(all_device, 1, sequences, length, frames);
-  const MatrixF errors = random_matrix(sequences, 5, 6);
-  const Matrix errors_device = Matrix::from_host(device, errors);
-  GemmOptions options;
-  options.backend = backend;
-  const GuardedBlock out(device, sequences, 5);
-  gemm(strided, weights_device, out.rows(), options);
-  const auto want = reference::product(rows.cast<double>(), weights.cast<double>());
-  CHECK(misfit(out.values(), want.value, want.bound) == "");
-  CHECK(out.intact());
+  check_products(device, Rows::strided(all_device, 1, sequences, length, frames), rows, 5, backend);
+}
 
-  const GuardedBlock statistics(device, width, 5);
-  gemm_transposed_a(strided, errors_device, statistics.rows(), 1.0F, 0.0F, backend);
-  const auto want_statistics =
-      reference::product(rows.transpose().cast<double>(), errors.cast<double>());
-  CHECK(misfit(statistics.values(), want_statistics.value, want_statistics.bound) == "");
-  CHECK(statistics.intact());
+void check_all_strided(GemmBackend backend) {
+  on_every_device([=](Device& device) {
+    check_strided(device, 3, 4, 5, 1, backend);
+    check_strided(device, 7, 6, 17, 3, backend);
+    check_strided(device, 5, 1, 17, 3, backend);
+  });
 }
 
 }  // namespace
@@ -157,14 +151,6 @@ TEST_CASE("histories of five frames at the model's sizes, on both back ends") {
       check_history(device, shape, GemmBackend::own);
       check_history(device, shape, GemmBackend::clblast);
     }
-  });
-}
-
-void check_all_strided(GemmBackend backend) {
-  on_every_device([=](Device& device) {
-    check_strided(device, 3, 4, 5, 1, backend);
-    check_strided(device, 7, 6, 17, 3, backend);
-    check_strided(device, 5, 1, 17, 3, backend);
   });
 }
 

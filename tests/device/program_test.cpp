@@ -35,6 +35,15 @@ bool works_afresh(const DeviceInfo& info) {
   return out.to_host() == in.transpose();
 }
 
+/// The one number that a kernel writes.
+cl_int answer_of(Device& device, cl::Kernel& kernel) {
+  const cl::Buffer out(device.context(), CL_MEM_READ_WRITE, sizeof(cl_int));
+  launch(device, kernel, {}, out);
+  cl_int answer = 0;
+  device.queue().enqueueReadBuffer(out, CL_TRUE, 0, sizeof answer, &answer);
+  return answer;
+}
+
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   if (fs::exists(folder))
@@ -135,11 +144,7 @@ TEST_CASE("small: kernels are read from MCDBN_KERNEL_DIR, with what they include
     const ScopedVariable kernels("MCDBN_KERNEL_DIR", (folder / "").string());
     const ScopedVariable cache("XDG_CACHE_HOME", (folder / "cache").string());
     Device device(open.info());
-    const cl::Buffer out(device.context(), CL_MEM_READ_WRITE, sizeof(cl_int));
-    launch(device, device.programs().kernel("probe.cl", "answer", {{"EXTRA", 3}}), {}, out);
-    cl_int answer = 0;
-    device.queue().enqueueReadBuffer(out, CL_TRUE, 0, sizeof answer, &answer);
-    CHECK(answer == 45);
+    CHECK(answer_of(device, device.programs().kernel("probe.cl", "answer", {{"EXTRA", 3}})) == 45);
     CHECK(device.launch_count() == 1);
 
     const auto kernel = [&](const char* file, const char* name) {
@@ -171,11 +176,7 @@ TEST_CASE("small: kernels are built with the rounds to unroll that the device is
     const ScopedVariable kernels("MCDBN_KERNEL_DIR", (folder / "").string());
     const ScopedVariable cache("XDG_CACHE_HOME", (folder / "cache").string());
     const auto rounds = [](Device& device) {
-      const cl::Buffer out(device.context(), CL_MEM_READ_WRITE, sizeof(cl_int));
-      launch(device, device.programs().kernel("rounds.cl", "rounds"), {}, out);
-      cl_int answer = 0;
-      device.queue().enqueueReadBuffer(out, CL_TRUE, 0, sizeof answer, &answer);
-      return answer;
+      return answer_of(device, device.programs().kernel("rounds.cl", "rounds"));
     };
     Device device(open.info());
     CHECK(rounds(device) == device.tuning().unroll);
