@@ -14,6 +14,8 @@ constexpr double kHeight_m = 1.7;  ///< of the body that lengths are of
 constexpr double kResidualOfNoise = 0.88;
 /// What is not a detector any more, as a share of a detector's noise.
 constexpr double kMost = 3;
+/// What is exact, as a share of a detector's noise.
+constexpr double kExact = 0.5;
 /// A noise that changes by less is not worth another solution.
 constexpr double kSmallChange = 0.1;
 
@@ -26,16 +28,25 @@ SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m
   usual_ = settings.detector * kHeight_m / std::max(depth_m, 1e-9);
   least_ = may_be_exact ? measured_ : usual_;
   rays_.white = std::max(kLeastNoise_px, settings.caution * track_noise_px) / focal_px;
-  rays_.lasting = share * usual_;
+  set_lasting(share * usual_);
 }
 
 bool SeenNoise::learn(double residual) {
   const double before = std::hypot(rays_.white, rays_.lasting);
   const double told = residual * residual / (kResidualOfNoise * kResidualOfNoise * before);
   const double both = std::clamp(told, least_, std::max({least_, measured_, kMost * usual_}));
-  rays_.lasting = std::sqrt(std::max(0.0, both * both - measured_ * measured_));
+  set_lasting(std::sqrt(std::max(0.0, both * both - measured_ * measured_)));
   const double after = std::hypot(rays_.white, rays_.lasting);
   return std::abs(after - before) > kSmallChange * before;
+}
+
+bool SeenNoise::exact() const {
+  return std::hypot(rays_.white, rays_.lasting) <= kExact * usual_;
+}
+
+void SeenNoise::set_lasting(double lasting) {
+  rays_.lasting = lasting;
+  rays_.share = lasting / usual_;
 }
 
 }  // namespace mcdbn

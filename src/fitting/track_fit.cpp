@@ -9,6 +9,7 @@
 #include "camera/track_rays.hpp"
 #include "fitting/camera_angles.hpp"
 #include "fitting/clip_evidence.hpp"
+#include "fitting/mirrored_bones.hpp"
 #include "fitting/posterior_draws.hpp"
 #include "fitting/prior_deviations.hpp"
 #include "fitting/prior_draws.hpp"
@@ -99,6 +100,7 @@ class ClipFit {
       take(point_ = most_likely(clip, rays_, settings, std::move(point_)));
       if (!noise.learn(evidence_->usual_residual(point_, clip.frames()))) break;
     }
+    if (noise.exact()) take(point_ = likeliest_in_depth(clip, rays_, settings, std::move(point_)));
   }
 
   /// After meet_track. The clip stays as it is.

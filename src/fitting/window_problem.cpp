@@ -68,11 +68,46 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
 }
 
 void WindowProblem::solve(bool shared_too, double small_gain, int most_iterations) {
-  check_interruption();
   if (!shared_too)
     for (const UnknownBlock& block : shared_blocks())
       if (problem_.HasParameterBlock(block.unknown))
         problem_.SetParameterBlockConstant(block.unknown);
+  minimize(small_gain, most_iterations);
+  turn_unused();
+}
+
+void WindowProblem::solve_turns(const std::vector<int>& turns, double small_gain,
+                                int most_iterations) {
+  std::vector<double*> free, unknowns, held;
+  for (Eigen::Index t = 0; t < x_.turns.rows(); ++t)
+    for (const int turn : turns) free.push_back(turn_at(t, turn));
+  std::ranges::sort(free);
+  problem_.GetParameterBlocks(&unknowns);
+  for (double* const unknown : unknowns)
+    if (!problem_.IsParameterBlockConstant(unknown) && !std::ranges::binary_search(free, unknown))
+      held.push_back(unknown);
+  for (double* const unknown : held) problem_.SetParameterBlockConstant(unknown);
+  minimize(small_gain, most_iterations);
+  for (double* const unknown : held) problem_.SetParameterBlockVariable(unknown);
+}
+
+void WindowProblem::start_from(const PosteriorPoint& from) {
+  x_.turns = from.turns.middleRows(first_, x_.turns.rows());
+  x_.shift = from.shift.middleRows(first_, x_.shift.rows());
+  x_.log_lengths = from.log_lengths;
+  x_.ground_m = from.ground_m;
+  x_.lean = from.lean;
+  x_.log_focal = from.log_focal;
+}
+
+double WindowProblem::energy() {
+  double energy = 0;
+  problem_.Evaluate({}, &energy, nullptr, nullptr, nullptr);
+  return energy;
+}
+
+void WindowProblem::minimize(double small_gain, int most_iterations) {
+  check_interruption();
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
@@ -86,7 +121,6 @@ void WindowProblem::solve(bool shared_too, double small_gain, int most_iteration
   const OneThreadSolver one_thread;
   ceres::Solve(options, &problem_, &summary);
   x_.energy = summary.final_cost;
-  turn_unused();
 }
 
 Eigen::SparseMatrix<double> WindowProblem::derivatives() {
@@ -193,6 +227,7 @@ void WindowProblem::add_rays() {
 /// What an orientation turns otherwise than its parent makes likely is a slow process about zero.
 void WindowProblem::add_turns() {
   const SlowProcess process(settings_.lasting_s, clip_.frame_time_s);
+  const double point = process.point * std::lerp(settings_.exact, 1, std::min(1.0, noise_.share));
   const Eigen::Vector3d zero(0, 0, 0);
   for (int turn = 0; turn < turns_; ++turn) {
     if (!used_[static_cast<std::size_t>(turn)]) continue;
@@ -214,8 +249,7 @@ void WindowProblem::add_turns() {
         if (clip_.mean_lean.rows() > 0)
           expected = (share - 1) * clip_.mean_lean.row(first_ + t).transpose();
       }
-      add(t, new LinearTerm(shares, expected, deviation / std::sqrt(process.point)), nullptr,
-          blocks);
+      add(t, new LinearTerm(shares, expected, deviation / std::sqrt(point)), nullptr, blocks);
       if (t == 0 || t + 1 == x_.turns.rows()) continue;
       blocks = {turn_at(t - 1, turn), turn_at(t, turn), turn_at(t + 1, turn)};
       shares = {1, -2, 1};

@@ -32,6 +32,15 @@ class WindowProblem {
   /// @param small_gain a step that lowers the energy by less than this share is the last one
   void solve(bool shared_too, double small_gain, int most_iterations = kMostIterations);
 
+  /// The same of some orientations alone: all else stays as it is.
+  /// @param turns indices; those that the problem does not have are left out
+  void solve_turns(const std::vector<int>& turns, double small_gain, int most_iterations);
+
+  /// Begins anew. @param from as the constructor's, of the same clip
+  void start_from(const PosteriorPoint& from);
+  /// −log of how likely the point is where the problem is, but for a constant.
+  double energy();
+
   /// Derivatives of the residuals, as their losses weigh them, at the point where the problem is.
   /// @return [residuals x frames·(3·orientations + 3) + lengths]: frame by frame its turns and its
   ///         shift, then the lengths; 0 in the column of what nothing depends on
@@ -57,6 +66,7 @@ class WindowProblem {
   void add(Eigen::Index first, ceres::CostFunction* cost, ceres::LossFunction* loss,
            const std::vector<double*>& blocks);
   void turn_unused();
+  void minimize(double small_gain, int most_iterations);
 
   const std::vector<SeenJoint>& seen(Eigen::Index t) const;
   /// What a turn of its parent by one makes one expect of a turn; 0 without a parent.

@@ -129,8 +129,10 @@ TEST_CASE("fit draws: the prior's deviation counts as it is told, whatever the l
   Scene scene = make_scene(0, 30);
   for (const char* joint : {"LeftForeArm", "LeftHand"})
     scene.track.confidence.col(scene.track.find(joint)).setZero();
-  const double once = width_of(scene, drawn(scene, prior_of(scene, 0.2)), "LeftHand");
-  const double twice = width_of(scene, drawn(scene, prior_of(scene, 0.4)), "LeftHand");
+  TrackFitSettings settings;
+  settings.exact = 1;
+  const double once = width_of(scene, drawn(scene, prior_of(scene, 0.2), settings), "LeftHand");
+  const double twice = width_of(scene, drawn(scene, prior_of(scene, 0.4), settings), "LeftHand");
   CHECK(twice > 1.7 * once);
 }
 

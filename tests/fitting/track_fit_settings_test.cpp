@@ -14,6 +14,7 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"turn", [](S& s) { return at(s.turn_deg); }, "9"},
       {"likeness", [](S& s) { return at(s.likeness); }, "0.6"},
       {"lasting", [](S& s) { return at(s.lasting_s); }, "0.1"},
+      {"exact", [](S& s) { return at(s.exact); }, "0.3"},
       {"root", [](S& s) { return at(s.root_m_s2); }, "3"},
       {"detector", [](S& s) { return at(s.detector); }, "0.009"},
       {"noise-lasts", [](S& s) { return at(s.noise_lasts_s); }, "0.35"},
@@ -29,6 +30,7 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"balance", [](S& s) { return at(s.balance_deg); }, "5"},
       {"focal", [](S& s) { return at(s.focal); }, "0.1"},
       {"solutions", [](S& s) { return at(s.solutions); }, "5"},
+      {"alternatives", [](S& s) { return at(s.alternatives); }, "4"},
       {"spread", [](S& s) { return at(s.spread); }, "1.2"},
       {"draws-noise-lasts", [](S& s) { return at(s.draws_noise_lasts_s); }, "10"}};
   check_table(table);
@@ -44,6 +46,9 @@ TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves s
   check_refused<TrackFitSettings>("likeness", 1, "at least 0 and below 1");
   check_refused<TrackFitSettings>("noise-lasts", -0.01, "at least 0");
   check_refused<TrackFitSettings>("draws-noise-lasts", -0.01, "at least 0");
+  check_refused<TrackFitSettings>("exact", 0, "above 0 and at most 1");
+  check_refused<TrackFitSettings>("exact", 1.01, "above 0 and at most 1");
+  check_accepted<TrackFitSettings>("exact", 1);
   check_accepted<TrackFitSettings>("likeness", 0);
   check_accepted<TrackFitSettings>("noise-lasts", 0);
 }

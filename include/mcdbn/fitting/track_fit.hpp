@@ -60,13 +60,15 @@ struct KnownOfClip {
 /// moves. Chosen on clips of training people with other bodies and detector-like tracks, and on the
 /// exact projections of the same: six CMU walks, of a model of walks and of a general one;
 /// `likeness`, `lasting`, `outlier`, `proportions`, `roll` and `focal` on seven CMU clips and
-/// twelve of Bandai's training halves, of the general model, which never saw Bandai's; `spread` and
+/// twelve of Bandai's training halves, of the general model, which never saw Bandai's; `exact` and
+/// `alternatives` on the same, exact and with noise of 2 and 5 px; `spread` and
 /// `draws-noise-lasts` on eleven of CMU's, detector-like, exact, with noise of 5 px and with joints
 /// missing.
 struct TrackFitSettings {
   double turn_deg = 9;
   double likeness = 0.6;
   double lasting_s = 0.1;
+  double exact = 0.3;
   double root_m_s2 = 3;
   double detector = 0.009;
   double noise_lasts_s = 0.35;
@@ -82,6 +84,7 @@ struct TrackFitSettings {
   double balance_deg = 5;
   double focal = 0.1;
   std::size_t solutions = 5;
+  std::size_t alternatives = 4;
   double spread = 1.2;
   double draws_noise_lasts_s = 10;
 
@@ -99,6 +102,10 @@ struct TrackFitSettings {
     visit(Setting{"lasting", above(0), "seconds",
                   "how long the prior's errors last: frames so near are one witness"},
           self.lasting_s);
+    // Errors that last longer than that are there, too. A detector's hide them.
+    visit(Setting{"exact", above(0, 1), "",
+                  "how much that share of the prior counts where rays have no error that lasts"},
+          self.exact);
     visit(
         Setting{
             "root", above(0), "m/s2",
@@ -133,6 +140,10 @@ struct TrackFitSettings {
                 "of all frames at most, after one of every tenth of a second; each with the noise "
                 "and the standing feet that the one before tells"},
         self.solutions);
+    visit(
+        Setting{"alternatives", at_least(0), "",
+                "rounds at most in which bones are tried mirrored in depth, where rays are exact"},
+        self.alternatives);
     visit(Setting{"spread", above(0), "",
                   "how many times wider the posterior is drawn than its equations make it"},
           self.spread);

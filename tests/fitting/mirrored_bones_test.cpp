@@ -1,0 +1,152 @@
+// Bones whose side in depth a solution has wrong. CHECK is glog's here, as in terms_test.cpp.
+
+#include "fitting/mirrored_bones.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fitting/rotation.hpp"
+#include "fitting/window_problem.hpp"
+
+namespace mirrored_bones_test {
+
+using namespace mcdbn;
+
+namespace {
+
+constexpr Eigen::Index kFrames = 90;
+constexpr double kDepth_m = 4;
+const RayNoise kExact{1e-3, 0, 0};
+
+/// The arm's swing towards the camera (−) and away.
+double swing_rad(Eigen::Index t) {
+  return 0.8 * std::sin(0.15 * static_cast<double>(t));
+}
+
+/// An arm of two bones that hangs down in the prior's mean, and as a camera sees it that swings.
+PosteriorClip swinging_arm() {
+  PosteriorClip clip;
+  clip.parents = {-1, 0, 1};
+  clip.lengths = {0, 1, 2};
+  clip.root = MatrixD::Zero(kFrames, 3);
+  clip.root.col(2).setConstant(kDepth_m);
+  clip.travelled = clip.root;
+  clip.planted = MatrixD::Zero(kFrames, 0);
+  clip.turn_deviation_rad = MatrixD::Constant(kFrames, 3, 0.3);
+  clip.frame_time_s = 1.0 / 30;
+  const std::vector<Lever> shoulder{{0, {0.2, -0.5, 0}}};
+  for (Eigen::Index t = 0; t < kFrames; ++t) {
+    const Eigen::Matrix3d swung = rotation_of({swing_rad(t), 0, 0});
+    std::vector<SeenJoint> seen;
+    Eigen::Vector3d at = clip.root.row(t).transpose() + shoulder.front().bone;
+    seen.push_back({shoulder, at.head<2>() / at.z(), 1});
+    for (const double side : {-1, 1}) {  // hips, so that the body does not lean with the arm
+      const Eigen::Vector3d hip(0.2 * side, 0.2, 0);
+      const Eigen::Vector3d seen_at = clip.root.row(t).transpose() + hip;
+      seen.insert(seen.begin(), {{{0, hip}}, seen_at.head<2>() / seen_at.z(), 1});
+    }
+    for (const int turn : {1, 2}) {
+      std::vector<Lever> levers = seen.back().levers;
+      levers.insert(levers.begin(), {turn, {0, 0.3, 0}});
+      at += swung * levers.front().bone;
+      seen.push_back({levers, at.head<2>() / at.z(), 1});
+    }
+    clip.seen.push_back(seen);
+  }
+  return clip;
+}
+
+/// A solution from where `turns` swing as the arm does in some frames, and the other way elsewhere.
+PosteriorPoint solved_from(const PosteriorClip& clip, const std::vector<int>& turns,
+                           const std::vector<int>& other_turns, bool (*other_way)(Eigen::Index)) {
+  PosteriorPoint point = PosteriorPoint::zero(clip);
+  for (Eigen::Index t = 0; t < kFrames; ++t) {
+    for (const int turn : turns) point.turns(t, 3 * turn) = swing_rad(t);
+    for (const int turn : other_turns)
+      point.turns(t, 3 * turn) = (other_way(t) ? -1 : 1) * swing_rad(t);
+  }
+  return most_likely(clip, kExact, {}, point);
+}
+
+double worst_rad(const PosteriorPoint& point, int turn) {
+  double worst = 0;
+  for (Eigen::Index t = 0; t < kFrames; ++t)
+    worst = std::max(worst, std::abs(point.turns(t, 3 * turn) - swing_rad(t)));
+  return worst;
+}
+
+bool in_one_swing(Eigen::Index t) {
+  return t >= 21 && t < 42;
+}
+bool in_two_swings(Eigen::Index t) {
+  return t < 21 || (t >= 42 && t < 63);
+}
+
+}  // namespace
+
+TEST_CASE("mirrored bones: a swing to the wrong side is found and put right") {
+  const PosteriorClip clip = swinging_arm();
+  for (const auto other_way : {in_one_swing, in_two_swings})
+    for (const bool both : {false, true}) {
+      CAPTURE(both);
+      const PosteriorPoint wrong =
+          both ? solved_from(clip, {}, {1, 2}, other_way) : solved_from(clip, {1}, {2}, other_way);
+      REQUIRE(worst_rad(wrong, 2) > 0.5);  // it does not come back by itself
+      REQUIRE((worst_rad(wrong, 1) > 0.5) == both);
+      const PosteriorPoint right = likeliest_in_depth(clip, kExact, {}, wrong);
+      CHECK_UNARY(worst_rad(right, 1) < 0.1);
+      CHECK_UNARY(worst_rad(right, 2) < 0.1);
+      CHECK_UNARY(right.energy < wrong.energy);
+      TrackFitSettings none;
+      none.alternatives = 0;
+      CHECK_UNARY(likeliest_in_depth(clip, kExact, none, wrong).turns == wrong.turns);
+    }
+}
+
+TEST_CASE("mirrored bones: what is right stays, and the same comes out again") {
+  const PosteriorClip clip = swinging_arm();
+  const PosteriorPoint right = solved_from(clip, {1, 2}, {}, in_one_swing);
+  CHECK_UNARY(likeliest_in_depth(clip, kExact, {}, right).turns == right.turns);
+  const PosteriorPoint wrong = solved_from(clip, {1}, {2}, in_two_swings);
+  CHECK_UNARY(likeliest_in_depth(clip, kExact, {}, wrong).turns ==
+              likeliest_in_depth(clip, kExact, {}, wrong).turns);
+}
+
+TEST_CASE("window problem: some orientations alone, then all again, from another start") {
+  const PosteriorClip clip = swinging_arm();
+  const PosteriorPoint zero = PosteriorPoint::zero(clip);
+  WindowProblem problem(clip, kExact, {}, zero, 10, 30);
+  const double first = problem.energy();
+  problem.solve_turns({2}, 1e-6, 20);
+  const PosteriorPoint some = problem.solution();
+  CHECK_UNARY(some.energy < first);
+  CHECK_UNARY(problem.energy() == doctest::Approx(some.energy));
+  CHECK_UNARY(some.shift.isZero(0));
+  CHECK_UNARY(some.turns.leftCols(6).isZero(0));
+  CHECK_UNARY(some.turns.rightCols(3).norm() > 0.1);
+  problem.start_from(zero);
+  CHECK_UNARY(problem.energy() == doctest::Approx(first));
+  problem.solve(false, 1e-6);
+  CHECK_UNARY(problem.solution().energy < some.energy);
+  CHECK_UNARY(problem.solution().turns.middleCols(3, 3).norm() > 0.1);
+}
+
+TEST_CASE("window problem: where rays are exact the prior's mean counts for less") {
+  PosteriorClip clip = swinging_arm();
+  const auto followed = [&](double share, double exact) {
+    TrackFitSettings settings;
+    settings.exact = exact;
+    const RayNoise noise{0.05, 0, share};  // so far off that the prior is heard
+    const PosteriorPoint start = solved_from(clip, {1, 2}, {}, in_one_swing);
+    return most_likely(clip, noise, settings, start).turns.norm();
+  };
+  CHECK_UNARY(followed(0, 0.3) > 1.05 * followed(1, 0.3));
+  CHECK_UNARY(followed(0.5, 0.3) > 1.01 * followed(1, 0.3));
+  CHECK_UNARY(followed(0, 0.3) > 1.01 * followed(0.5, 0.3));
+  CHECK_UNARY(followed(3, 0.3) == followed(1, 0.3));
+  CHECK_UNARY(followed(0, 1) == followed(1, 0.3));
+}
+
+}  // namespace mirrored_bones_test
