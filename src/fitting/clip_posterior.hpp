@@ -48,7 +48,7 @@ struct PosteriorClip {
 /// How far off rays are, x/z and y/z each: a part that is new in every frame and one that lasts.
 struct RayNoise {
   double white = 0, lasting = 0;
-  double share = 1;  ///< the lasting part as a share of a usual detector's
+  bool exact = false;  ///< there is next to none beside a usual detector's
 };
 
 /// A motion as it differs from the prior's mean.

@@ -40,13 +40,9 @@ bool SeenNoise::learn(double residual) {
   return std::abs(after - before) > kSmallChange * before;
 }
 
-bool SeenNoise::exact() const {
-  return std::hypot(rays_.white, rays_.lasting) <= kExact * usual_;
-}
-
 void SeenNoise::set_lasting(double lasting) {
   rays_.lasting = lasting;
-  rays_.share = lasting / usual_;
+  rays_.exact = std::hypot(rays_.white, lasting) <= kExact * usual_;
 }
 
 }  // namespace mcdbn

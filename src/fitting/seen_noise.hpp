@@ -21,13 +21,11 @@ class SeenNoise {
             const TrackFitSettings& settings, double share = 1);
 
   const RayNoise& rays() const { return rays_; }
-  /// Whether there is next to none, lasting or new, beside a usual detector's.
-  bool exact() const;
   /// @param residual how far from the rays a solution's joints are, x/z and y/z each
   /// @return whether that makes another solution worth while
   bool learn(double residual);
   /// What is told by now of a usual detector's lasting part.
-  double share() const { return rays_.share; }
+  double share() const { return rays_.lasting / usual_; }
 
  private:
   void set_lasting(double lasting);

@@ -100,7 +100,7 @@ class ClipFit {
       take(point_ = most_likely(clip, rays_, settings, std::move(point_)));
       if (!noise.learn(evidence_->usual_residual(point_, clip.frames()))) break;
     }
-    if (noise.exact()) take(point_ = likeliest_in_depth(clip, rays_, settings, std::move(point_)));
+    if (rays_.exact) take(point_ = likeliest_in_depth(clip, rays_, settings, std::move(point_)));
   }
 
   /// After meet_track. The clip stays as it is.

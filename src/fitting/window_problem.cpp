@@ -227,7 +227,7 @@ void WindowProblem::add_rays() {
 /// What an orientation turns otherwise than its parent makes likely is a slow process about zero.
 void WindowProblem::add_turns() {
   const SlowProcess process(settings_.lasting_s, clip_.frame_time_s);
-  const double point = process.point * std::lerp(settings_.exact, 1, std::min(1.0, noise_.share));
+  const double point = process.point * (noise_.exact ? settings_.exact : 1);
   const Eigen::Vector3d zero(0, 0, 0);
   for (int turn = 0; turn < turns_; ++turn) {
     if (!used_[static_cast<std::size_t>(turn)]) continue;

@@ -37,16 +37,16 @@ TEST_CASE("seen noise: an exact projection is found out, of an own skeleton alon
   SeenNoise own = noise_of(0, true), other = noise_of(0, false);
   CHECK(own.learn(0.25 * kUsual));
   CHECK(own.rays().lasting < 0.1 * kUsual);
-  CHECK(own.exact());
-  CHECK_FALSE(other.exact());
-  CHECK_FALSE(noise_of(0, true).exact());
+  CHECK(own.rays().exact);
+  CHECK_FALSE(other.rays().exact);
+  CHECK_FALSE(noise_of(0, true).rays().exact);
   SeenNoise noisy = noise_of(2, true);  // new in every frame, so that nothing lasts
   noisy.learn(1e-3 * kUsual);
-  CHECK(noisy.rays().share == 0);
-  CHECK_FALSE(noisy.exact());
-  CHECK(own.rays().share == doctest::Approx(own.rays().lasting / kUsual));
+  CHECK(noisy.share() == 0);
+  CHECK_FALSE(noisy.rays().exact);
+  CHECK(own.share() == doctest::Approx(own.rays().lasting / kUsual));
   own.learn(0.03 * kUsual);
-  CHECK(own.rays().share == doctest::Approx(0));
+  CHECK(own.share() == doctest::Approx(0));
   CHECK(own.rays().lasting == doctest::Approx(0).scale(kUsual));
   CHECK_FALSE(other.learn(0.25 * kUsual));
   CHECK(std::hypot(other.rays().lasting, 0.25 / kFocal_px) == doctest::Approx(kUsual));

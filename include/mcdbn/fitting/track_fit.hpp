@@ -61,7 +61,7 @@ struct KnownOfClip {
 /// exact projections of the same: six CMU walks, of a model of walks and of a general one;
 /// `likeness`, `lasting`, `outlier`, `proportions`, `roll` and `focal` on seven CMU clips and
 /// twelve of Bandai's training halves, of the general model, which never saw Bandai's; `exact` and
-/// `alternatives` on the same, exact and with noise of 2 and 5 px; `spread` and
+/// `alternatives` on the exact projections of the same; `spread` and
 /// `draws-noise-lasts` on eleven of CMU's, detector-like, exact, with noise of 5 px and with joints
 /// missing.
 struct TrackFitSettings {
@@ -103,9 +103,10 @@ struct TrackFitSettings {
                   "how long the prior's errors last: frames so near are one witness"},
           self.lasting_s);
     // Errors that last longer than that are there, too. A detector's hide them.
-    visit(Setting{"exact", above(0, 1), "",
-                  "how much that share of the prior counts where rays have no error that lasts"},
-          self.exact);
+    visit(
+        Setting{"exact", above(0, 1), "",
+                "how much the prior's mean counts where rays are exact, of what it does elsewhere"},
+        self.exact);
     visit(
         Setting{
             "root", above(0), "m/s2",
