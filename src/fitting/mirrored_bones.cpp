@@ -23,8 +23,6 @@ constexpr double kDeep = 0.1;
 constexpr double kAround_s = 0.5;
 /// What a mirrored stretch has to be likelier by, as −log: less is the solver's own rest.
 constexpr double kLikelier = 1;
-/// While nothing but the limb moves, a try may be less likely than what stands by this factor.
-constexpr double kPromising = 1.1;
 /// Steps of a try: whether it is likelier shows by then.
 constexpr int kIterations = 8;
 constexpr double kSmallGain = 2e-3;
@@ -179,7 +177,7 @@ class MirroredBones {
       if (all_below && turns.size() == 1) break;
       problem.start_from(other);
       problem.solve_turns(turns, kSmallGain, kIterations);
-      if (problem.energy() > kPromising * stands) continue;
+      if (problem.energy() > stands) continue;  // while nothing but the limb moves
       problem.solve(false, kSmallGain, kIterations);
       const PosteriorPoint found = problem.solution();
       problem.start_from(point);

@@ -30,7 +30,7 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"balance", [](S& s) { return at(s.balance_deg); }, "5"},
       {"focal", [](S& s) { return at(s.focal); }, "0.1"},
       {"solutions", [](S& s) { return at(s.solutions); }, "5"},
-      {"alternatives", [](S& s) { return at(s.alternatives); }, "4"},
+      {"alternatives", [](S& s) { return at(s.alternatives); }, "2"},
       {"spread", [](S& s) { return at(s.spread); }, "1.2"},
       {"draws-noise-lasts", [](S& s) { return at(s.draws_noise_lasts_s); }, "10"}};
   check_table(table);

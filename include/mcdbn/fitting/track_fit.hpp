@@ -84,7 +84,7 @@ struct TrackFitSettings {
   double balance_deg = 5;
   double focal = 0.1;
   std::size_t solutions = 5;
-  std::size_t alternatives = 4;
+  std::size_t alternatives = 2;
   double spread = 1.2;
   double draws_noise_lasts_s = 10;
 
