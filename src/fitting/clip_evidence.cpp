@@ -17,11 +17,6 @@
 namespace mcdbn {
 namespace {
 
-bool hangs_from(const std::vector<int>& parents, int turn, int other) {
-  while (turn >= 0 && turn != other) turn = parents[static_cast<std::size_t>(turn)];
-  return turn == other;
-}
-
 /// By orientation, its length: left and right have the same.
 std::vector<int> length_groups(const PoseFeatures& features, const std::vector<int>& parents) {
   const std::vector<int>& joints = features.joints();

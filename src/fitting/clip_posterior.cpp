@@ -1,12 +1,11 @@
 #include "fitting/clip_posterior.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
 #include <utility>
 
 #include "fitting/clip_windows.hpp"
+#include "fitting/two_threads.hpp"
 #include "fitting/window_problem.hpp"
 
 namespace mcdbn {
@@ -101,14 +100,9 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
   if (clip.body_unknown) follow_body(from, clip, windows[middle_one], middle);
   std::vector<PosteriorPoint> parts(windows.size());
   parts[middle_one] = std::move(middle);
-  std::atomic<std::size_t> next = 0;
-  const auto solve_others = [&] {
-    for (std::size_t i = next++; i < windows.size(); i = next++)
-      if (i != middle_one) parts[i] = solved(windows[i], false);
-  };
-  std::future<void> second = std::async(std::launch::async, solve_others);
-  solve_others();
-  second.get();
+  on_two_threads(windows.size(), [&](std::size_t i) {
+    if (i != middle_one) parts[i] = solved(windows[i], false);
+  });
   PosteriorPoint whole = from;
   whole.energy = 0;  // frames that two windows have count twice
   for (std::size_t i = 0; i < windows.size(); ++i) {

@@ -65,6 +65,9 @@ struct PosteriorPoint {
   static PosteriorPoint zero(const PosteriorClip& clip);
 };
 
+/// The gain at which a solution of all frames stops.
+inline constexpr double kSmallGainOfAll = 2e-3;
+
 /// The likeliest motion given prior and track: nonlinear least squares over all frames at once, of
 /// the costs in terms/. Long clips are solved in windows that overlap, with the body of the middle
 /// one.
@@ -72,7 +75,7 @@ struct PosteriorPoint {
 /// @param small_gain a step that lowers the energy by less than this share is the last one
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
                            const TrackFitSettings& settings, PosteriorPoint from,
-                           double small_gain = 2e-3);
+                           double small_gain = kSmallGainOfAll);
 
 /// Time between the frames that roughly_likely solves for.
 inline constexpr double kRoughly_s = 0.1;

@@ -2,14 +2,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "fitting/clip_windows.hpp"
 #include "fitting/rotation.hpp"
+#include "fitting/turned_bones.hpp"
+#include "fitting/two_threads.hpp"
 #include "fitting/window_problem.hpp"
 
 namespace mcdbn {
@@ -24,18 +25,12 @@ constexpr double kAround_s = 0.5;
 /// What a mirrored stretch has to be likelier by, as −log: less is the solver's own rest.
 constexpr double kLikelier = 1;
 /// Steps of a try: whether it is likelier shows by then.
-constexpr int kIterations = 8;
-constexpr double kSmallGain = 2e-3;
+constexpr int kStepsOfTry = 8;
 
 /// The way from a joint's parent to it, if nothing else hangs on the orientation that turns it.
 struct Bone {
   int turn = 0;
   std::size_t joint = 0;
-};
-
-/// Frames, the last one included.
-struct Stretch {
-  Eigen::Index first = 0, last = 0;
 };
 
 std::vector<Bone> bones_of(const PosteriorClip& clip) {
@@ -68,44 +63,42 @@ Eigen::Vector3d sight_of(const PosteriorClip& clip, const PosteriorPoint& point,
 }
 
 /// From each frame in which the bone comes nearest to lying across the sight to the next one.
-std::vector<Stretch> stretches_of(const PosteriorClip& clip, const PosteriorPoint& point,
-                                  const Bone& bone) {
+std::vector<ClipWindow> stretches_of(const PosteriorClip& clip, const PosteriorPoint& point,
+                                     const Bone& bone) {
   const Eigen::Index frames = clip.frames();
   Eigen::VectorXd depth(frames);  // shares of the bone's length
   for (Eigen::Index t = 0; t < frames; ++t)
-    depth[t] = std::abs(vector_of(clip, point, t, bone)
-                            .normalized()
-                            .dot(  //
-                                sight_of(clip, point, t, bone)));
-  std::vector<Stretch> stretches;
+    depth[t] =
+        std::abs(sight_of(clip, point, t, bone).dot(vector_of(clip, point, t, bone).normalized()));
+  std::vector<ClipWindow> stretches;
   Eigen::Index first = 0;
   for (Eigen::Index t = 1; t <= frames; ++t) {
     const bool across =
         t + 1 < frames && depth[t] < kAcross && depth[t] <= depth[t - 1] && depth[t] < depth[t + 1];
     if (t < frames && !across) continue;
-    if (depth.segment(first, t - first).maxCoeff() > kDeep) stretches.push_back({first, t - 1});
+    if (depth.segment(first, t - first).maxCoeff() > kDeep) stretches.push_back({first, t - first});
     first = t;
   }
   return stretches;
 }
 
-void mirror(const PosteriorClip& clip, const PosteriorPoint& from, const Stretch& stretch,
+void mirror(const PosteriorClip& clip, const PosteriorPoint& from, const ClipWindow& stretch,
             const Bone& bone, PosteriorPoint& point) {
-  for (Eigen::Index t = stretch.first; t <= stretch.last; ++t) {
+  for (Eigen::Index t = stretch.first; t < stretch.end(); ++t) {
     const Eigen::Vector3d vector = vector_of(clip, from, t, bone);
     const Eigen::Vector3d sight = sight_of(clip, from, t, bone);
     const Eigen::Matrix3d other_way =
         Eigen::Quaterniond::FromTwoVectors(vector, vector - 2 * vector.dot(sight) * sight)
             .toRotationMatrix();
-    const Eigen::AngleAxisd turn(Eigen::Matrix3d(other_way * turned(from, t, bone)));
-    point.turns.row(t).segment<3>(3 * bone.turn) = (turn.angle() * turn.axis()).transpose();
+    point.turns.row(t).segment<3>(3 * bone.turn) =
+        rotation_vector(other_way * turned(from, t, bone)).transpose();
   }
 }
 
 /// A bone, mirrored over a stretch.
 struct Try {
   Bone bone;
-  Stretch stretch;
+  ClipWindow stretch;
   ClipWindow window;     ///< about the stretch
   PosteriorPoint found;  ///< of the window, mirrored
   double gain = 0;       ///< of energy, over what stands
@@ -125,18 +118,12 @@ class MirroredBones {
   std::vector<Try> tries(const PosteriorPoint& point, const std::vector<ClipWindow>& within) const {
     std::vector<Try> all;
     for (const Bone& bone : bones_)
-      for (const Stretch& stretch : stretches_of(clip_, point, bone)) {
+      for (const ClipWindow& stretch : stretches_of(clip_, point, bone)) {
         const ClipWindow window = window_about(stretch);
         if (std::ranges::any_of(within, [&](const ClipWindow& w) { return meet(w, window); }))
           all.push_back({bone, stretch, window, {}});
       }
-    std::atomic<std::size_t> next = 0;
-    const auto solve = [&] {
-      for (std::size_t i = next++; i < all.size(); i = next++) solve_mirrored(point, all[i]);
-    };
-    std::future<void> second = std::async(std::launch::async, solve);
-    solve();
-    second.get();
+    on_two_threads(all.size(), [&](std::size_t i) { solve_mirrored(point, all[i]); });
     return all;
   }
 
@@ -158,47 +145,46 @@ class MirroredBones {
     return a.first < b.end() && b.first < a.end();
   }
 
-  ClipWindow window_about(const Stretch& stretch) const {
+  ClipWindow window_about(const ClipWindow& stretch) const {
     const Eigen::Index first = std::max<Eigen::Index>(0, stretch.first - around_);
-    return {first, std::min(clip_.frames(), stretch.last + 1 + around_) - first};
+    return {first, std::min(clip_.frames(), stretch.end() + around_) - first};
   }
 
   void solve_mirrored(const PosteriorPoint& point, Try& one) const {
     WindowProblem problem(clip_, noise_, settings_, point, one.window.first, one.window.frames);
     const double stands = problem.energy();
+    std::optional<double> stands_solved;
     for (const bool all_below : {false, true}) {
       PosteriorPoint other = point;
       std::vector<int> turns;
       for (const Bone& each : bones_) {
-        if (!hangs_from(each.turn, one.bone.turn)) continue;
+        if (!hangs_from(clip_.parents, each.turn, one.bone.turn)) continue;
         turns.push_back(each.turn);
         if (all_below || each.turn == one.bone.turn) mirror(clip_, point, one.stretch, each, other);
       }
       if (all_below && turns.size() == 1) break;
       problem.start_from(other);
-      problem.solve_turns(turns, kSmallGain, kIterations);
+      problem.solve_turns(turns, kSmallGainOfAll, kStepsOfTry);
       if (problem.energy() > stands) continue;  // while nothing but the limb moves
-      problem.solve(false, kSmallGain, kIterations);
+      problem.solve(false, kSmallGainOfAll, kStepsOfTry);
       const PosteriorPoint found = problem.solution();
-      problem.start_from(point);
-      problem.solve(false, kSmallGain, kIterations);
-      const double gain = problem.solution().energy - found.energy;
+      if (!stands_solved) {
+        problem.start_from(point);
+        problem.solve(false, kSmallGainOfAll, kStepsOfTry);
+        stands_solved = problem.solution().energy;
+      }
+      const double gain = *stands_solved - found.energy;
       if (!(gain > one.gain)) continue;
       one.gain = gain;
       one.found = found;
     }
   }
 
-  bool hangs_from(int turn, int other) const {
-    while (turn > other) turn = clip_.parents[static_cast<std::size_t>(turn)];
-    return turn == other;
-  }
-
   /// The stretch as it was found; about it, it fades into what stands.
   void join(PosteriorPoint& point, const Try& one) const {
     for (Eigen::Index i = 0; i < one.window.frames; ++i) {
       const Eigen::Index t = one.window.first + i;
-      const Eigen::Index off = std::max({one.stretch.first - t, t - one.stretch.last, {}});
+      const Eigen::Index off = std::max({one.stretch.first - t, t - one.stretch.end() + 1, {}});
       const double share = 1 - static_cast<double>(off) / static_cast<double>(around_ + 1);
       for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
         (point.*rows).row(t) += share * ((one.found.*rows).row(i) - (point.*rows).row(t));

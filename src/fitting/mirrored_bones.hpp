@@ -11,7 +11,7 @@ namespace mcdbn {
 /// tried again. Worth while where rays are exact: elsewhere a solution gets from one side to the
 /// other by itself, and the prior tells which is likelier.
 /// @param point a solution of a clip of one frame at least
-/// @return one that is as likely or likelier
+/// @return what all frames come to from there; `point` where nothing mirrored is likelier
 PosteriorPoint likeliest_in_depth(const PosteriorClip& clip, const RayNoise& noise,
                                   const TrackFitSettings& settings, PosteriorPoint point);
 

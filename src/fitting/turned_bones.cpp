@@ -4,6 +4,11 @@
 
 namespace mcdbn {
 
+bool hangs_from(const std::vector<int>& parents, int turn, int other) {
+  while (turn >= 0 && turn != other) turn = parents[static_cast<std::size_t>(turn)];
+  return turn == other;
+}
+
 TurnedBones::TurnedBones(const PoseFeatures& features, const Skeleton& skeleton,
                          const std::vector<int>& joints) {
   const std::vector<int> match = match_joints(features.skeleton(), skeleton, "the skeleton");

@@ -8,6 +8,10 @@
 
 namespace mcdbn {
 
+/// Whether an orientation is another, or hangs from it.
+/// @param parents by orientation, the one that it hangs from, or −1
+bool hangs_from(const std::vector<int>& parents, int turn, int other);
+
 /// Which orientation of the features turns which bone of a skeleton. Orientations are global, so a
 /// joint is the sum of the bones between the root and it, each turned on its own: a bone belongs to
 /// the nearest joint at or above its upper end that has a feature.

@@ -50,12 +50,8 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
       noise_(noise),
       first_(first),
       turns_(static_cast<int>(clip.parents.size())),
-      x_{from.turns.middleRows(first, frames),
-         from.shift.middleRows(first, frames),
-         from.log_lengths,
-         from.ground_m,
-         from.lean,
-         from.log_focal} {
+      x_{MatrixD(frames, from.turns.cols()), MatrixD(frames, 3), from.log_lengths, from.ground_m} {
+  start_from(from);
   find_used(unknowns);
   add_rays();
   add_turns();

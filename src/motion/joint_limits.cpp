@@ -1,21 +1,12 @@
 #include "motion/joint_limits.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "motion/nearest_rotation.hpp"
 #include "motion/rotation_vector.hpp"
 
 namespace mcdbn {
-namespace {
-
-Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
-}
-
-}  // namespace
 
 JointLimits JointLimits::of(const std::vector<Eigen::Matrix3d>& seen) {
   constexpr double kLeftOut = 0.005, kBeyond = 5 * EIGEN_PI / 180;

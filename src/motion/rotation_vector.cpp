@@ -10,4 +10,9 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& turn_rad) {
   return Eigen::AngleAxisd(angle, turn_rad / angle).toRotationMatrix();
 }
 
+Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
+  const Eigen::AngleAxisd turn(rotation);
+  return turn.angle() * turn.axis();
+}
+
 }  // namespace mcdbn

@@ -61,9 +61,8 @@ struct KnownOfClip {
 /// exact projections of the same: six CMU walks, of a model of walks and of a general one;
 /// `likeness`, `lasting`, `outlier`, `proportions`, `roll` and `focal` on seven CMU clips and
 /// twelve of Bandai's training halves, of the general model, which never saw Bandai's; `exact` and
-/// `alternatives` on the exact projections of the same; `spread` and
-/// `draws-noise-lasts` on eleven of CMU's, detector-like, exact, with noise of 5 px and with joints
-/// missing.
+/// `alternatives` on the exact projections of the same; `spread` and `draws-noise-lasts` on eleven
+/// of CMU's, detector-like, exact, with noise of 5 px and with joints missing.
 struct TrackFitSettings {
   double turn_deg = 9;
   double likeness = 0.6;
