@@ -21,6 +21,7 @@ JointLimits JointLimits::of(const std::vector<Eigen::Matrix3d>& seen) {
   limits.axes_ = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> turns;
+    turns.reserve(seen.size());
     for (const Eigen::Matrix3d& rotation : seen)
       turns.push_back(limits.coordinates(rotation)[axis]);
     std::ranges::sort(turns);
