@@ -9,13 +9,13 @@
 #include "camera/track_rays.hpp"
 #include "fitting/camera_angles.hpp"
 #include "fitting/clip_evidence.hpp"
-#include "fitting/mirrored_bones.hpp"
 #include "fitting/posterior_draws.hpp"
 #include "fitting/prior_deviations.hpp"
 #include "fitting/prior_draws.hpp"
 #include "fitting/root_trajectory.hpp"
 #include "fitting/rotation.hpp"
 #include "fitting/seen_noise.hpp"
+#include "fitting/sides_in_depth.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "fitting/tracked_joints.hpp"
 #include "fitting/upright.hpp"
@@ -100,7 +100,9 @@ class ClipFit {
       take(point_ = most_likely(clip, rays_, settings, std::move(point_)));
       if (!noise.learn(evidence_->usual_residual(point_, clip.frames()))) break;
     }
-    if (rays_.exact) take(point_ = likeliest_in_depth(clip, rays_, settings, std::move(point_)));
+    if (!rays_.exact) return;
+    const double least = settings.exact_noise_px / std::sqrt(camera_.fx_px * camera_.fy_px);
+    take(point_ = likeliest_of_exact(clip, rays_, settings, least, std::move(point_)));
   }
 
   /// After meet_track. The clip stays as it is.

@@ -12,8 +12,8 @@
 
 #include "base/interruption.hpp"
 #include "fitting/one_thread_solver.hpp"
+#include "fitting/prior_errors.hpp"
 #include "fitting/robust_residuals.hpp"
-#include "fitting/slow_process.hpp"
 #include "fitting/terms/camera_lean.hpp"
 #include "fitting/terms/ground_contact.hpp"
 #include "fitting/terms/linear_term.hpp"
@@ -193,13 +193,6 @@ std::vector<double*> WindowProblem::length_blocks(std::size_t joint) {
   return blocks;
 }
 
-double WindowProblem::share_of_parent(Eigen::Index t, int turn) const {
-  const int parent = clip_.parents[static_cast<std::size_t>(turn)];
-  return parent < 0 ? 0
-                    : settings_.likeness * clip_.turn_deviation_rad(first_ + t, turn) /
-                          clip_.turn_deviation_rad(first_ + t, parent);
-}
-
 /// Noise that lasts says the same in frame after frame, so that its energy is a rate over time.
 void WindowProblem::add_rays() {
   const double same_frames = std::max(1.0, 2 * settings_.noise_lasts_s / clip_.frame_time_s);
@@ -222,16 +215,14 @@ void WindowProblem::add_rays() {
 
 /// What an orientation turns otherwise than its parent makes likely is a slow process about zero.
 void WindowProblem::add_turns() {
-  const SlowProcess process(settings_.lasting_s, clip_.frame_time_s);
-  const double point = process.point * (noise_.exact ? settings_.exact : 1);
+  const SlowProcess process = prior_errors(clip_, noise_, settings_);
   const Eigen::Vector3d zero(0, 0, 0);
   for (int turn = 0; turn < turns_; ++turn) {
     if (!used_[static_cast<std::size_t>(turn)]) continue;
     const int parent = clip_.parents[static_cast<std::size_t>(turn)];
-    const double own = parent < 0 ? 1 : std::sqrt(1 - settings_.likeness * settings_.likeness);
     for (Eigen::Index t = 0; t < x_.turns.rows(); ++t) {
-      const double deviation = own * clip_.turn_deviation_rad(first_ + t, turn);
-      const double share = share_of_parent(t, turn);
+      const double deviation = own_deviation_rad(clip_, settings_, first_ + t, turn);
+      const double share = share_of_parent(clip_, settings_, first_ + t, turn);
       std::vector<double*> blocks{turn_at(t, turn)};
       std::vector<double> shares{1};
       if (parent >= 0) {
@@ -245,7 +236,8 @@ void WindowProblem::add_turns() {
         if (clip_.mean_lean.rows() > 0)
           expected = (share - 1) * clip_.mean_lean.row(first_ + t).transpose();
       }
-      add(t, new LinearTerm(shares, expected, deviation / std::sqrt(point)), nullptr, blocks);
+      add(t, new LinearTerm(shares, expected, deviation / std::sqrt(process.point)), nullptr,
+          blocks);
       if (t == 0 || t + 1 == x_.turns.rows()) continue;
       blocks = {turn_at(t - 1, turn), turn_at(t, turn), turn_at(t + 1, turn)};
       shares = {1, -2, 1};
@@ -390,7 +382,7 @@ void WindowProblem::turn_unused() {
       if (used_[static_cast<std::size_t>(turn)]) continue;
       const int parent = clip_.parents[static_cast<std::size_t>(turn)];
       if (parent < 0) continue;
-      const double share = share_of_parent(t, turn);
+      const double share = share_of_parent(clip_, settings_, first_ + t, turn);
       x_.turns.row(t).segment<3>(3 * turn) =
           share * x_.turns.row(t).segment<3>(3 * parent) + (1 - share) * x_.lean.transpose();
     }

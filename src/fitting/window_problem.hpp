@@ -69,8 +69,6 @@ class WindowProblem {
   void minimize(double small_gain, int most_iterations);
 
   const std::vector<SeenJoint>& seen(Eigen::Index t) const;
-  /// What a turn of its parent by one makes one expect of a turn; 0 without a parent.
-  double share_of_parent(Eigen::Index t, int turn) const;
   double* turn_at(Eigen::Index t, int turn) { return x_.turns.row(t).data() + 3 * turn; }
   /// The unknowns that all frames share, as far as the problem has them.
   std::vector<UnknownBlock> shared_blocks();

@@ -15,6 +15,8 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"likeness", [](S& s) { return at(s.likeness); }, "0.6"},
       {"lasting", [](S& s) { return at(s.lasting_s); }, "0.1"},
       {"exact", [](S& s) { return at(s.exact); }, "0.3"},
+      {"exact-noise", [](S& s) { return at(s.exact_noise_px); }, "0.02"},
+      {"exact-cost", [](S& s) { return at(s.exact_cost); }, "1.5"},
       {"root", [](S& s) { return at(s.root_m_s2); }, "3"},
       {"detector", [](S& s) { return at(s.detector); }, "0.009"},
       {"noise-lasts", [](S& s) { return at(s.noise_lasts_s); }, "0.35"},
@@ -30,7 +32,7 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"balance", [](S& s) { return at(s.balance_deg); }, "5"},
       {"focal", [](S& s) { return at(s.focal); }, "0.1"},
       {"solutions", [](S& s) { return at(s.solutions); }, "5"},
-      {"alternatives", [](S& s) { return at(s.alternatives); }, "2"},
+      {"alternatives", [](S& s) { return at(s.alternatives); }, "4"},
       {"spread", [](S& s) { return at(s.spread); }, "1.2"},
       {"draws-noise-lasts", [](S& s) { return at(s.draws_noise_lasts_s); }, "10"}};
   check_table(table);
@@ -40,7 +42,7 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
 TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves something") {
   for (const char* name :
        {"turn", "lasting", "root", "detector", "caution", "proportions", "people", "footing",
-        "spread", "outlier", "ground", "step", "pitch", "roll", "balance", "focal"})
+        "spread", "outlier", "ground", "step", "pitch", "roll", "balance", "focal", "exact-noise"})
     for (const double value : {0.0, -1.0, kNan})
       check_refused<TrackFitSettings>(name, value, "above 0");
   check_refused<TrackFitSettings>("likeness", 1, "at least 0 and below 1");
@@ -48,6 +50,7 @@ TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves s
   check_refused<TrackFitSettings>("draws-noise-lasts", -0.01, "at least 0");
   check_refused<TrackFitSettings>("exact", 0, "above 0 and at most 1");
   check_refused<TrackFitSettings>("exact", 1.01, "above 0 and at most 1");
+  check_refused<TrackFitSettings>("exact-cost", 1, "above 1");
   check_accepted<TrackFitSettings>("exact", 1);
   check_accepted<TrackFitSettings>("likeness", 0);
   check_accepted<TrackFitSettings>("noise-lasts", 0);

@@ -60,14 +60,17 @@ struct KnownOfClip {
 /// moves. Chosen on clips of training people with other bodies and detector-like tracks, and on the
 /// exact projections of the same: six CMU walks, of a model of walks and of a general one;
 /// `likeness`, `lasting`, `outlier`, `proportions`, `roll` and `focal` on seven CMU clips and
-/// twelve of Bandai's training halves, of the general model, which never saw Bandai's; `exact` and
-/// `alternatives` on the exact projections of the same; `spread` and `draws-noise-lasts` on eleven
-/// of CMU's, detector-like, exact, with noise of 5 px and with joints missing.
+/// twelve of Bandai's training halves, of the general model, which never saw Bandai's; `exact`,
+/// `exact_cost` and `alternatives` on the exact projections of the same; `spread` and
+/// `draws-noise-lasts` on eleven of CMU's, detector-like, exact, with noise of 5 px and with joints
+/// missing.
 struct TrackFitSettings {
   double turn_deg = 9;
   double likeness = 0.6;
   double lasting_s = 0.1;
   double exact = 0.3;
+  double exact_noise_px = 0.02;
+  double exact_cost = 1.5;
   double root_m_s2 = 3;
   double detector = 0.009;
   double noise_lasts_s = 0.35;
@@ -83,7 +86,7 @@ struct TrackFitSettings {
   double balance_deg = 5;
   double focal = 0.1;
   std::size_t solutions = 5;
-  std::size_t alternatives = 2;
+  std::size_t alternatives = 4;
   double spread = 1.2;
   double draws_noise_lasts_s = 10;
 
@@ -106,6 +109,13 @@ struct TrackFitSettings {
         Setting{"exact", above(0, 1), "",
                 "how much the prior's mean counts where rays are exact, of what it does elsewhere"},
         self.exact);
+    visit(Setting{"exact-noise", above(0), "px",
+                  "noise that even exact rays are taken to have: what is left of rounding"},
+          self.exact_noise_px);
+    visit(Setting{"exact-cost", above(1), "",
+                  "how many times the energy may become by a third of the noise: what becomes more "
+                  "has noise"},
+          self.exact_cost);
     visit(
         Setting{
             "root", above(0), "m/s2",
@@ -140,10 +150,10 @@ struct TrackFitSettings {
                 "of all frames at most, after one of every tenth of a second; each with the noise "
                 "and the standing feet that the one before tells"},
         self.solutions);
-    visit(
-        Setting{"alternatives", at_least(0), "",
-                "rounds at most in which bones are tried mirrored in depth, where rays are exact"},
-        self.alternatives);
+    visit(Setting{"alternatives", at_least(0), "",
+                  "rounds at most in which limbs are tried on other sides in depth, where rays are "
+                  "exact"},
+          self.alternatives);
     visit(Setting{"spread", above(0), "",
                   "how many times wider the posterior is drawn than its equations make it"},
           self.spread);

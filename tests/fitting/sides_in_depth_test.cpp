@@ -1,16 +1,18 @@
-// Bones whose side in depth a solution has wrong. CHECK is glog's here, as in terms_test.cpp.
+// Limbs whose side in depth a solution has wrong. CHECK is glog's here, as in terms_test.cpp.
 
-#include "fitting/mirrored_bones.hpp"
+#include "fitting/sides_in_depth.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "fitting/limb_sides.hpp"
 #include "fitting/rotation.hpp"
 #include "fitting/window_problem.hpp"
+#include "mcdbn/base/random.hpp"
 
-namespace mirrored_bones_test {
+namespace sides_in_depth_test {
 
 using namespace mcdbn;
 
@@ -18,7 +20,7 @@ namespace {
 
 constexpr Eigen::Index kFrames = 90;
 constexpr double kDepth_m = 4;
-const RayNoise kExact{1e-3, 0, true};
+const RayNoise kExact{2.5e-4, 0, true};  // a quarter of a pixel of a focal length of 1,000
 
 /// The arm's swing towards the camera (−) and away.
 double swing_rad(Eigen::Index t) {
@@ -26,7 +28,7 @@ double swing_rad(Eigen::Index t) {
 }
 
 /// An arm of two bones that hangs down in the prior's mean, and as a camera sees it that swings.
-PosteriorClip swinging_arm() {
+PosteriorClip swinging_arm(double (*angle_rad)(Eigen::Index) = swing_rad) {
   PosteriorClip clip;
   clip.parents = {-1, 0, 1};
   clip.lengths = {0, 1, 2};
@@ -38,7 +40,7 @@ PosteriorClip swinging_arm() {
   clip.frame_time_s = 1.0 / 30;
   const std::vector<Lever> shoulder{{0, {0.2, -0.5, 0}}};
   for (Eigen::Index t = 0; t < kFrames; ++t) {
-    const Eigen::Matrix3d swung = rotation_of({swing_rad(t), 0, 0});
+    const Eigen::Matrix3d swung = rotation_of({angle_rad(t), 0, 0});
     std::vector<SeenJoint> seen;
     Eigen::Vector3d at = clip.root.row(t).transpose() + shoulder.front().bone;
     seen.push_back({shoulder, at.head<2>() / at.z(), 1});
@@ -86,7 +88,7 @@ bool in_two_swings(Eigen::Index t) {
 
 }  // namespace
 
-TEST_CASE("mirrored bones: a swing to the wrong side is found and put right") {
+TEST_CASE("sides in depth: a swing to the wrong side is found and put right") {
   const PosteriorClip clip = swinging_arm();
   for (const auto other_way : {in_one_swing, in_two_swings})
     for (const bool both : {false, true}) {
@@ -105,13 +107,101 @@ TEST_CASE("mirrored bones: a swing to the wrong side is found and put right") {
     }
 }
 
-TEST_CASE("mirrored bones: what is right stays, and the same comes out again") {
+TEST_CASE("sides in depth: what is right stays, and the same comes out again") {
   const PosteriorClip clip = swinging_arm();
   const PosteriorPoint right = solved_from(clip, {1, 2}, {}, in_one_swing);
   CHECK_UNARY(likeliest_in_depth(clip, kExact, {}, right).turns == right.turns);
   const PosteriorPoint wrong = solved_from(clip, {1}, {2}, in_two_swings);
   CHECK_UNARY(likeliest_in_depth(clip, kExact, {}, wrong).turns ==
               likeliest_in_depth(clip, kExact, {}, wrong).turns);
+}
+
+TEST_CASE("limb sides: bones that hang from each other; what is on the wrong side, and no more") {
+  const PosteriorClip clip = swinging_arm();
+  const std::vector<Limb> limbs = limbs_of(clip);
+  REQUIRE_UNARY(limbs.size() == 1);  // the trunk has hips and shoulder
+  REQUIRE_UNARY(limbs[0].size() == 2);
+  CHECK_UNARY(limbs[0][0].turn == 1);
+  CHECK_UNARY(limbs[0][1].turn == 2);
+  const auto found = [&](const PosteriorPoint& point) {
+    return likelier_sides(clip, kExact, {}, point, limbs[0]);
+  };
+  CHECK_UNARY(found(solved_from(clip, {1, 2}, {}, in_one_swing)).empty());
+  const std::vector<OtherSides> others = found(solved_from(clip, {1}, {2}, in_one_swing));
+  REQUIRE_UNARY(others.size() == 1);
+  const ClipWindow& stretch = others[0].stretch;
+  CHECK_UNARY(std::abs(stretch.first - 21) <= 2);
+  CHECK_UNARY(std::abs(stretch.end() - 42) <= 2);
+  for (Eigen::Index i = 0; i < stretch.frames; ++i)
+    for (const Eigen::Index bone : {0, 1}) {
+      const double wanted_rad = swing_rad(stretch.first + i);
+      const Eigen::Vector3d turn = others[0].turns.row(i).segment<3>(3 * bone);
+      CHECK_UNARY((turn - Eigen::Vector3d(wanted_rad, 0, 0)).norm() < 0.05);
+    }
+}
+
+TEST_CASE("limb sides: a bone without a ray is mirrored, and two frames have no bend") {
+  PosteriorClip clip = swinging_arm();
+  const PosteriorPoint wrong = solved_from(clip, {1}, {2}, in_one_swing);
+  for (Eigen::Index t = 28; t < 34; ++t)
+    clip.seen[static_cast<std::size_t>(t)].back().confidence = 0;
+  const Limb limb = limbs_of(clip).front();
+  const std::vector<OtherSides> others = likelier_sides(clip, kExact, {}, wrong, limb);
+  REQUIRE_UNARY(others.size() == 1);
+  const ClipWindow& stretch = others[0].stretch;
+  for (Eigen::Index t = 28; t < 34; ++t)
+    CHECK_UNARY(std::abs(others[0].turns(t - stretch.first, 3) - swing_rad(t)) < 0.05);
+  PosteriorClip two = clip;
+  two.root = clip.root.topRows(2).eval();
+  CHECK_UNARY(likelier_sides(two, kExact, {}, wrong, limb).empty());
+}
+
+TEST_CASE("limb sides: a camera that leans makes the side likelier that leans with it") {
+  constexpr double kHeld_rad = 0.4;
+  PosteriorClip clip = swinging_arm([](Eigen::Index) { return kHeld_rad; });
+  clip.camera.emplace();
+  const Limb limb = limbs_of(clip).front();
+  const auto others = [&](double side, double lean_rad) {
+    PosteriorPoint point = PosteriorPoint::zero(clip);
+    for (const Eigen::Index turn : {1, 2}) point.turns.col(3 * turn).setConstant(side * kHeld_rad);
+    point.lean.x() = lean_rad;
+    return likelier_sides(clip, kExact, {}, point, limb);
+  };
+  CHECK_UNARY(others(1, kHeld_rad).empty());
+  const std::vector<OtherSides> found = others(-1, kHeld_rad);
+  REQUIRE_UNARY(found.size() == 1);
+  CHECK_UNARY(found[0].stretch.frames == kFrames);
+  CHECK_UNARY((found[0].turns.col(3).array() - kHeld_rad).abs().maxCoeff() < 0.05);
+  // A mean that was seen by a camera that leans twice as far leans back.
+  clip.mean_lean = MatrixD::Zero(kFrames, 3);
+  clip.mean_lean.col(0).setConstant(2 * kHeld_rad);
+  CHECK_UNARY(others(-1, kHeld_rad).empty());
+  CHECK_UNARY(others(1, kHeld_rad).size() == 1);
+}
+
+TEST_CASE("exact rays: their noise is lowered while that costs next to nothing") {
+  PosteriorClip clip = swinging_arm();
+  const PosteriorPoint wrong = solved_from(clip, {1}, {2}, in_two_swings);
+  constexpr double kLeast = 1e-5;
+  RayNoise noise = kExact;
+  const PosteriorPoint exact = likeliest_of_exact(clip, noise, {}, kLeast, wrong);
+  CHECK_UNARY(noise.white == kLeast);
+  CHECK_UNARY(noise.exact);
+  CHECK_UNARY(worst_rad(exact, 1) < 0.02);
+  CHECK_UNARY(worst_rad(exact, 2) < 0.02);
+
+  for (std::size_t t = 0; t < clip.seen.size(); ++t)
+    for (std::size_t k = 0; k < clip.seen[t].size(); ++k)
+      for (const Eigen::Index axis : {0, 1})
+        clip.seen[t][k].ray[axis] +=
+            kExact.white / 2 *
+            random_normal({7, static_cast<std::uint32_t>(axis), 0, 0},
+                          static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(k));
+  noise = kExact;
+  const PosteriorPoint noisy = likeliest_of_exact(clip, noise, {}, kLeast, wrong);
+  CHECK_UNARY(noise.white == kExact.white);
+  RayNoise same = kExact;
+  CHECK_UNARY(likeliest_in_depth(clip, same, {}, wrong).turns == noisy.turns);
 }
 
 TEST_CASE("window problem: some orientations alone, then all again, from another start") {
@@ -147,4 +237,4 @@ TEST_CASE("window problem: where rays are exact the prior's mean counts for less
   CHECK_UNARY(followed(true, 1) == followed(false, 0.3));
 }
 
-}  // namespace mirrored_bones_test
+}  // namespace sides_in_depth_test

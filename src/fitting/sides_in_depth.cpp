@@ -1,0 +1,140 @@
+#include "fitting/sides_in_depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "fitting/limb_sides.hpp"
+#include "fitting/two_threads.hpp"
+#include "fitting/window_problem.hpp"
+
+namespace mcdbn {
+namespace {
+
+/// Frames about a stretch that are solved with it: three times what a prior's error lasts.
+constexpr double kAround_s = 0.5;
+/// What other sides have to be likelier by, as −log: less is the solver's own rest.
+constexpr double kLikelier = 0.3;
+/// Steps of a try: whether it is likelier shows by then.
+constexpr int kStepsOfTry = 8;
+/// How many times less noise is tried at once.
+constexpr double kLess = 3;
+
+/// A limb's other sides, and what becomes of them.
+struct Try {
+  std::size_t limb = 0;
+  OtherSides sides;
+  ClipWindow window;     ///< about their stretch
+  PosteriorPoint found;  ///< of the window, from there
+  double gain = 0;       ///< of energy, over what stands
+};
+
+class SidesInDepth {
+ public:
+  SidesInDepth(const PosteriorClip& clip, const RayNoise& noise, const TrackFitSettings& settings)
+      : clip_(clip),
+        noise_(noise),
+        settings_(settings),
+        limbs_(limbs_of(clip)),
+        around_(std::lround(kAround_s / clip.frame_time_s)) {}
+
+  /// What is likelier of each limb by itself, in windows which meet one of those that are given.
+  std::vector<Try> tries(const PosteriorPoint& point, const std::vector<ClipWindow>& within) const {
+    std::vector<std::vector<OtherSides>> others(limbs_.size());
+    on_two_threads(limbs_.size(), [&](std::size_t limb) {
+      others[limb] = likelier_sides(clip_, noise_, settings_, point, limbs_[limb]);
+    });
+    std::vector<Try> all;
+    for (std::size_t limb = 0; limb < limbs_.size(); ++limb)
+      for (OtherSides& sides : others[limb]) {
+        const ClipWindow window = window_about(sides.stretch);
+        if (std::ranges::any_of(within, [&](const ClipWindow& w) { return meet(w, window); }))
+          all.push_back({limb, std::move(sides), window, {}});
+      }
+    on_two_threads(all.size(), [&](std::size_t i) { solve(point, all[i]); });
+    return all;
+  }
+
+  /// Those that are likelier, each limb over its stretch. @return their windows
+  std::vector<ClipWindow> take_likelier(const std::vector<Try>& tries,
+                                        PosteriorPoint& point) const {
+    std::vector<ClipWindow> taken;
+    for (const Try& one : tries) {
+      if (!(one.gain > kLikelier)) continue;
+      const ClipWindow& stretch = one.sides.stretch;
+      for (const Bone& bone : limbs_[one.limb])
+        point.turns.block(stretch.first, 3 * bone.turn, stretch.frames, 3) = one.found.turns.block(
+            stretch.first - one.window.first, 3 * bone.turn, stretch.frames, 3);
+      taken.push_back(one.window);
+    }
+    return taken;
+  }
+
+ private:
+  static bool meet(const ClipWindow& a, const ClipWindow& b) {
+    return a.first < b.end() && b.first < a.end();
+  }
+
+  ClipWindow window_about(const ClipWindow& stretch) const {
+    const Eigen::Index first = std::max<Eigen::Index>(0, stretch.first - around_);
+    return {first, std::min(clip_.frames(), stretch.end() + around_) - first};
+  }
+
+  void solve(const PosteriorPoint& point, Try& one) const {
+    const ClipWindow& stretch = one.sides.stretch;
+    PosteriorPoint other = point;
+    std::vector<int> turns;
+    for (const Bone& bone : limbs_[one.limb]) {
+      other.turns.block(stretch.first, 3 * bone.turn, stretch.frames, 3) =
+          one.sides.turns.middleCols(3 * std::ssize(turns), 3);
+      turns.push_back(bone.turn);
+    }
+    WindowProblem problem(clip_, noise_, settings_, other, one.window.first, one.window.frames);
+    problem.solve_turns(turns, kSmallGainOfAll, kStepsOfTry);
+    problem.solve(false, kSmallGainOfAll, kStepsOfTry);
+    one.found = problem.solution();
+    problem.start_from(point);
+    problem.solve(false, kSmallGainOfAll, kStepsOfTry);
+    one.gain = problem.solution().energy - one.found.energy;
+  }
+
+  const PosteriorClip& clip_;
+  const RayNoise& noise_;
+  const TrackFitSettings& settings_;
+  std::vector<Limb> limbs_;
+  Eigen::Index around_;
+};
+
+}  // namespace
+
+PosteriorPoint likeliest_in_depth(const PosteriorClip& clip, const RayNoise& noise,
+                                  const TrackFitSettings& settings, PosteriorPoint point) {
+  const SidesInDepth sides(clip, noise, settings);
+  std::vector<ClipWindow> changed{{0, clip.frames()}};
+  for (std::size_t round = 0; round < settings.alternatives; ++round) {
+    changed = sides.take_likelier(sides.tries(point, changed), point);
+    if (changed.empty()) break;
+    point = most_likely(clip, noise, settings, std::move(point));
+  }
+  return point;
+}
+
+PosteriorPoint likeliest_of_exact(const PosteriorClip& clip, RayNoise& noise,
+                                  const TrackFitSettings& settings, double least,
+                                  PosteriorPoint point) {
+  point = likeliest_in_depth(clip, noise, settings, std::move(point));
+  while (noise.white > least) {
+    const RayNoise less{std::max(least, noise.white / kLess), 0, true};
+    PosteriorPoint nearer = most_likely(clip, less, settings, point);
+    // Other sides may halve it; they do not where there is noise, and trying takes long.
+    if (!(nearer.energy < 2 * settings.exact_cost * point.energy)) break;
+    nearer = likeliest_in_depth(clip, less, settings, std::move(nearer));
+    if (!(nearer.energy < settings.exact_cost * point.energy)) break;
+    noise = less;
+    point = std::move(nearer);
+  }
+  return point;
+}
+
+}  // namespace mcdbn

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "fitting/clip_posterior.hpp"
+
+namespace mcdbn {
+
+/// The likelier of what one camera hardly tells apart: whether a bone points towards it or away.
+/// Where a limb's other sides are likelier by themselves (`likelier_sides`) a window about them is
+/// solved from there. All that is likelier then stays, all frames are solved anew, and what meets
+/// it is tried again. Worth while where rays are exact: elsewhere a solution gets from one side to
+/// the other by itself, and the prior tells which is likelier.
+/// @param point a solution of a clip of one frame at least
+/// @return what all frames come to from there; `point` where no other sides are likelier
+PosteriorPoint likeliest_in_depth(const PosteriorClip& clip, const RayNoise& noise,
+                                  const TrackFitSettings& settings, PosteriorPoint point);
+
+/// The same for a track that seems to be exact, with rays of less noise, again and again: where
+/// there is none of that noise they cost next to no energy and tell sides better; where there is
+/// some a solution follows it, which costs more than `TrackFitSettings::exact_cost`.
+/// @param noise in: as the track tells it; out: as it was lowered to
+/// @param least not lowered below, as the rays
+PosteriorPoint likeliest_of_exact(const PosteriorClip& clip, RayNoise& noise,
+                                  const TrackFitSettings& settings, double least,
+                                  PosteriorPoint point);
+
+}  // namespace mcdbn
