@@ -16,10 +16,15 @@ namespace {
 constexpr double kAround_s = 0.5;
 /// What other sides have to be likelier by, as −log: less is the solver's own rest.
 constexpr double kLikelier = 0.3;
+/// How many times the energy may be once the limb alone has settled on other sides: what moves with
+/// it lowers that.
+constexpr double kLimbAlone = 1.1;
 /// Steps of a try: whether it is likelier shows by then.
 constexpr int kStepsOfTry = 8;
 /// How many times less noise is tried at once.
 constexpr double kLess = 3;
+/// More than so many times the energy by less noise comes of noise: other sides do not mend it.
+constexpr double kNoise = 2;
 
 /// A limb's other sides, and what becomes of them.
 struct Try {
@@ -90,8 +95,11 @@ class SidesInDepth {
           one.sides.turns.middleCols(3 * std::ssize(turns), 3);
       turns.push_back(bone.turn);
     }
-    WindowProblem problem(clip_, noise_, settings_, other, one.window.first, one.window.frames);
+    WindowProblem problem(clip_, noise_, settings_, point, one.window.first, one.window.frames);
+    const double stands = problem.energy();
+    problem.start_from(other);
     problem.solve_turns(turns, kSmallGainOfAll, kStepsOfTry);
+    if (problem.energy() > kLimbAlone * stands) return;
     problem.solve(false, kSmallGainOfAll, kStepsOfTry);
     one.found = problem.solution();
     problem.start_from(point);
@@ -127,8 +135,7 @@ PosteriorPoint likeliest_of_exact(const PosteriorClip& clip, RayNoise& noise,
   while (noise.white > least) {
     const RayNoise less{std::max(least, noise.white / kLess), 0, true};
     PosteriorPoint nearer = most_likely(clip, less, settings, point);
-    // Other sides may halve it; they do not where there is noise, and trying takes long.
-    if (!(nearer.energy < 2 * settings.exact_cost * point.energy)) break;
+    if (!(nearer.energy < kNoise * point.energy)) break;
     nearer = likeliest_in_depth(clip, less, settings, std::move(nearer));
     if (!(nearer.energy < settings.exact_cost * point.energy)) break;
     noise = less;

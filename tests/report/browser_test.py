@@ -64,8 +64,10 @@ def make_report(cli, folder):
     train = [clip for clip in clips if "_s01_" in clip.name]
     test = [clip for clip in clips if "_s02_" in clip.name] + train[:1]
     run("train", *train, "-o", folder / "run", *TINY)
+    # With noise in the tracks, so that there are errors and intervals to see.
     run("evaluate", "--model", folder / "run/model.safetensors", "--test", *test, "--samples", 2,
-        "--actions", "by-folder", "--include-training", "--report", folder / "report")
+        "--track-noise-px", 3, "--actions", "by-folder", "--include-training", "--report",
+        folder / "report")
     return folder / "report/report.html"
 
 
