@@ -56,13 +56,15 @@ class LimbInTime {
       auto& from = before[static_cast<std::size_t>(t)];
       from.resize(sets * sets);
       for (std::size_t b = 0; b < sets; ++b)
-        for (std::size_t c = 0; c < sets; ++c)
+        for (std::size_t c = 0; c < sets; ++c) {
+          const double own = value(t, c);
           for (std::size_t a = 0; a < sets; ++a) {
-            const double energy = least[a * sets + b] + bend(t, a, b, c) + value(t, c);
+            const double energy = least[a * sets + b] + bend(t, a, b, c) + own;
             if (!(energy < next[b * sets + c])) continue;
             next[b * sets + c] = energy;
             from[b * sets + c] = static_cast<std::uint8_t>(a);
           }
+        }
       least = std::move(next);
     }
     const auto best = static_cast<std::size_t>(std::ranges::min_element(least) - least.begin());
