@@ -69,8 +69,8 @@ class LimbInTime {
     }
     const auto best = static_cast<std::size_t>(std::ranges::min_element(least) - least.begin());
     std::vector<std::size_t> path(static_cast<std::size_t>(frames));
-    path.end()[-1] = best % sets;
-    path.end()[-2] = best / sets;
+    path[path.size() - 1] = best % sets;
+    path[path.size() - 2] = best / sets;
     for (std::size_t t = path.size(); t-- > 2;)
       path[t - 2] = before[t][path[t - 1] * sets + path[t]];
     return path;
