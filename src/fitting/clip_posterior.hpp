@@ -48,7 +48,9 @@ struct PosteriorClip {
 /// How far off rays are, x/z and y/z each: a part that is new in every frame and one that lasts.
 struct RayNoise {
   double white = 0, lasting = 0;
-  bool exact = false;  ///< there is next to none beside a usual detector's
+  bool exact = false;     ///< there is next to none beside a usual detector's
+  bool measured = false;  ///< there is some, and it is no detector's: the track and a solution told
+                          ///< all of it
 };
 
 /// A motion as it differs from the prior's mean.

@@ -33,10 +33,9 @@ class LimbInTime {
   LimbInTime(const PosteriorClip& clip, const RayNoise& noise, const TrackFitSettings& settings,
              const PosteriorPoint& point, const Limb& limb)
       : clip_(clip),
-        settings_(settings),
         point_(point),
         limb_(limb),
-        process_(prior_errors(clip, noise, settings)),
+        prior_(clip, noise, settings),
         noise_(std::hypot(noise.white, noise.lasting)) {
     for (Eigen::Index t = 0; t < clip.frames(); ++t)
       for (std::size_t set = 0; set < sets(); ++set) sides_.push_back(with_sides(t, set));
@@ -100,7 +99,7 @@ class LimbInTime {
           rotation_vector(Eigen::Quaterniond::FromTwoVectors(as_expected * mean_of(t, bone), vector)
                               .toRotationMatrix() *
                           as_expected);
-      const double deviation = own_deviation_rad(clip_, settings_, t, bone.turn);
+      const double deviation = prior_.own_deviation_rad(t, bone.turn);
       sides.residual[i] = (sides.turn[i] - expected) / deviation;
       upper += vector;
       sides.open[i] = std::pow(open_rad(upper, vector) / deviation, 2);
@@ -111,7 +110,7 @@ class LimbInTime {
 
   /// As WindowProblem's terms expect it.
   Eigen::Vector3d expected_turn(Eigen::Index t, int turn, const Eigen::Vector3d& parent) const {
-    const double share = share_of_parent(clip_, settings_, t, turn);
+    const double share = prior_.share_of_parent(t, turn);
     Eigen::Vector3d expected = share * parent;
     if (clip_.camera) {
       expected += (1 - share) * point_.lean;
@@ -158,7 +157,7 @@ class LimbInTime {
   double value(Eigen::Index t, std::size_t set) const {
     double squares = 0;
     for (std::size_t i = 0; i < limb_.size(); ++i) squares += at(t, set).residual[i].squaredNorm();
-    return process_.point / 2 * squares;
+    return prior_.process().point / 2 * squares;
   }
 
   /// @param t the last of the three frames
@@ -168,16 +167,15 @@ class LimbInTime {
     for (std::size_t i = 0; i < limb_.size(); ++i) {
       const double open = first.open[i] + 4 * second.open[i] + third.open[i];
       squares += (first.residual[i] - 2 * second.residual[i] + third.residual[i]).squaredNorm() /
-                 (1 + kExcused * process_.bend * open);
+                 (1 + kExcused * prior_.process().bend * open);
     }
-    return process_.bend / 2 * squares;
+    return prior_.process().bend / 2 * squares;
   }
 
   const PosteriorClip& clip_;
-  const TrackFitSettings& settings_;
   const PosteriorPoint& point_;
   const Limb& limb_;
-  SlowProcess process_;
+  PriorErrors prior_;
   double noise_;
   std::vector<Sides> sides_;  ///< by frame and set
 };

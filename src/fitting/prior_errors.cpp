@@ -4,26 +4,25 @@
 
 namespace mcdbn {
 
-SlowProcess prior_errors(const PosteriorClip& clip, const RayNoise& noise,
-                         const TrackFitSettings& settings) {
-  SlowProcess process(settings.lasting_s, clip.frame_time_s);
-  if (noise.exact) process.point *= settings.exact;
-  return process;
+PriorErrors::PriorErrors(const PosteriorClip& clip, const RayNoise& noise,
+                         const TrackFitSettings& settings)
+    : clip_(clip),
+      likeness_(noise.exact ? settings.exact_likeness : settings.likeness),
+      process_(noise.measured ? settings.measured_lasting_s : settings.lasting_s,
+               clip.frame_time_s) {
+  if (noise.exact) process_.point *= settings.exact;
 }
 
-double share_of_parent(const PosteriorClip& clip, const TrackFitSettings& settings,
-                       Eigen::Index frame, int turn) {
-  const int parent = clip.parents[static_cast<std::size_t>(turn)];
+double PriorErrors::share_of_parent(Eigen::Index frame, int turn) const {
+  const int parent = parent_of(turn);
   return parent < 0 ? 0
-                    : settings.likeness * clip.turn_deviation_rad(frame, turn) /
-                          clip.turn_deviation_rad(frame, parent);
+                    : likeness_ * clip_.turn_deviation_rad(frame, turn) /
+                          clip_.turn_deviation_rad(frame, parent);
 }
 
-double own_deviation_rad(const PosteriorClip& clip, const TrackFitSettings& settings,
-                         Eigen::Index frame, int turn) {
-  const bool alone = clip.parents[static_cast<std::size_t>(turn)] < 0;
-  const double own = alone ? 1 : std::sqrt(1 - settings.likeness * settings.likeness);
-  return own * clip.turn_deviation_rad(frame, turn);
+double PriorErrors::own_deviation_rad(Eigen::Index frame, int turn) const {
+  const double own = parent_of(turn) < 0 ? 1 : std::sqrt(1 - likeness_ * likeness_);
+  return own * clip_.turn_deviation_rad(frame, turn);
 }
 
 }  // namespace mcdbn

@@ -7,17 +7,29 @@
 
 namespace mcdbn {
 
-/// What the errors of the prior's mean are as a process in time. Where rays are exact its values
-/// count for less (`TrackFitSettings::exact`), its bends as elsewhere.
-SlowProcess prior_errors(const PosteriorClip& clip, const RayNoise& noise,
-                         const TrackFitSettings& settings);
+/// What the errors of the prior's mean are. Where rays are exact its values count for less
+/// (`TrackFitSettings::exact`), its bends as elsewhere, and a turn is as wrong as its parent's less
+/// (`exact_likeness`). Where their noise was measured they last longer (`measured_lasting_s`).
+/// Keeps the clip.
+class PriorErrors {
+ public:
+  PriorErrors(const PosteriorClip& clip, const RayNoise& noise, const TrackFitSettings& settings);
 
-/// What a turn of its parent by one makes one expect of a turn; 0 without a parent.
-double share_of_parent(const PosteriorClip& clip, const TrackFitSettings& settings,
-                       Eigen::Index frame, int turn);
+  /// In time, about what the parent makes one expect.
+  const SlowProcess& process() const { return process_; }
 
-/// Deviation of a turn from what its parent makes one expect, about each axis.
-double own_deviation_rad(const PosteriorClip& clip, const TrackFitSettings& settings,
-                         Eigen::Index frame, int turn);
+  /// What a turn of its parent by one makes one expect of a turn; 0 without a parent.
+  double share_of_parent(Eigen::Index frame, int turn) const;
+
+  /// Deviation of a turn from what its parent makes one expect, about each axis.
+  double own_deviation_rad(Eigen::Index frame, int turn) const;
+
+ private:
+  int parent_of(int turn) const { return clip_.parents[static_cast<std::size_t>(turn)]; }
+
+  const PosteriorClip& clip_;
+  double likeness_;
+  SlowProcess process_;
+};
 
 }  // namespace mcdbn

@@ -22,12 +22,17 @@ constexpr double kSmallChange = 0.1;
 }  // namespace
 
 SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m, bool may_be_exact,
-                     const TrackFitSettings& settings, double share) {
+                     const TrackFitSettings& settings, double share)
+    : may_be_exact_(may_be_exact) {
   const double focal_px = std::sqrt(camera.fx_px * camera.fy_px);
-  measured_ = std::max(kLeastNoise_px, track_noise_px) / focal_px;
+  const auto on_rays = [&](double noise_px) {
+    return std::max(kLeastNoise_px, noise_px) / focal_px;
+  };
+  measured_ = on_rays(track_noise_px);
   usual_ = settings.detector * kHeight_m / std::max(depth_m, 1e-9);
   least_ = may_be_exact ? measured_ : usual_;
-  rays_.white = std::max(kLeastNoise_px, settings.caution * track_noise_px) / focal_px;
+  rays_.white = on_rays(settings.caution * track_noise_px);
+  less_cautious_ = on_rays(settings.measured_caution * track_noise_px);
   set_lasting(share * usual_);
 }
 
@@ -38,6 +43,11 @@ bool SeenNoise::learn(double residual) {
   set_lasting(std::sqrt(std::max(0.0, both * both - measured_ * measured_)));
   const double after = std::hypot(rays_.white, rays_.lasting);
   return std::abs(after - before) > kSmallChange * before;
+}
+
+std::optional<RayNoise> SeenNoise::measured() const {
+  if (!may_be_exact_ || rays_.exact) return std::nullopt;
+  return RayNoise{less_cautious_, rays_.lasting, false, true};
 }
 
 void SeenNoise::set_lasting(double lasting) {

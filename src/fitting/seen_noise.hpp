@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "fitting/clip_posterior.hpp"
 #include "mcdbn/camera/camera.hpp"
 
@@ -24,13 +26,18 @@ class SeenNoise {
   /// @param residual how far from the rays a solution's joints are, x/z and y/z each
   /// @return whether that makes another solution worth while
   bool learn(double residual);
+  /// As the solutions measured it, taken for less new in each frame than before
+  /// (`TrackFitSettings::measured_caution`). Unset where it is exact, or may be a detector's.
+  std::optional<RayNoise> measured() const;
   /// What is told by now of a usual detector's lasting part.
   double share() const { return rays_.lasting / usual_; }
 
  private:
   void set_lasting(double lasting);
 
+  bool may_be_exact_;
   double measured_, usual_, least_;  ///< on the rays: of the track, of detectors, of both parts
+  double less_cautious_;             ///< on the rays: of the track, once it was measured
   RayNoise rays_;
 };
 

@@ -12,7 +12,6 @@
 
 #include "base/interruption.hpp"
 #include "fitting/one_thread_solver.hpp"
-#include "fitting/prior_errors.hpp"
 #include "fitting/robust_residuals.hpp"
 #include "fitting/terms/camera_lean.hpp"
 #include "fitting/terms/ground_contact.hpp"
@@ -48,6 +47,7 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
     : clip_(clip),
       settings_(settings),
       noise_(noise),
+      prior_(clip, noise, settings),
       first_(first),
       turns_(static_cast<int>(clip.parents.size())),
       x_{MatrixD(frames, from.turns.cols()), MatrixD(frames, 3), from.log_lengths, from.ground_m} {
@@ -215,14 +215,14 @@ void WindowProblem::add_rays() {
 
 /// What an orientation turns otherwise than its parent makes likely is a slow process about zero.
 void WindowProblem::add_turns() {
-  const SlowProcess process = prior_errors(clip_, noise_, settings_);
+  const SlowProcess& process = prior_.process();
   const Eigen::Vector3d zero(0, 0, 0);
   for (int turn = 0; turn < turns_; ++turn) {
     if (!used_[static_cast<std::size_t>(turn)]) continue;
     const int parent = clip_.parents[static_cast<std::size_t>(turn)];
     for (Eigen::Index t = 0; t < x_.turns.rows(); ++t) {
-      const double deviation = own_deviation_rad(clip_, settings_, first_ + t, turn);
-      const double share = share_of_parent(clip_, settings_, first_ + t, turn);
+      const double deviation = prior_.own_deviation_rad(first_ + t, turn);
+      const double share = prior_.share_of_parent(first_ + t, turn);
       std::vector<double*> blocks{turn_at(t, turn)};
       std::vector<double> shares{1};
       if (parent >= 0) {
@@ -382,7 +382,7 @@ void WindowProblem::turn_unused() {
       if (used_[static_cast<std::size_t>(turn)]) continue;
       const int parent = clip_.parents[static_cast<std::size_t>(turn)];
       if (parent < 0) continue;
-      const double share = share_of_parent(clip_, settings_, first_ + t, turn);
+      const double share = prior_.share_of_parent(first_ + t, turn);
       x_.turns.row(t).segment<3>(3 * turn) =
           share * x_.turns.row(t).segment<3>(3 * parent) + (1 - share) * x_.lean.transpose();
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fitting/clip_posterior.hpp"
+#include "fitting/prior_errors.hpp"
 #include "fitting/quadratic_energy.hpp"
 #include "fitting/terms/joint_place.hpp"
 
@@ -83,6 +84,7 @@ class WindowProblem {
   const PosteriorClip& clip_;
   const TrackFitSettings& settings_;
   RayNoise noise_;
+  PriorErrors prior_;
   Eigen::Index first_;
   int turns_;
   std::vector<bool> used_;

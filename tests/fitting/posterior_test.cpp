@@ -76,6 +76,17 @@ TEST_CASE("posterior: an exact track is met as exactly, a detector's is not") {
   CHECK(scene.fit().channels == scene.fit(scene.track, as_noisy).channels);
 }
 
+TEST_CASE(
+    "posterior: noise that solutions measured has settings of its own, a detector's has not") {
+  Scene scene = make_scene(1, 40);
+  add_pixel_noise(scene.track, 5, 1);
+  TrackFitSettings others;
+  others.measured_lasting_s = 0.05;
+  CHECK(scene.fit().channels != scene.fit(scene.track, others).channels);
+  scene.known.detected = true;
+  CHECK(scene.fit().channels == scene.fit(scene.track, others).channels);
+}
+
 TEST_CASE("posterior: the same again, bit for bit") {
   const Scene scene = make_scene(1, 20);
   CHECK(scene.fit().channels == scene.fit().channels);

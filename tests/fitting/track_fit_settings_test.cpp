@@ -14,7 +14,10 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"turn", [](S& s) { return at(s.turn_deg); }, "9"},
       {"likeness", [](S& s) { return at(s.likeness); }, "0.6"},
       {"lasting", [](S& s) { return at(s.lasting_s); }, "0.1"},
+      {"measured-lasting", [](S& s) { return at(s.measured_lasting_s); }, "0.2"},
+      {"measured-caution", [](S& s) { return at(s.measured_caution); }, "1.7"},
       {"exact", [](S& s) { return at(s.exact); }, "0.3"},
+      {"exact-likeness", [](S& s) { return at(s.exact_likeness); }, "0.3"},
       {"exact-noise", [](S& s) { return at(s.exact_noise_px); }, "0.02"},
       {"exact-cost", [](S& s) { return at(s.exact_cost); }, "1.5"},
       {"root", [](S& s) { return at(s.root_m_s2); }, "3"},
@@ -42,10 +45,12 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
 TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves something") {
   for (const char* name :
        {"turn", "lasting", "root", "detector", "caution", "proportions", "people", "footing",
-        "spread", "outlier", "ground", "step", "pitch", "roll", "balance", "focal", "exact-noise"})
+        "spread", "outlier", "ground", "step", "pitch", "roll", "balance", "focal", "exact-noise",
+        "measured-lasting", "measured-caution"})
     for (const double value : {0.0, -1.0, kNan})
       check_refused<TrackFitSettings>(name, value, "above 0");
   check_refused<TrackFitSettings>("likeness", 1, "at least 0 and below 1");
+  check_refused<TrackFitSettings>("exact-likeness", 1, "at least 0 and below 1");
   check_refused<TrackFitSettings>("noise-lasts", -0.01, "at least 0");
   check_refused<TrackFitSettings>("draws-noise-lasts", -0.01, "at least 0");
   check_refused<TrackFitSettings>("exact", 0, "above 0 and at most 1");
@@ -53,5 +58,6 @@ TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves s
   check_refused<TrackFitSettings>("exact-cost", 1, "above 1");
   check_accepted<TrackFitSettings>("exact", 1);
   check_accepted<TrackFitSettings>("likeness", 0);
+  check_accepted<TrackFitSettings>("exact-likeness", 0);
   check_accepted<TrackFitSettings>("noise-lasts", 0);
 }

@@ -111,7 +111,7 @@ TEST_CASE("fit to track: the surer the prior, the nearer the answer to its mean"
   const double wrong_cm = hand_off_cm(scene.fit(std::nullopt).motion);
   REQUIRE(wrong_cm > 5);
   float before = 0;
-  for (const float deviation : {0.0F, 0.03F, 0.06F, 0.3F}) {
+  for (const float deviation : {0.0F, 0.02F, 0.03F, 0.06F}) {
     CAPTURE(deviation);
     scene.prior.deviation.setConstant(deviation);
     const Motion got = scene.fit().motion;

@@ -68,7 +68,10 @@ struct TrackFitSettings {
   double turn_deg = 9;
   double likeness = 0.6;
   double lasting_s = 0.1;
+  double measured_lasting_s = 0.2;
+  double measured_caution = 1.7;
   double exact = 0.3;
+  double exact_likeness = 0.3;
   double exact_noise_px = 0.02;
   double exact_cost = 1.5;
   double root_m_s2 = 3;
@@ -104,11 +107,17 @@ struct TrackFitSettings {
     visit(Setting{"lasting", above(0), "seconds",
                   "how long the prior's errors last: frames so near are one witness"},
           self.lasting_s);
+    visit(Setting{"measured-lasting", above(0), "seconds",
+                  "the same where a solution measured the noise: of a known body that no detector "
+                  "saw"},
+          self.measured_lasting_s);
     // Errors that last longer than that are there, too. A detector's hide them.
     visit(
         Setting{"exact", above(0, 1), "",
                 "how much the prior's mean counts where rays are exact, of what it does elsewhere"},
         self.exact);
+    visit(Setting{"exact-likeness", share_below_one(), "", "the likeness where rays are exact"},
+          self.exact_likeness);
     visit(Setting{"exact-noise", above(0), "px",
                   "noise that even exact rays are taken to have: what is left of rounding"},
           self.exact_noise_px);
@@ -130,6 +139,8 @@ struct TrackFitSettings {
     visit(Setting{"caution", above(0), "",
                   "how many times the noise that is new in each frame it is taken to be"},
           self.caution);
+    visit(Setting{"measured-caution", above(0), "", "the same where a solution measured the noise"},
+          self.measured_caution);
     visit(Setting{"outlier", above(0), "",
                   "from so many deviations on a ray counts less and less (Cauchy): it shows "
                   "something else"},

@@ -1,0 +1,68 @@
+#include "fitting/prior_errors.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace mcdbn;
+
+namespace {
+
+/// A root, a turn on it that is twice as open, and one on that.
+PosteriorClip three_turns() {
+  PosteriorClip clip;
+  clip.parents = {-1, 0, 1};
+  clip.turn_deviation_rad.resize(2, 3);
+  clip.turn_deviation_rad << 0.1, 0.1, 0.1, 0.1, 0.2, 0.3;
+  clip.frame_time_s = 1.0 / 30;
+  return clip;
+}
+
+TrackFitSettings settings_of(double likeness, double exact_likeness) {
+  TrackFitSettings settings;
+  settings.likeness = likeness;
+  settings.exact_likeness = exact_likeness;
+  return settings;
+}
+
+}  // namespace
+
+TEST_CASE("prior errors: a turn's are its parent's by the likeness, in their own deviations") {
+  const PosteriorClip clip = three_turns();
+  const TrackFitSettings settings = settings_of(0.6, 0.28);
+  for (const bool exact : {false, true}) {
+    CAPTURE(exact);
+    const PriorErrors prior(clip, {0.01, 0, exact}, settings);
+    const double likeness = exact ? 0.28 : 0.6, own = exact ? 0.96 : 0.8;
+    CHECK_UNARY(prior.share_of_parent(1, 0) == 0);
+    CHECK(prior.share_of_parent(1, 1) == doctest::Approx(2 * likeness));
+    CHECK(prior.share_of_parent(1, 2) == doctest::Approx(1.5 * likeness));
+    CHECK(prior.own_deviation_rad(1, 0) == doctest::Approx(0.1));
+    CHECK(prior.own_deviation_rad(1, 1) == doctest::Approx(0.2 * own));
+    CHECK(prior.own_deviation_rad(0, 2) == doctest::Approx(0.1 * own));
+    // The variance that the parent leaves and its share of it are the whole.
+    CHECK(std::pow(prior.own_deviation_rad(1, 1), 2) +
+              std::pow(prior.share_of_parent(1, 1) * 0.1, 2) ==
+          doctest::Approx(0.04));
+  }
+}
+
+TEST_CASE("prior errors: where rays are exact values count for less, bends as elsewhere") {
+  const PosteriorClip clip = three_turns();
+  TrackFitSettings settings;
+  settings.exact = 0.25;
+  const PriorErrors noisy(clip, {0.01, 0}, settings), exact(clip, {0.01, 0, true}, settings);
+  CHECK(exact.process().point == doctest::Approx(0.25 * noisy.process().point));
+  CHECK_UNARY(exact.process().bend == noisy.process().bend);
+}
+
+TEST_CASE("prior errors: where a solution measured the noise they last longer") {
+  TrackFitSettings settings;
+  settings.lasting_s = 0.1;
+  settings.measured_lasting_s = 0.2;
+  const PosteriorClip clip = three_turns();
+  const PriorErrors usual(clip, {0.01, 0}, settings),
+      measured(clip, {0.01, 0, false, true}, settings);
+  CHECK(measured.process().point == doctest::Approx(usual.process().point / 2));
+  CHECK(measured.process().bend == doctest::Approx(usual.process().bend * 8));
+}
