@@ -45,14 +45,16 @@ bool SeenNoise::learn(double residual) {
   return std::abs(after - before) > kSmallChange * before;
 }
 
-std::optional<RayNoise> SeenNoise::measured() const {
-  if (!may_be_exact_ || rays_.exact) return std::nullopt;
-  return RayNoise{less_cautious_, rays_.lasting, false, true};
+bool SeenNoise::measure() {
+  if (!may_be_exact_ || rays_.exact || rays_.measured) return false;
+  rays_.measured = true;
+  rays_.white = less_cautious_;
+  return true;
 }
 
 void SeenNoise::set_lasting(double lasting) {
   rays_.lasting = lasting;
-  rays_.exact = std::hypot(rays_.white, lasting) <= kExact * usual_;
+  rays_.exact = !rays_.measured && std::hypot(rays_.white, lasting) <= kExact * usual_;
 }
 
 }  // namespace mcdbn

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "fitting/clip_posterior.hpp"
 #include "mcdbn/camera/camera.hpp"
 
@@ -26,9 +24,10 @@ class SeenNoise {
   /// @param residual how far from the rays a solution's joints are, x/z and y/z each
   /// @return whether that makes another solution worth while
   bool learn(double residual);
-  /// As the solutions measured it, taken for less new in each frame than before
-  /// (`TrackFitSettings::measured_caution`). Unset where it is exact, or may be a detector's.
-  std::optional<RayNoise> measured() const;
+  /// Once solutions tell nothing new: what is not exact, and no detector's, was measured, and is
+  /// taken for less new in each frame (`TrackFitSettings::measured_caution`).
+  /// @return whether that makes another solution worth while
+  bool measure();
   /// What is told by now of a usual detector's lasting part.
   double share() const { return rays_.lasting / usual_; }
 

@@ -98,16 +98,11 @@ class ClipFit {
       look_again(settings);
       rays_ = noise.rays();
       take(point_ = most_likely(clip, rays_, settings, std::move(point_)));
-      if (!noise.learn(evidence_->usual_residual(point_, clip.frames()))) break;
+      if (!noise.learn(evidence_->usual_residual(point_, clip.frames())) && !noise.measure()) break;
     }
-    if (settings.solutions == 0) return;
-    if (rays_.exact) {
-      const double least = settings.exact_noise_px / std::sqrt(camera_.fx_px * camera_.fy_px);
-      take(point_ = likeliest_of_exact(clip, rays_, settings, least, std::move(point_)));
-    } else if (const std::optional<RayNoise> measured = noise.measured()) {
-      rays_ = *measured;
-      take(point_ = most_likely(clip, rays_, settings, std::move(point_)));
-    }
+    if (!rays_.exact) return;
+    const double least = settings.exact_noise_px / std::sqrt(camera_.fx_px * camera_.fy_px);
+    take(point_ = likeliest_of_exact(clip, rays_, settings, least, std::move(point_)));
   }
 
   /// After meet_track. The clip stays as it is.

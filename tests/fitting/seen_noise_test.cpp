@@ -52,16 +52,21 @@ TEST_CASE("seen noise: an exact projection is found out, of an own skeleton alon
   CHECK(std::hypot(other.rays().lasting, 0.25 / kFocal_px) == doctest::Approx(kUsual));
 }
 
-TEST_CASE("seen noise: solutions measure that of a known body which no detector saw") {
-  SeenNoise own = noise_of(3, true), exact = noise_of(0, true);
+TEST_CASE("seen noise: that of a known body which no detector saw was measured, in the end") {
+  SeenNoise own = noise_of(3, true), other = noise_of(3, false), exact = noise_of(0, true);
   own.learn(0.5 * kUsual);
-  REQUIRE(own.measured());
-  CHECK(own.measured()->measured);
-  CHECK(own.measured()->white == doctest::Approx(1.7 * 3 / kFocal_px));  // measured_caution
-  CHECK(own.measured()->lasting == own.rays().lasting);
-  CHECK_FALSE(noise_of(3, false).measured());
+  CHECK_FALSE(own.rays().measured);
+  const double lasting = own.rays().lasting;
+  CHECK(own.measure());
+  CHECK(own.rays().measured);
+  CHECK(own.rays().white == doctest::Approx(1.7 * 3 / kFocal_px));  // measured_caution
+  CHECK(own.rays().lasting == lasting);
+  CHECK_FALSE(own.measure());
+  own.learn(0.01 * kUsual);
+  CHECK_FALSE(own.rays().exact);
+  CHECK_FALSE(other.measure());
   exact.learn(0.25 * kUsual);
-  CHECK_FALSE(exact.measured());
+  CHECK_FALSE(exact.measure());
 }
 
 TEST_CASE("seen noise: a worse detector is one too, up to a limit") {
