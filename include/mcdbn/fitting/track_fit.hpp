@@ -61,9 +61,10 @@ struct KnownOfClip {
 /// exact projections of the same: six CMU walks, of a model of walks and of a general one;
 /// `likeness`, `lasting`, `outlier`, `proportions`, `roll` and `focal` on seven CMU clips and
 /// twelve of Bandai's training halves, of the general model, which never saw Bandai's; `exact`,
-/// `exact_cost` and `alternatives` on the exact projections of the same; `spread` and
-/// `draws-noise-lasts` on eleven of CMU's, detector-like, exact, with noise of 5 px and with joints
-/// missing.
+/// `exact_cost` and `alternatives` on the exact projections of the same; `exact_likeness`,
+/// `measured_lasting` and `measured_caution` on fourteen others of CMU's and 24 of Bandai's, exact
+/// and with noise of 2 and 5 px; `spread` and `draws-noise-lasts` on eleven of CMU's,
+/// detector-like, exact, with noise of 5 px and with joints missing.
 struct TrackFitSettings {
   double turn_deg = 9;
   double likeness = 0.6;
