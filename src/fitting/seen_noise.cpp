@@ -28,9 +28,9 @@ SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m
   const auto on_rays = [&](double noise_px) {
     return std::max(kLeastNoise_px, noise_px) / focal_px;
   };
-  measured_ = on_rays(track_noise_px);
+  of_track_ = on_rays(track_noise_px);
   usual_ = settings.detector * kHeight_m / std::max(depth_m, 1e-9);
-  least_ = may_be_exact ? measured_ : usual_;
+  least_ = may_be_exact ? of_track_ : usual_;
   rays_.white = on_rays(settings.caution * track_noise_px);
   less_cautious_ = on_rays(settings.measured_caution * track_noise_px);
   set_lasting(share * usual_);
@@ -39,8 +39,8 @@ SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m
 bool SeenNoise::learn(double residual) {
   const double before = std::hypot(rays_.white, rays_.lasting);
   const double told = residual * residual / (kResidualOfNoise * kResidualOfNoise * before);
-  const double both = std::clamp(told, least_, std::max({least_, measured_, kMost * usual_}));
-  set_lasting(std::sqrt(std::max(0.0, both * both - measured_ * measured_)));
+  const double both = std::clamp(told, least_, std::max({least_, of_track_, kMost * usual_}));
+  set_lasting(std::sqrt(std::max(0.0, both * both - of_track_ * of_track_)));
   const double after = std::hypot(rays_.white, rays_.lasting);
   return std::abs(after - before) > kSmallChange * before;
 }

@@ -35,7 +35,7 @@ class SeenNoise {
   void set_lasting(double lasting);
 
   bool may_be_exact_;
-  double measured_, usual_, least_;  ///< on the rays: of the track, of detectors, of both parts
+  double of_track_, usual_, least_;  ///< on the rays: of the track, of detectors, of both parts
   double less_cautious_;             ///< on the rays: of the track, once it was measured
   RayNoise rays_;
 };

@@ -18,18 +18,13 @@ PosteriorClip three_turns() {
   return clip;
 }
 
-TrackFitSettings settings_of(double likeness, double exact_likeness) {
-  TrackFitSettings settings;
-  settings.likeness = likeness;
-  settings.exact_likeness = exact_likeness;
-  return settings;
-}
-
 }  // namespace
 
 TEST_CASE("prior errors: a turn's are its parent's by the likeness, in their own deviations") {
   const PosteriorClip clip = three_turns();
-  const TrackFitSettings settings = settings_of(0.6, 0.28);
+  TrackFitSettings settings;
+  settings.likeness = 0.6;
+  settings.exact_likeness = 0.28;
   for (const bool exact : {false, true}) {
     CAPTURE(exact);
     const PriorErrors prior(clip, {0.01, 0, exact}, settings);
