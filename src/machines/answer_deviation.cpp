@@ -1,6 +1,7 @@
 #include "mcdbn/machines/answer_deviation.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,8 @@ namespace {
 /// A residual smaller than this share of its column's RMS counts as that: the logarithm of a chance
 /// zero would weigh more than all others.
 constexpr double kSmallest = 0.02;
+/// Frames whose codes are doubles at once: all of a corpus's would be most of a training's memory.
+constexpr Eigen::Index kBlock = 4096;
 
 }  // namespace
 
@@ -32,10 +35,16 @@ AnswerDeviation AnswerDeviation::fit(const MatrixF& code, const MatrixF& residua
                 .log();
   const RowVectorD mean_log = logs.colwise().mean(),
                    mean_code = code.cast<double>().colwise().mean();
-  const MatrixD centered = code.cast<double>().rowwise() - mean_code;
-  MatrixD normal = centered.transpose() * centered;
-  normal.diagonal().array() += 1.0;
-  const MatrixD slope = normal.llt().solve(centered.transpose() * (logs.rowwise() - mean_log));
+  MatrixD normal = MatrixD::Identity(code.cols(), code.cols()),
+          products = MatrixD::Zero(code.cols(), logs.cols());
+  for (Eigen::Index first = 0; first < code.rows(); first += kBlock) {
+    const Eigen::Index rows = std::min(kBlock, code.rows() - first);
+    const MatrixD centered = code.middleRows(first, rows).cast<double>().rowwise() - mean_code;
+    normal.noalias() += centered.transpose() * centered;
+    products.noalias() +=
+        centered.transpose() * (logs.middleRows(first, rows).rowwise() - mean_log);
+  }
+  const MatrixD slope = normal.llt().solve(products);
   AnswerDeviation deviation{slope.cast<float>(), (mean_log - mean_code * slope).cast<float>()};
   const MatrixD ratios = squares.array() / deviation.of(code).cast<double>().array().square();
   deviation.c += (0.5 * ratios.colwise().mean().array().log()).matrix().cast<float>();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machines/answer_batches.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 
@@ -40,31 +41,52 @@ double distance(const std::vector<MatrixD>& many, const std::vector<MatrixD>& si
 }
 
 /// Every so many clips, so that memory does not grow with the corpus: ten minutes say enough.
-std::vector<MatrixF> ten_minutes(const std::vector<MatrixF>& clips, double fps) {
+std::size_t every_of_ten_minutes(const std::vector<MatrixF>& clips, double fps) {
   double frames = 0;
   for (const MatrixF& clip : clips) frames += static_cast<double>(clip.rows());
-  const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil(frames / (kMost_s * fps))));
-  std::vector<MatrixF> some;
-  for (std::size_t i = 0; i < clips.size(); i += every) some.push_back(clips[i]);
-  return some;
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(frames / (kMost_s * fps))));
+}
+
+/// Parts of clips that are answered in step.
+struct CalibrationBatch {
+  std::vector<MatrixF> tracks;
+  std::vector<MatrixD> answers;  ///< joints about the root
+};
+
+/// How far samples are from the answers, each batch's being drawn for itself.
+double strayed(const Mcdbn& network, const Modalities& modalities,
+               const std::vector<CalibrationBatch>& batches, RegenerationOptions options) {
+  double sum = 0;
+  for (const CalibrationBatch& batch : batches) {
+    sum += distance(joints_about_root(modalities, regenerate(network, batch.tracks, options)),
+                    batch.answers);
+    ++options.seed;
+  }
+  return sum;
 }
 
 }  // namespace
 
 SamplingRule calibrated_sampling(const Mcdbn& network, const Modalities& modalities,
-                                 const std::vector<MatrixF>& all_tracks,
-                                 const std::vector<MatrixF>& all_poses) {
-  if (all_tracks.size() != all_poses.size())
+                                 const std::vector<MatrixF>& tracks,
+                                 const std::vector<MatrixF>& poses) {
+  if (tracks.size() != poses.size())
     throw ShapeError("calibration: as many tracks as poses are wanted");
-  const std::vector<MatrixF> tracks = ten_minutes(all_tracks, modalities.fps),
-                             poses = ten_minutes(all_poses, modalities.fps);
   // The distance is a mean over ten minutes' frames already; and a thirtieth of the scale is less
   // than samples differ by.
   constexpr std::size_t kSamples = 4, kHalvings = 6;
   RegenerationOptions options;
-  const std::vector<MatrixD> answers =
-      joints_about_root(modalities, regenerate(network, tracks, options));
-  const double wanted = kShareOfError * distance(answers, joints_about_root(modalities, poses));
+  std::vector<CalibrationBatch> batches;
+  double wanted = 0;
+  for (const AnswerBatch& parts :
+       answer_batches(tracks, every_of_ten_minutes(tracks, modalities.fps),
+                      kFramesInStep / static_cast<Eigen::Index>(kSamples))) {
+    CalibrationBatch batch{rows_of(parts, tracks), {}};
+    batch.answers = joints_about_root(modalities, regenerate(network, batch.tracks, options));
+    wanted += kShareOfError *
+              distance(batch.answers, joints_about_root(modalities, rows_of(parts, poses)));
+    batches.push_back(std::move(batch));
+  }
   options.samples = kSamples;
   options.temperature = 1.0;
   options.sampling = {.gibbs_steps = 0,
@@ -73,10 +95,7 @@ SamplingRule calibrated_sampling(const Mcdbn& network, const Modalities& modalit
   double low = 0.0, high = 2.0;
   for (std::size_t i = 0; i < kHalvings; ++i) {
     options.sampling.scale = 0.5 * (low + high);
-    const bool strays =
-        distance(joints_about_root(modalities, regenerate(network, tracks, options)), answers) >
-        wanted;
-    (strays ? high : low) = options.sampling.scale;
+    (strayed(network, modalities, batches, options) > wanted ? high : low) = options.sampling.scale;
   }
   options.sampling.scale = 0.5 * (low + high);
   return options.sampling;

@@ -19,9 +19,8 @@ struct CalibrationScene {
   Modalities modalities = SmallFigure().modalities();
   std::vector<MatrixF> tracks, poses;
 
-  CalibrationScene() {
-    const std::array<std::size_t, 3> frames{17, 8, 11};
-    for (std::size_t i = 0; i < 3; ++i) {
+  explicit CalibrationScene(const std::vector<std::size_t>& frames = {17, 8, 11}) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
       const auto seed = static_cast<unsigned>(i);
       tracks.push_back(random_matrix(
           frames[i], static_cast<std::size_t>(modalities.track_scale.output_dimension()),
@@ -49,28 +48,40 @@ double distance(const MatrixD& x, const MatrixD& y) {
   return sum;
 }
 
+/// Σ distances of samples drawn with that scale from the answers, for each of the four.
+double strayed(const Mcdbn& network, const CalibrationScene& scene,
+               const std::vector<MatrixF>& answers, std::size_t clips_in_step, double scale) {
+  RegenerationOptions options;
+  options.samples = 4;
+  options.temperature = 1.0;
+  options.sampling = {.gibbs_steps = 0,
+                      .mrbm_gibbs_steps = network.mean_field_steps,
+                      .steady = true,
+                      .scale = scale};
+  double sum = 0;
+  for (std::size_t first = 0; first < answers.size(); first += clips_in_step, ++options.seed) {
+    const auto begin = scene.tracks.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto count = std::min(clips_in_step, answers.size() - first);
+    const auto samples = regenerate(
+        network, std::vector<MatrixF>(begin, begin + static_cast<std::ptrdiff_t>(count)), options);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      sum += 0.25 * distance(positions(scene.modalities, samples[i]),
+                             positions(scene.modalities, answers[first + i / 4]));
+  }
+  return sum;
+}
+
 /// At temperature 1 samples stray from the single answer half as far as that is off.
-double scale_by_halving(const Mcdbn& network, const CalibrationScene& scene) {
+double scale_by_halving(const Mcdbn& network, const CalibrationScene& scene,
+                        std::size_t clips_in_step) {
   const auto answers = regenerate(network, scene.tracks);
   double wanted = 0;
   for (std::size_t i = 0; i < answers.size(); ++i)
     wanted += 0.5 * distance(positions(scene.modalities, answers[i]),
                              positions(scene.modalities, scene.poses[i]));
-  RegenerationOptions options;
-  options.samples = 4;
-  options.temperature = 1.0;
-  options.sampling = {
-      .gibbs_steps = 0, .mrbm_gibbs_steps = network.mean_field_steps, .steady = true, .scale = 1.0};
   double scale = 1.0;
-  for (double step = 0.5; step > 0.01; step /= 2) {
-    options.sampling.scale = scale;
-    const auto samples = regenerate(network, scene.tracks, options);
-    double strayed = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      strayed += 0.25 * distance(positions(scene.modalities, samples[i]),
-                                 positions(scene.modalities, answers[i / 4]));
-    scale += strayed > wanted ? -step : step;
-  }
+  for (double step = 0.5; step > 0.01; step /= 2)
+    scale += strayed(network, scene, answers, clips_in_step, scale) > wanted ? -step : step;
   return scale;
 }
 
@@ -88,7 +99,7 @@ TEST_CASE("the scale of samples is where they stray half as far as the answers a
       for (std::size_t i = 0; i < noise.size(); ++i) scene.poses[i] = usual[i] + error * noise[i];
       const SamplingRule rule =
           calibrated_sampling(network, scene.modalities, scene.tracks, scene.poses);
-      CHECK(rule.scale == scale_by_halving(network, scene));
+      CHECK(rule.scale == scale_by_halving(network, scene, 3));
       CHECK(rule.gibbs_steps == 0);
       CHECK(rule.mrbm_gibbs_steps == 4);
       CHECK(rule.steady);
@@ -103,6 +114,23 @@ TEST_CASE("the scale of samples is where they stray half as far as the answers a
     network.mean_field_steps = 0;
     CHECK(calibrated_sampling(network, scene.modalities, scene.tracks, scene.poses)
               .mrbm_gibbs_steps == 1);
+  });
+}
+
+TEST_CASE(
+    "the scale of samples of more frames than are answered in step: each batch is drawn for "
+    "itself") {
+  on_every_device([](Device& device) {
+    // 1,200 frames of four samples are answered in step, which are 48 of these clips.
+    CalibrationScene scene(std::vector<std::size_t>(100, 25));
+    const Mcdbn network = random_network(device, scene.modalities);
+    const auto usual = regenerate(network, scene.tracks);
+    for (std::size_t i = 0; i < usual.size(); ++i)
+      scene.poses[i] = usual[i] + 0.14F * scene.poses[i];
+    const double scale =
+        calibrated_sampling(network, scene.modalities, scene.tracks, scene.poses).scale;
+    CHECK(scale == scale_by_halving(network, scene, 48));
+    CHECK(scale != scale_by_halving(network, scene, 100));  // the draws are part of it
   });
 }
 

@@ -76,6 +76,7 @@ struct State {
   std::string build_log;
   std::map<std::string, std::size_t> calls;
   std::map<std::string, long> objects;
+  std::size_t largest_buffer_bytes = 0;
   Limits limits;
   std::FILE* kernels_file = nullptr;
   std::set<std::string> kernels;  ///< lines of the file
@@ -176,7 +177,7 @@ void lower(void* value, std::size_t size, Number most) {
 }
 
 constexpr char kDeviceInfo[] = "clGetDeviceInfo", kLaunch[] = "clEnqueueNDRangeKernel",
-               kBuildInfo[] = "clGetProgramBuildInfo";
+               kBuildInfo[] = "clGetProgramBuildInfo", kBuffer[] = "clCreateBuffer";
 
 template <auto call, const char* name>
 constexpr auto between =
@@ -236,6 +237,16 @@ cl_int CL_API_CALL launch(cl_command_queue queue, cl_kernel kernel, cl_uint dime
       queue, kernel, dimensions, offset, global, group, waits, wait_for, event);
 }
 
+cl_mem CL_API_CALL create_buffer(cl_context context, cl_mem_flags flags, std::size_t bytes,
+                                 void* values, cl_int* code) {
+  {
+    State& all = state();
+    const std::scoped_lock lock(all.mutex);
+    all.largest_buffer_bytes = std::max(all.largest_buffer_bytes, bytes);
+  }
+  return between<&cl_icd_dispatch::clCreateBuffer, kBuffer>(context, flags, bytes, values, code);
+}
+
 cl_int CL_API_CALL build_info(cl_program program, cl_device_id device, cl_program_build_info what,
                               std::size_t size, void* value, std::size_t* size_said) {
   const std::string log = state().build_log;
@@ -287,6 +298,7 @@ void heal() {
   all.faults.clear();
   all.calls.clear();
   all.build_log.clear();
+  all.largest_buffer_bytes = 0;
   all.lost = CL_SUCCESS;
 }
 
@@ -300,6 +312,11 @@ std::map<std::string, long> objects() {
   std::map<std::string, long> living = state().objects;
   std::erase_if(living, [](const auto& kind) { return kind.second == 0; });
   return living;
+}
+
+std::size_t largest_buffer_bytes() {
+  const std::scoped_lock lock(state().mutex);
+  return state().largest_buffer_bytes;
 }
 
 void limit(const Limits& limits) {
@@ -335,6 +352,7 @@ cl_int CL_API_CALL clInitLayer(cl_uint entries, const cl_icd_dispatch* driver,
   all.table.clGetDeviceInfo = device_info;
   all.table.clEnqueueNDRangeKernel = launch;
   all.table.clGetProgramBuildInfo = build_info;
+  all.table.clCreateBuffer = create_buffer;
   read_environment();
   *entries_said = kEntries;
   *table = &all.table;

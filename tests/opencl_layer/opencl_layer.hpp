@@ -25,6 +25,8 @@ std::map<std::string, std::size_t> calls();
 /// Objects of each kind that are still referred to: "context", "queue", "buffer", "program",
 /// "kernel", "event". Kinds without any are left out.
 std::map<std::string, long> objects();
+/// Of the largest buffer that was asked for since heal().
+std::size_t largest_buffer_bytes();
 
 /// What every device says that it takes, and takes no more of.
 struct Limits {
