@@ -42,12 +42,17 @@ struct RegenerateOptions {
   SeenByOptions seen_by;
   SamplingOptions sampling;
   std::string to = kToPose, fit, method = kModel;
+  bool keep_first_frame = false;
   FollowOptions following;
 };
 
-/// Options that mean nothing where a track is wanted. @throws ConfigError naming the first
+/// Options that mean nothing where a track is wanted, or where motion is. @throws ConfigError
+/// naming the first
 void check_direction(const RegenerateOptions& options) {
-  if (options.to != kToTrack) return;
+  if (options.to != kToTrack) {
+    if (options.keep_first_frame) throw ConfigError("--keep-first-frame is for --to track");
+    return;
+  }
   const AssumedView& view = options.seen_by.view;
   for (const auto& [said, flag] : {std::pair{!options.skeleton.empty(), "--skeleton"},
                                    std::pair{!options.joint_map.empty(), "--joint-map"},
@@ -253,7 +258,8 @@ void follow(const Model& model, const RegenerateOptions& options,
 void regenerate_tracks(const Model& model, const RegenerateOptions& options,
                        const std::optional<Camera>& camera,
                        const RegenerationOptions& regeneration) {
-  const Motion clip = load_clip_with_notices(options.input, {.fps = model.modalities.fps});
+  const Motion clip = load_clip_with_notices(
+      options.input, {.fps = model.modalities.fps, .keep_first_frame = options.keep_first_frame});
   const auto tracks = regenerate_track(model, clip, regeneration, camera);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const auto path = sample_path(options.output, i, tracks.size());
@@ -300,6 +306,7 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
                    "camera's image")
       ->check(CLI::IsMember({kToPose, kToTrack}))
       ->capture_default_str();
+  add_keep_first_frame_option(*command, options->keep_first_frame);
   add_seen_by_options(*command, options->seen_by);
   command
       ->add_option("--skeleton", options->skeleton,

@@ -74,8 +74,7 @@ void ClipNotices::tell(std::vector<std::string>& notices) const {
   notices.insert(notices.end(), lines.begin(), lines.end());
   if (posed_ == 0) return;
   const std::string whose = posed_ == 1 ? first_posed_.string() : fmt::format("{} clips", posed_);
-  notices.push_back(fmt::format(
-      "{}: dropped the calibration pose of the first frame (`keep-first-frame` keeps it)", whose));
+  notices.push_back(fmt::format("{}: dropped the calibration pose of the first frame", whose));
 }
 
 std::vector<std::string> ClipNotices::told() const {

@@ -127,22 +127,6 @@ json by_program(const Call& call, const std::string& options) {
   return json::parse(result.standard_output);
 }
 
-/// A test clip with its rest pose, a calibration, before its first frame.
-fs::path with_calibration_pose(const fs::path& clip, const ScratchFolder& folder) {
-  std::string text = mcdbn::read_text_file(clip);
-  const auto frames = text.find("Frames: ") + 8;
-  const int count = std::stoi(text.substr(frames));
-  text.replace(frames, std::to_string(count).size(), std::to_string(count + 1));
-  const auto first = text.find('\n', text.find("Frame Time")) + 1;
-  std::string pose = text.substr(first, text.find('\n', first) - first);
-  const auto channels = std::ranges::count(pose, ' ') + 1;
-  pose = "0";
-  for (int i = 1; i < channels; ++i) pose += " 0";
-  text.insert(first, pose + "\n");
-  fs::create_directories(folder / "calibrated");
-  return folder.write("calibrated/walk_s02_09.bvh", text);
-}
-
 }  // namespace
 
 /// Rows of what makes the tracks of a detector. All are said at once: each row then says that its
@@ -210,7 +194,8 @@ TEST_CASE("evaluate: every option changes what its help says") {
   Call all;
   all.model = pipeline.model();
   // Two clips of one action: a pair of real ones, and by the seed as many of the regenerations'.
-  all.test = {with_calibration_pose(pipeline.motion() / "walk_s02_01.bvh", folder),
+  all.test = {with_calibration_pose(pipeline.motion() / "walk_s02_01.bvh",
+                                    folder / "calibrated/walk_s02_09.bvh"),
               pipeline.motion() / "walk_s01_01.bvh", pipeline.motion() / "walk_s01_02.bvh"};
   all.by_folder = all.keep_first_frame = all.include_training = true;
   all.fit = false;

@@ -197,6 +197,12 @@ TEST_CASE("regenerate: every option changes what its help says") {
                     CHECK(by_program(same) == by_program(one));  // its default
                     CHECK(run_cli(one.arguments(output) + " --to video").exit_code == 2);
                   }});
+  rows.push_back({"--keep-first-frame", [&] {
+                    const CliResult refused =
+                        run_cli(one.arguments(output) + " --keep-first-frame");
+                    CHECK(refused.exit_code == 2);
+                    CHECK(refused.standard_error.find("is for --to track") != std::string::npos);
+                  }});
   rows.push_back(
       {"--method", [&] {
          const std::string call = one.arguments(output), seen = text();

@@ -60,6 +60,14 @@ TEST_CASE("regenerate --to track: 2D from a clip, as the library makes it") {
       written(fmt::format(" --camera '{}'", (folder / "camera.yaml").string()), {"out.csv"});
   CHECK(seen == wanted(options, mcdbn::read_camera(folder / "camera.yaml")));
   CHECK(seen != answer);
+  const fs::path posed = with_calibration_pose(file, folder / "posed.bvh");
+  const std::string of_posed =
+      fmt::format("regenerate --model '{}' --to track --input '{}' -o '{}'",
+                  pipeline.model().string(), posed.string(), (folder / "out.csv").string());
+  REQUIRE(run_cli(of_posed).exit_code == 0);
+  CHECK(mcdbn::read_text_file(folder / "out.csv") == answer.front());
+  REQUIRE(run_cli(of_posed + " --keep-first-frame").exit_code == 0);
+  CHECK(mcdbn::read_track_csv(folder / "out.csv").frames() == clip.frames() + 1);
   options.samples = 2;
   options.temperature = 0.7;
   options.seed = 9;

@@ -3,8 +3,10 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
+#include <string_view>
 
 #include "base/text_file.hpp"
 
@@ -43,6 +45,22 @@ CliResult synthesize(const fs::path& folder) {
 CliResult train(const std::string& clips, const fs::path& run, const std::string& options,
                 const std::string& environment) {
   return run_cli(fmt::format("train {} -o '{}' {}", clips, run.string(), options), environment);
+}
+
+fs::path with_calibration_pose(const fs::path& clip, const fs::path& path) {
+  std::string text = read_text_file(clip);
+  const auto frames = text.find("Frames: ") + 8;
+  const int count = std::stoi(text.substr(frames));
+  text.replace(frames, std::to_string(count).size(), std::to_string(count + 1));
+  const auto first = text.find('\n', text.find("Frame Time")) + 1;
+  const std::string_view line =
+      std::string_view(text).substr(first, text.find('\n', first) - first);
+  std::string pose = "0";
+  for (auto more = std::ranges::count(line, ' '); more > 0; --more) pose += " 0";
+  text.insert(first, pose + "\n");
+  fs::create_directories(path.parent_path());
+  write_text_file(path, text);
+  return path;
 }
 
 const TinyPipeline& TinyPipeline::instance() {

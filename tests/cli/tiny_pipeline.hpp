@@ -23,6 +23,10 @@ CliResult synthesize(const std::filesystem::path& folder);
 CliResult train(const std::string& clips, const std::filesystem::path& run,
                 const std::string& options, const std::string& environment = "");
 
+/// The clip with its rest pose, a calibration, before its first frame. @return `path`
+std::filesystem::path with_calibration_pose(const std::filesystem::path& clip,
+                                            const std::filesystem::path& path);
+
 /// The whole job at a size that takes seconds, done once for all tests. All read the same clips,
 /// whose places the model knows; each process has a run folder of its own.
 class TinyPipeline {
