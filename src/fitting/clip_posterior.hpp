@@ -51,6 +51,7 @@ struct RayNoise {
   bool exact = false;     ///< there is next to none beside a usual detector's
   bool measured = false;  ///< there is some, and it is no detector's: the track and a solution told
                           ///< all of it
+  bool steady = false;    ///< next to none of it is new in every frame, and it is no detector's
 };
 
 /// A motion as it differs from the prior's mean.

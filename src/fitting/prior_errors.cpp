@@ -7,7 +7,7 @@ namespace mcdbn {
 PriorErrors::PriorErrors(const PosteriorClip& clip, const RayNoise& noise,
                          const TrackFitSettings& settings)
     : clip_(clip),
-      likeness_(noise.exact ? settings.exact_likeness : settings.likeness),
+      likeness_(noise.steady ? settings.exact_likeness : settings.likeness),
       process_(noise.measured ? settings.measured_lasting_s : settings.lasting_s,
                clip.frame_time_s) {
   if (noise.exact) process_.point *= settings.exact;

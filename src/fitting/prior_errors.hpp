@@ -8,9 +8,9 @@
 namespace mcdbn {
 
 /// What the errors of the prior's mean are. Where rays are exact its values count for less
-/// (`TrackFitSettings::exact`), its bends as elsewhere, and a turn is as wrong as its parent's less
-/// (`exact_likeness`). Where their noise was measured they last longer (`measured_lasting_s`).
-/// Keeps the clip.
+/// (`TrackFitSettings::exact`), its bends as elsewhere. Where their noise is steady a turn is as
+/// wrong as its parent's less (`exact_likeness`); where it was measured they last longer
+/// (`measured_lasting_s`). Keeps the clip.
 class PriorErrors {
  public:
   PriorErrors(const PosteriorClip& clip, const RayNoise& noise, const TrackFitSettings& settings);

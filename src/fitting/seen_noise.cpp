@@ -16,6 +16,9 @@ constexpr double kResidualOfNoise = 0.88;
 constexpr double kMost = 3;
 /// What is exact, as a share of a detector's noise.
 constexpr double kExact = 0.5;
+/// The same of what is new in every frame. A solution may be as far off an exact track as off a
+/// noisy one, but the track tells them apart.
+constexpr double kExactOfTrack = 0.25;
 /// A noise that changes by less is not worth another solution.
 constexpr double kSmallChange = 0.1;
 
@@ -31,7 +34,8 @@ SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m
   of_track_ = on_rays(track_noise_px);
   usual_ = settings.detector * kHeight_m / std::max(depth_m, 1e-9);
   least_ = may_be_exact ? of_track_ : usual_;
-  rays_.white = on_rays(settings.caution * track_noise_px);
+  cautious_ = rays_.white = on_rays(settings.caution * track_noise_px);
+  rays_.steady = may_be_exact && !track_tells_noise();
   less_cautious_ = on_rays(settings.measured_caution * track_noise_px);
   set_lasting(share * usual_);
 }
@@ -46,15 +50,19 @@ bool SeenNoise::learn(double residual) {
 }
 
 bool SeenNoise::measure() {
-  if (!may_be_exact_ || rays_.exact || rays_.measured) return false;
+  if (!may_be_exact_ || !track_tells_noise() || rays_.measured) return false;
   rays_.measured = true;
   rays_.white = less_cautious_;
   return true;
 }
 
+bool SeenNoise::track_tells_noise() const {
+  return cautious_ > kExactOfTrack * usual_;
+}
+
 void SeenNoise::set_lasting(double lasting) {
   rays_.lasting = lasting;
-  rays_.exact = !rays_.measured && std::hypot(rays_.white, lasting) <= kExact * usual_;
+  rays_.exact = !track_tells_noise() && std::hypot(rays_.white, lasting) <= kExact * usual_;
 }
 
 }  // namespace mcdbn

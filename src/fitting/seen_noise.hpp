@@ -24,19 +24,20 @@ class SeenNoise {
   /// @param residual how far from the rays a solution's joints are, x/z and y/z each
   /// @return whether that makes another solution worth while
   bool learn(double residual);
-  /// Once solutions tell nothing new: what is not exact, and no detector's, was measured, and is
-  /// taken for less new in each frame (`TrackFitSettings::measured_caution`).
+  /// Once solutions tell nothing new: noise that the track tells of, and no detector's, was
+  /// measured, and is taken for less new in each frame (`TrackFitSettings::measured_caution`).
   /// @return whether that makes another solution worth while
   bool measure();
   /// What is told by now of a usual detector's lasting part.
   double share() const { return rays_.lasting / usual_; }
 
  private:
+  bool track_tells_noise() const;
   void set_lasting(double lasting);
 
   bool may_be_exact_;
   double of_track_, usual_, least_;  ///< on the rays: of the track, of detectors, of both parts
-  double less_cautious_;             ///< on the rays: of the track, once it was measured
+  double cautious_, less_cautious_;  ///< on the rays: of the track, at first and once measured
   RayNoise rays_;
 };
 

@@ -133,7 +133,9 @@ PosteriorPoint likeliest_of_exact(const PosteriorClip& clip, RayNoise& noise,
                                   PosteriorPoint point) {
   point = likeliest_in_depth(clip, noise, settings, std::move(point));
   while (noise.white > least) {
-    const RayNoise less{std::max(least, noise.white / kLess), 0, true};
+    RayNoise less = noise;
+    less.white = std::max(least, noise.white / kLess);
+    less.lasting = 0;
     PosteriorPoint nearer = most_likely(clip, less, settings, point);
     if (!(nearer.energy < kNoise * point.energy)) break;
     nearer = likeliest_in_depth(clip, less, settings, std::move(nearer));

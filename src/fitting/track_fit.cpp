@@ -93,6 +93,7 @@ class ClipFit {
     point_ = PosteriorPoint::zero(clip);
     look_again(settings);
     rays_ = noise.rays();
+    rays_.steady = false;  // a rough solution is as far off as a detector's
     take(point_ = roughly_likely(clip, rays_, settings, std::move(point_)));
     for (std::size_t solution = 0; solution < settings.solutions; ++solution) {
       look_again(settings);

@@ -25,10 +25,12 @@ TEST_CASE("prior errors: a turn's are its parent's by the likeness, in their own
   TrackFitSettings settings;
   settings.likeness = 0.6;
   settings.exact_likeness = 0.28;
-  for (const bool exact : {false, true}) {
-    CAPTURE(exact);
-    const PriorErrors prior(clip, {0.01, 0, exact}, settings);
-    const double likeness = exact ? 0.28 : 0.6, own = exact ? 0.96 : 0.8;
+  for (const bool steady : {false, true}) {
+    CAPTURE(steady);
+    RayNoise noise{0.01, 0, !steady};
+    noise.steady = steady;
+    const PriorErrors prior(clip, noise, settings);
+    const double likeness = steady ? 0.28 : 0.6, own = steady ? 0.96 : 0.8;
     CHECK_UNARY(prior.share_of_parent(1, 0) == 0);
     CHECK(prior.share_of_parent(1, 1) == doctest::Approx(2 * likeness));
     CHECK(prior.share_of_parent(1, 2) == doctest::Approx(1.5 * likeness));

@@ -52,6 +52,22 @@ TEST_CASE("seen noise: an exact projection is found out, of an own skeleton alon
   CHECK(std::hypot(other.rays().lasting, 0.25 / kFocal_px) == doctest::Approx(kUsual));
 }
 
+TEST_CASE(
+    "seen noise: a track that tells of some itself is not exact, near as a solution may come") {
+  const auto exact_at = [](double share) {
+    SeenNoise noise = noise_of(share * kUsual * kFocal_px / TrackFitSettings{}.caution, true);
+    CHECK(noise.rays().steady == (share < 0.25));
+    noise.learn(1e-3 * kUsual);
+    CHECK(std::hypot(noise.rays().white, noise.rays().lasting) == doctest::Approx(share * kUsual));
+    return noise.rays().exact;
+  };
+  CHECK(exact_at(0.24));
+  CHECK_FALSE(exact_at(0.26));
+  CHECK_FALSE(exact_at(0.45));
+  // An unknown body's is a detector's, whatever the track tells.
+  CHECK_FALSE(noise_of(0, false).rays().steady);
+}
+
 TEST_CASE("seen noise: that of a known body which no detector saw was measured, in the end") {
   SeenNoise own = noise_of(3, true), other = noise_of(3, false), exact = noise_of(0, true);
   own.learn(0.5 * kUsual);
@@ -65,6 +81,7 @@ TEST_CASE("seen noise: that of a known body which no detector saw was measured, 
   own.learn(0.01 * kUsual);
   CHECK_FALSE(own.rays().exact);
   CHECK_FALSE(other.measure());
+  CHECK_FALSE(exact.measure());  // before a solution told anything of it, too
   exact.learn(0.25 * kUsual);
   CHECK_FALSE(exact.measure());
 }

@@ -20,7 +20,8 @@ namespace {
 
 constexpr Eigen::Index kFrames = 90;
 constexpr double kDepth_m = 4;
-const RayNoise kExact{2.5e-4, 0, true};  // a quarter of a pixel of a focal length of 1,000
+const RayNoise kExact{2.5e-4, 0, true, false,
+                      true};  // a quarter of a pixel of a focal length of 1,000
 
 /// The arm's swing towards the camera (−) and away.
 double swing_rad(Eigen::Index t) {
@@ -187,6 +188,7 @@ TEST_CASE("exact rays: their noise is lowered while that costs next to nothing")
   const PosteriorPoint exact = likeliest_of_exact(clip, noise, {}, kLeast, wrong);
   CHECK_UNARY(noise.white == kLeast);
   CHECK_UNARY(noise.exact);
+  CHECK_UNARY(noise.steady);
   CHECK_UNARY(worst_rad(exact, 1) < 0.02);
   CHECK_UNARY(worst_rad(exact, 2) < 0.02);
 
@@ -228,7 +230,6 @@ TEST_CASE("window problem: where rays are exact the prior's mean counts for less
   const auto followed = [&](bool is_exact, double counts) {
     TrackFitSettings settings;
     settings.exact = counts;
-    settings.exact_likeness = settings.likeness;
     const RayNoise noise{0.05, 0, is_exact};  // so far off that the prior is heard
     const PosteriorPoint start = solved_from(clip, {1, 2}, {}, in_one_swing);
     return most_likely(clip, noise, settings, start).turns.norm();

@@ -117,7 +117,8 @@ struct TrackFitSettings {
         Setting{"exact", above(0, 1), "",
                 "how much the prior's mean counts where rays are exact, of what it does elsewhere"},
         self.exact);
-    visit(Setting{"exact-likeness", share_below_one(), "", "the likeness where rays are exact"},
+    visit(Setting{"exact-likeness", share_below_one(), "",
+                  "the likeness where a track of a known body tells no noise itself"},
           self.exact_likeness);
     visit(Setting{"exact-noise", above(0), "px",
                   "noise that even exact rays are taken to have: what is left of rounding"},
