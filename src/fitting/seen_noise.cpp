@@ -34,8 +34,8 @@ SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m
   of_track_ = on_rays(track_noise_px);
   usual_ = settings.detector * kHeight_m / std::max(depth_m, 1e-9);
   least_ = may_be_exact ? of_track_ : usual_;
-  cautious_ = rays_.white = on_rays(settings.caution * track_noise_px);
-  rays_.steady = may_be_exact && !track_tells_noise();
+  rays_.white = on_rays(settings.caution * track_noise_px);
+  rays_.steady = may_be_exact && rays_.white <= kExactOfTrack * usual_;
   less_cautious_ = on_rays(settings.measured_caution * track_noise_px);
   set_lasting(share * usual_);
 }
@@ -50,19 +50,15 @@ bool SeenNoise::learn(double residual) {
 }
 
 bool SeenNoise::measure() {
-  if (!may_be_exact_ || !track_tells_noise() || rays_.measured) return false;
+  if (!may_be_exact_ || rays_.steady || rays_.measured) return false;
   rays_.measured = true;
   rays_.white = less_cautious_;
   return true;
 }
 
-bool SeenNoise::track_tells_noise() const {
-  return cautious_ > kExactOfTrack * usual_;
-}
-
 void SeenNoise::set_lasting(double lasting) {
   rays_.lasting = lasting;
-  rays_.exact = !track_tells_noise() && std::hypot(rays_.white, lasting) <= kExact * usual_;
+  rays_.exact = rays_.steady && std::hypot(rays_.white, lasting) <= kExact * usual_;
 }
 
 }  // namespace mcdbn

@@ -32,12 +32,11 @@ class SeenNoise {
   double share() const { return rays_.lasting / usual_; }
 
  private:
-  bool track_tells_noise() const;
   void set_lasting(double lasting);
 
   bool may_be_exact_;
   double of_track_, usual_, least_;  ///< on the rays: of the track, of detectors, of both parts
-  double cautious_, less_cautious_;  ///< on the rays: of the track, at first and once measured
+  double less_cautious_;             ///< on the rays: of the track, once it was measured
   RayNoise rays_;
 };
 

@@ -12,12 +12,6 @@ namespace {
 /// Frames from which the deviation is learnt: some hundred for each unit of a code.
 constexpr Eigen::Index kMostFrames = 60000;
 
-Eigen::Index frames_of(std::span<const MatrixF> clips) {
-  Eigen::Index frames = 0;
-  for (const MatrixF& clip : clips) frames += clip.rows();
-  return frames;
-}
-
 struct Answers {
   MatrixF codes, residuals;  ///< [frames x code], [frames x visible]
 };
@@ -27,7 +21,7 @@ Answers answers_to(const Mcdbn& network, const SynchronizedClips& clips) {
   const std::span<const MatrixF> given = clips.modalities[0].clips,
                                  truth = clips.modalities[1].clips;
   const auto every =
-      static_cast<std::size_t>(std::max<Eigen::Index>(1, frames_of(truth) / kMostFrames));
+      static_cast<std::size_t>(std::max<Eigen::Index>(1, total_frames(truth) / kMostFrames));
   const std::vector<AnswerBatch> batches = answer_batches(truth, every, kFramesInStep);
   Eigen::Index frames = 0;
   for (const AnswerBatch& batch : batches)

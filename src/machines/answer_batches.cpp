@@ -42,6 +42,12 @@ std::vector<AnswerBatch> answer_batches(std::span<const MatrixF> sequences, std:
   return batches;
 }
 
+Eigen::Index total_frames(std::span<const MatrixF> sequences) {
+  Eigen::Index frames = 0;
+  for (const MatrixF& sequence : sequences) frames += sequence.rows();
+  return frames;
+}
+
 std::vector<MatrixF> rows_of(const AnswerBatch& batch, std::span<const MatrixF> sequences) {
   std::vector<MatrixF> rows;
   rows.reserve(batch.size());

@@ -28,6 +28,9 @@ using AnswerBatch = std::vector<SequencePart>;
 std::vector<AnswerBatch> answer_batches(std::span<const MatrixF> sequences, std::size_t every,
                                         Eigen::Index most_frames);
 
+/// Frames of all of them.
+Eigen::Index total_frames(std::span<const MatrixF> sequences);
+
 /// Those parts' rows.
 std::vector<MatrixF> rows_of(const AnswerBatch& batch, std::span<const MatrixF> sequences);
 

@@ -42,8 +42,7 @@ double distance(const std::vector<MatrixD>& many, const std::vector<MatrixD>& si
 
 /// Every so many clips, so that memory does not grow with the corpus: ten minutes say enough.
 std::size_t every_of_ten_minutes(const std::vector<MatrixF>& clips, double fps) {
-  double frames = 0;
-  for (const MatrixF& clip : clips) frames += static_cast<double>(clip.rows());
+  const auto frames = static_cast<double>(total_frames(clips));
   return static_cast<std::size_t>(std::max(1.0, std::ceil(frames / (kMost_s * fps))));
 }
 

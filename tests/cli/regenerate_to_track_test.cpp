@@ -39,9 +39,12 @@ TEST_CASE("regenerate --to track: 2D from a clip, as the library makes it") {
     }
     return texts;
   };
-  const std::string plain =
-      fmt::format("regenerate --model '{}' --to track --input '{}' -o '{}'",
-                  pipeline.model().string(), file.string(), (folder / "out.csv").string());
+  const auto call_of = [&](const fs::path& clip_file) {
+    return fmt::format("regenerate --model '{}' --to track --input '{}' -o '{}'",
+                       pipeline.model().string(), clip_file.string(),
+                       (folder / "out.csv").string());
+  };
+  const std::string plain = call_of(file);
   const auto written = [&](const std::string& options, const std::vector<const char*>& files) {
     const CliResult result = run_cli(plain + options);
     CAPTURE(result.standard_error);
@@ -60,10 +63,7 @@ TEST_CASE("regenerate --to track: 2D from a clip, as the library makes it") {
       written(fmt::format(" --camera '{}'", (folder / "camera.yaml").string()), {"out.csv"});
   CHECK(seen == wanted(options, mcdbn::read_camera(folder / "camera.yaml")));
   CHECK(seen != answer);
-  const fs::path posed = with_calibration_pose(file, folder / "posed.bvh");
-  const std::string of_posed =
-      fmt::format("regenerate --model '{}' --to track --input '{}' -o '{}'",
-                  pipeline.model().string(), posed.string(), (folder / "out.csv").string());
+  const std::string of_posed = call_of(with_calibration_pose(file, folder / "posed.bvh"));
   REQUIRE(run_cli(of_posed).exit_code == 0);
   CHECK(mcdbn::read_text_file(folder / "out.csv") == answer.front());
   REQUIRE(run_cli(of_posed + " --keep-first-frame").exit_code == 0);

@@ -5,9 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "base/random_matrix.hpp"
 #include "device_faults/tiny_training.hpp"
-#include "features/small_figure.hpp"
 #include "learning/learnt_deviation.hpp"
 #include "machines/answer_batches.hpp"
 #include "motion_model/clip_scene.hpp"
@@ -16,44 +14,22 @@
 using namespace mcdbn;
 using namespace mcdbn::test;
 
-namespace {
-
-/// A clip of 100 s among many of 2 s.
-struct OneLongClip {
-  Modalities modalities = SmallFigure().modalities();
-  std::vector<MatrixF> tracks, poses;
-
-  OneLongClip() {
-    for (unsigned i = 0; i < 60; ++i) {
-      const std::size_t frames = i == 7 ? 3000 : 60;
-      tracks.push_back(random_matrix(frames, columns(modalities.track_scale), 100 + i));
-      poses.push_back(random_matrix(frames, columns(modalities.pose_scale), 200 + i));
-    }
-  }
-  std::size_t widest() const {
-    return std::max(columns(modalities.track_scale), columns(modalities.pose_scale));
-  }
-
- private:
-  static std::size_t columns(const Standardizer& scale) {
-    return static_cast<std::size_t>(scale.output_dimension());
-  }
-};
-
-}  // namespace
-
 TEST_CASE(
     "what a trained network answers takes memory for some frames, not for all clips as long as "
     "the longest") {
   const HealthyDriver driver;
-  const OneLongClip clips;
+  std::vector<std::size_t> frames(60, 60);
+  frames[7] = 3000;  // 100 s among many of 2 s
+  const RandomClips clips(frames);
   Device device = Device::open();
   const Mcdbn network = random_network(device, clips.modalities);
   const std::array<ModalityClips, 2> modalities{ModalityClips{"2d", clips.tracks},
                                                 ModalityClips{"3d", clips.poses}};
+  const std::size_t widest = std::max(RandomClips::columns(clips.modalities.track_scale),
+                                      RandomClips::columns(clips.modalities.pose_scale));
   // A clip is run in and looked ahead from for less than it has frames; rows are padded.
   const std::size_t most =
-      sizeof(float) * 2 * static_cast<std::size_t>(kFramesInStep) * (clips.widest() + 16);
+      sizeof(float) * 2 * static_cast<std::size_t>(kFramesInStep) * (widest + 16);
   layer::heal();
   learnt_deviation(network, {{modalities.begin(), modalities.end()}, {}}, nullptr);
   CHECK(layer::largest_buffer_bytes() > 0);

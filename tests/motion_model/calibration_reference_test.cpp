@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
-#include "features/small_figure.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 #include "motion_model/clip_scene.hpp"
 #include "motion_model/sample_calibration.hpp"
@@ -14,23 +13,6 @@ using namespace mcdbn;
 using namespace mcdbn::test;
 
 namespace {
-
-struct CalibrationScene {
-  Modalities modalities = SmallFigure().modalities();
-  std::vector<MatrixF> tracks, poses;
-
-  explicit CalibrationScene(const std::vector<std::size_t>& frames = {17, 8, 11}) {
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      const auto seed = static_cast<unsigned>(i);
-      tracks.push_back(random_matrix(
-          frames[i], static_cast<std::size_t>(modalities.track_scale.output_dimension()),
-          10 + seed));
-      poses.push_back(random_matrix(
-          frames[i], static_cast<std::size_t>(modalities.pose_scale.output_dimension()), 20 + seed,
-          0.4F));
-    }
-  }
-};
 
 /// Joints about the root, which stands still. @return [frames x 3·joints]
 MatrixD positions(const Modalities& modalities, const MatrixF& pose) {
@@ -49,8 +31,8 @@ double distance(const MatrixD& x, const MatrixD& y) {
 }
 
 /// Σ distances of samples drawn with that scale from the answers, for each of the four.
-double strayed(const Mcdbn& network, const CalibrationScene& scene,
-               const std::vector<MatrixF>& answers, std::size_t clips_in_step, double scale) {
+double strayed(const Mcdbn& network, const RandomClips& scene, const std::vector<MatrixF>& answers,
+               std::size_t clips_in_step, double scale) {
   RegenerationOptions options;
   options.samples = 4;
   options.temperature = 1.0;
@@ -72,8 +54,7 @@ double strayed(const Mcdbn& network, const CalibrationScene& scene,
 }
 
 /// At temperature 1 samples stray from the single answer half as far as that is off.
-double scale_by_halving(const Mcdbn& network, const CalibrationScene& scene,
-                        std::size_t clips_in_step) {
+double scale_by_halving(const Mcdbn& network, const RandomClips& scene, std::size_t clips_in_step) {
   const auto answers = regenerate(network, scene.tracks);
   double wanted = 0;
   for (std::size_t i = 0; i < answers.size(); ++i)
@@ -89,7 +70,7 @@ double scale_by_halving(const Mcdbn& network, const CalibrationScene& scene,
 
 TEST_CASE("the scale of samples is where they stray half as far as the answers are off") {
   on_every_device([](Device& device) {
-    CalibrationScene scene;
+    RandomClips scene({17, 8, 11});
     Mcdbn network = random_network(device, scene.modalities);
     std::vector<double> scales;
     const auto usual = regenerate(network, scene.tracks);
@@ -122,7 +103,7 @@ TEST_CASE(
     "itself") {
   on_every_device([](Device& device) {
     // 1,200 frames of four samples are answered in step, which are 48 of these clips.
-    CalibrationScene scene(std::vector<std::size_t>(100, 25));
+    RandomClips scene(std::vector<std::size_t>(100, 25));
     const Mcdbn network = random_network(device, scene.modalities);
     const auto usual = regenerate(network, scene.tracks);
     for (std::size_t i = 0; i < usual.size(); ++i)
@@ -136,7 +117,7 @@ TEST_CASE(
 
 TEST_CASE("calibration looks at every so many clips once they are longer than ten minutes") {
   on_every_device([](Device& device) {
-    CalibrationScene scene;
+    RandomClips scene({17, 8, 11});
     const Mcdbn network = random_network(device, scene.modalities);
     const auto answers = regenerate(network, scene.tracks);
     for (std::size_t i = 0; i < 3; ++i)

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <vector>
+
+#include "base/random_matrix.hpp"
 #include "features/clip_modalities.hpp"
+#include "features/small_figure.hpp"
 #include "machines/two_modalities.hpp"
 #include "mcdbn/device/matrix.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
@@ -23,5 +27,22 @@ inline Mcdbn random_network(Device& device, const Modalities& modalities) {
   network.cdbns[1].layers.emplace_back(device, pose);
   return network;
 }
+
+/// Tracks and poses of the small figure, standardized, which nothing but chance relates.
+struct RandomClips {
+  Modalities modalities = SmallFigure().modalities();
+  std::vector<MatrixF> tracks, poses;
+
+  explicit RandomClips(const std::vector<std::size_t>& frames) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const auto seed = static_cast<unsigned>(i);
+      tracks.push_back(random_matrix(frames[i], columns(modalities.track_scale), 10 + seed));
+      poses.push_back(random_matrix(frames[i], columns(modalities.pose_scale), 20 + seed, 0.4F));
+    }
+  }
+  static std::size_t columns(const Standardizer& scale) {
+    return static_cast<std::size_t>(scale.output_dimension());
+  }
+};
 
 }  // namespace mcdbn::test
