@@ -63,7 +63,7 @@ IndexBuffer drawn_units(const Crbm& crbm, std::size_t first, std::size_t count,
 Sequences free_energy(const Crbm& crbm, const Sequences& visible) {
   Sequences energies = one_number_a_frame(crbm, visible);
   const Matrix values = in_own_units(crbm, visible.values);
-  for (const auto& block : blocks_from(visible.clips, energies.valid_from)) {
+  for (const auto& block : blocks_from(visible.clips, energies.valid_from, kRowsAtOnce)) {
     const Rows rows(values, block.first, block.frames);
     RowEnergies{crbm, rows}.write(rows, Rows(energies.values, block.first, block.frames));
   }
@@ -82,7 +82,7 @@ Sequences pseudo_log_likelihood(const Crbm& crbm, const Sequences& visible, std:
           "pseudo-likelihood: only of machines of binary units");
   const Sequences energies = free_energy(crbm, visible);
   Sequences result = one_number_a_frame(crbm, visible);
-  for (const auto& block : blocks_from(visible.clips, result.valid_from)) {
+  for (const auto& block : blocks_from(visible.clips, result.valid_from, kRowsAtOnce)) {
     const Rows rows(visible.values, block.first, block.frames);
     const IndexBuffer units = drawn_units(crbm, block.first, block.frames, seed);
     Matrix flipped(crbm.device(), block.frames, crbm.shape().visible);

@@ -8,6 +8,7 @@
 #include "device/every_device.hpp"
 #include "machines/in_double.hpp"
 #include "machines/random_crbm.hpp"
+#include "machines/sequence_blocks.hpp"
 #include "machines/tiny_crbm.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/base/random.hpp"
@@ -106,6 +107,25 @@ TEST_CASE("small: free energies of every frame that has a history") {
         return energies(p, history, clips[i].bottomRows(history.rows()));
       });
     }
+  });
+}
+
+TEST_CASE("energies of a clip that is longer than what is taken at once") {
+  const CrbmShape shape{3, 2, 1, kBinary};
+  const std::vector<MatrixF> clips = {frames_of(shape, 2 * kRowsAtOnce + 4, 1),
+                                      frames_of(shape, kRowsAtOnce, 2)};
+  on_every_device([&](Device& device) {
+    const CrbmParameters p = random_crbm(shape, 7, 4.0F);
+    const Crbm crbm(device, p);
+    const Sequences visible = Sequences::from_host(device, clips);
+    check_clips(free_energy(crbm, visible), clips, shape.order, [&](std::size_t i) {
+      const MatrixF history = histories(clips[i], shape.order);
+      return energies(p, history, clips[i].bottomRows(history.rows()));
+    });
+    const MatrixF drawn = pseudo_log_likelihood(crbm, visible, 9).values.to_host();
+    CHECK((drawn.topRows(1).array() == 0.0F).all());
+    CHECK((drawn.middleRows(1, clips[0].rows() - 1).array() < 0.0F).all());
+    CHECK((drawn.bottomRows(clips[1].rows() - 1).array() < 0.0F).all());
   });
 }
 
