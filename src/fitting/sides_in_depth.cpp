@@ -102,6 +102,8 @@ class SidesInDepth {
     if (problem.energy() > kLimbAlone * stands) return;
     problem.solve(false, kSmallGainOfAll, kStepsOfTry);
     one.found = problem.solution();
+    // What stands only gets likelier once it has settled too.
+    if (!(stands - one.found.energy > kLikelier)) return;
     problem.start_from(point);
     problem.solve(false, kSmallGainOfAll, kStepsOfTry);
     one.gain = problem.solution().energy - one.found.energy;
