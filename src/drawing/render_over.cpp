@@ -24,9 +24,23 @@ int frames_shown(const std::vector<Figure>& figures, double fps) {
   return std::max(1, static_cast<int>(std::min(kMost, std::round(longest_s * fps))));
 }
 
-void draw_figures(cv::Mat& image, const std::vector<Figure>& figures, const Camera& camera,
-                  double t_s) {
-  const Camera own = scaled(camera, image.cols, image.rows);
+/// The camera as it filmed pictures of that size.
+/// @throws InputError where they have another shape: figures would not lie where they were seen
+Camera of_film(const Camera& camera, const FilmReader& film, const cv::Size& picture) {
+  constexpr double kRounded = 0.01;  // of a side that was scaled to whole pixels
+  const double wider = static_cast<double>(picture.width) / camera.width_px /
+                       (static_cast<double>(picture.height) / camera.height_px);
+  if (std::abs(wider - 1) > kRounded)
+    throw InputError(fmt::format(
+        "{}: its pictures are {} x {} pixels, those of the camera {} x {}, "
+        "which is another shape",
+        film.path().string(), picture.width, picture.height, camera.width_px, camera.height_px));
+  return scaled(camera, picture.width, picture.height);
+}
+
+void draw_figures(cv::Mat& image, const std::vector<Figure>& figures, const FilmReader& film,
+                  const Camera& camera, double t_s) {
+  const Camera own = of_film(camera, film, image.size());
   for (const Figure& figure : figures)
     draw_figure(image, own, figure, figure.frame_at(t_s), Palette::second);
 }
@@ -38,7 +52,7 @@ void write_film(FilmReader& film, int frames, const std::vector<Figure>& figures
     check_interruption();
     cv::Mat image = film.next();
     if (image.empty()) break;
-    draw_figures(image, figures, camera, i / film.fps());
+    draw_figures(image, figures, film, camera, i / film.fps());
     writer.write(image);
   }
   if (writer.frames() == 0)
@@ -58,7 +72,7 @@ void write_sheet(FilmReader& film, int frames, const std::vector<Figure>& figure
     cv::Mat image = film.next();
     if (image.empty()) break;
     if (i < shown * (frames - 1) / std::max(1, times - 1)) continue;
-    draw_figures(image, figures, camera, i / film.fps());
+    draw_figures(image, figures, film, camera, i / film.fps());
     cv::Mat cell;
     cv::resize(image, cell, {kWidth_px, kWidth_px * image.rows / image.cols}, 0, 0, cv::INTER_AREA);
     draw_text(cell, fmt::format("{:.2f} s", i / film.fps()), 8, cell.rows - 20, 0.6);

@@ -75,7 +75,10 @@ TEST_CASE("render: every option changes what its help says") {
   };
   const fs::path camera_file = folder / "camera.yaml";
   write_camera(camera_file,
-               place_camera(mcdbn::load_clip(clips[0]), {.azimuth_deg = 80, .distance = 300}));
+               place_camera(mcdbn::load_clip(clips[0]), {.azimuth_deg = 80,
+                                                         .distance = 300,
+                                                         .width_px = 640,  // the film's
+                                                         .height_px = 720}));
   const fs::path film = folder / "film.mp4";
   mcdbn::RenderOptions turning;
   turning.orbit = true;

@@ -116,5 +116,8 @@ TEST_CASE("what cannot be drawn over is said") {
   }
   CHECK_THROWS_AS(draw(over(film, motion, 6)), InputError);
   CHECK_THROWS_AS(draw(over(film, motion, 60)), InputError);
+  RenderOptions other_shape = over(film, motion, 0);
+  other_shape.camera->width_px += 16;
+  CHECK_THROWS_AS(draw(other_shape), InputError);
   CHECK(!std::filesystem::exists(folder / "drawn.mp4"));
 }
