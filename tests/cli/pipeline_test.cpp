@@ -103,7 +103,8 @@ TEST_CASE("evaluate prints one object, and refuses clips that were trained on") 
   CHECK(refused.exit_code == 3);
   CHECK(refused.standard_output.empty());
   CHECK(refused.standard_error.find("--include-training") != std::string::npos);
-  CHECK(run_cli(evaluate + pipeline.training_clips() + " --include-training").exit_code == 0);
+  CHECK(run_cli(evaluate + pipeline.training_clips() + " --include-training --baselines none")
+            .exit_code == 0);
 }
 
 TEST_CASE("regenerate --fit none leaves the network's answer, track is the default") {
@@ -155,7 +156,8 @@ TEST_CASE("evaluate fits every method, or none, and damages tracks by the seed")
     CAPTURE(name);
     CHECK(mpjpe_mm(scores) < mpjpe_mm(plain.at("baselines").at(name)));
   }
-  const std::string damage = "--fit none --track-noise-px 5 --track-missing 0.2 --track-hide 0.5";
+  const std::string damage =
+      "--fit none --baselines ridge_window --track-noise-px 5 --track-missing 0.2 --track-hide 0.5";
   const json damaged = evaluate(damage);
   CHECK(damaged.at("track_damage") ==
         json{{"noise_px", 5.0}, {"missing_share", 0.2}, {"hidden_s", 0.5}});
@@ -197,7 +199,7 @@ TEST_CASE("evaluate --report writes the tables, by action, training clips marked
 
   // The paper's protocol: every clip, ten times; what was said stays.
   const CliResult paper = run_cli(evaluate + pipeline.test_clips() + pipeline.training_clips() +
-                                  " --protocol paper --samples 2");
+                                  " --protocol paper --samples 2 --baselines none");
   CAPTURE(paper.standard_error);
   REQUIRE(paper.exit_code == 0);
   const json all = json::parse(paper.standard_output);
