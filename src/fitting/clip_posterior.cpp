@@ -114,7 +114,7 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
 
 PosteriorPoint roughly_likely(const PosteriorClip& clip, const RayNoise& noise,
                               const TrackFitSettings& settings, PosteriorPoint from) {
-  const auto every = std::max<Eigen::Index>(1, std::lround(kRoughly_s / clip.frame_time_s));
+  const auto every = std::max<Eigen::Index>(1, std::lround(settings.roughly_s / clip.frame_time_s));
   for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
     from.*rows = thinned(from.*rows, every);
   PosteriorPoint point =

@@ -80,13 +80,11 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
                            const TrackFitSettings& settings, PosteriorPoint from,
                            double small_gain = kSmallGainOfAll);
 
-/// Time between the frames that roughly_likely solves for.
-inline constexpr double kRoughly_s = 0.1;
-/// The gain at which it stops.
+/// The gain at which roughly_likely stops.
 inline constexpr double kSmallGainOfRough = 1e-2;
 
-/// About the same from fewer frames, in a fraction of the time: how a motion differs from the
-/// prior's mean is slow, and runs straight between those frames.
+/// About the same from a frame every TrackFitSettings::roughly_s, in a fraction of the time: how a
+/// motion differs from the prior's mean is slow, and runs straight between those frames.
 PosteriorPoint roughly_likely(const PosteriorClip& clip, const RayNoise& noise,
                               const TrackFitSettings& settings, PosteriorPoint from);
 

@@ -14,7 +14,7 @@ using namespace mcdbn;
 namespace {
 
 constexpr double kRate_hz = 30;
-constexpr Eigen::Index kEvery = 3;  // frames of kRoughly_s
+constexpr Eigen::Index kEvery = 3;  // frames of roughly_s
 const RayNoise kNoise{0.002, 0.004};
 
 /// Two bones that swing in the image, of which the lower one's end is seen and stands now and then.
@@ -92,7 +92,7 @@ TEST_CASE("roughly likely: it is the likeliest of every third frame, straight be
 
 TEST_CASE("roughly likely: a clip whose frames are as far apart as that is solved as it is") {
   PosteriorClip clip = swinging(10);
-  clip.frame_time_s = kRoughly_s;
+  clip.frame_time_s = TrackFitSettings{}.roughly_s;
   const PosteriorPoint from = PosteriorPoint::zero(clip);
   const PosteriorPoint rough = roughly_likely(clip, kNoise, {}, from),
                        full = most_likely(clip, kNoise, {}, from, kSmallGainOfRough);

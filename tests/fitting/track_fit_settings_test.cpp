@@ -34,6 +34,7 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"roll", [](S& s) { return at(s.roll_deg); }, "8"},
       {"balance", [](S& s) { return at(s.balance_deg); }, "5"},
       {"focal", [](S& s) { return at(s.focal); }, "0.1"},
+      {"roughly", [](S& s) { return at(s.roughly_s); }, "0.1"},
       {"solutions", [](S& s) { return at(s.solutions); }, "5"},
       {"alternatives", [](S& s) { return at(s.alternatives); }, "4"},
       {"spread", [](S& s) { return at(s.spread); }, "1.2"},
@@ -49,6 +50,7 @@ TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves s
         "measured-lasting", "measured-caution"})
     for (const double value : {0.0, -1.0, kNan})
       check_refused<TrackFitSettings>(name, value, "above 0");
+  check_refused<TrackFitSettings>("roughly", 0, "above 0");
   check_refused<TrackFitSettings>("likeness", 1, "at least 0 and below 1");
   check_refused<TrackFitSettings>("exact-likeness", 1, "at least 0 and below 1");
   check_refused<TrackFitSettings>("noise-lasts", -0.01, "at least 0");

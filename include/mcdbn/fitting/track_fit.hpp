@@ -89,6 +89,7 @@ struct TrackFitSettings {
   double roll_deg = 8;
   double balance_deg = 5;
   double focal = 0.1;
+  double roughly_s = 0.1;
   std::size_t solutions = 5;
   std::size_t alternatives = 4;
   double spread = 1.2;
@@ -158,10 +159,13 @@ struct TrackFitSettings {
           self.people);
     visit(Setting{"footing", above(0), "m/s", "how fast a foot that stands slips"},
           self.footing_m_s);
+    visit(Setting{"roughly", above(0), "seconds",
+                  "between the frames of the first solution, which the others start from"},
+          self.roughly_s);
     visit(
         Setting{"solutions", at_least(0), "",
-                "of all frames at most, after one of every tenth of a second; each with the noise "
-                "and the standing feet that the one before tells"},
+                "of all frames at most, after that one; each with the noise and the standing feet "
+                "that the one before tells"},
         self.solutions);
     visit(Setting{"alternatives", at_least(0), "",
                   "rounds at most in which limbs are tried on other sides in depth, where rays are "
