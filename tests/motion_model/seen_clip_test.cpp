@@ -195,6 +195,28 @@ TEST_CASE("seen clips: legs that come back with the other's sides get their own"
   }
 }
 
+TEST_CASE(
+    "seen clips: the fit's first step is that of looking at sides, the rounds have their own") {
+  Scene scene;
+  Track2d track = scene.seen(body_25_keypoints());
+  const MatrixF usual = scene.see(track).features;
+  REQUIRE(scene.asked == 2);  // no spells
+  TrackFitSettings& fit = *scene.placement.fit;
+  for (const double step_s : {0.03, 5.0}) {
+    fit.roughly_s = step_s;
+    CHECK(scene.see(track).features == usual);
+  }
+  const LimbPairs legs = leg_pairs(track.keypoints);
+  for (const auto& [left, right] : legs.columns) {
+    for (const int gap : {20, 35})
+      for (const int column : {left, right}) track.confidence.col(column).segment(gap, 7).setZero();
+    for (int t = 27; t < 35; ++t) exchange_columns(track, t, left, right);
+  }
+  CHECK(scene.see(track).swaps.empty());  // the first frame alone does not show them
+  fit.roughly_s = TrackFitSettings{}.roughly_s;
+  CHECK(described(scene.see(track).swaps) == "legs swapped in frames 27-34");
+}
+
 TEST_CASE("seen clips: sides that were looked at again are told in the track's own frames") {
   const Motion fast = synthesize({.fps = 60, .seconds = 3});
   Scene scene;
