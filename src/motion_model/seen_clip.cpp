@@ -16,9 +16,9 @@ namespace {
 /// tracks of training people no better either, whether the camera is known or to be found.
 constexpr int kRounds = 2;
 
-/// The rounds need to know about where joints are: a solution of so few frames tells it. Every
-/// tenth of a second detector-like tracks of training people end 0.1 mm better, in a tenth more
-/// time.
+/// Between the frames that a round solves for: it needs to know about where joints are. With frames
+/// of every tenth of a second detector-like tracks of training people end 0.1 mm better, in a tenth
+/// more time.
 constexpr double kOfRounds_s = 0.2;
 
 /// @param every_s between the frames that are solved for
