@@ -49,7 +49,7 @@ std::vector<std::string> by_library(const Call& call) {
   options.frames = call.frames.value_or(300);
   options.samples = call.samples.value_or(1);
   options.gibbs_steps = call.gibbs_steps.value_or(30);
-  options.temperature = call.temperature.value_or(1.0);
+  options.temperature = call.temperature.value_or(2.0);
   options.seed = call.seed.value_or(1);
   std::vector<std::string> texts;
   std::vector<mcdbn::SeedClip> seeds;
