@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 
 #include "device/kernel_arguments.hpp"
@@ -14,8 +15,9 @@ namespace mcdbn {
 namespace {
 
 /// Accumulator rows of one work-item: enough to hide the fma latency, few enough for the registers.
+/// Of few rows a power of two: each other number would be a kernel of its own to build.
 int tile_rows_for(const Device& device, std::size_t rows) {
-  return std::min<int>(device.tuning().product_rows, to_int(std::max<std::size_t>(rows, 1)));
+  return std::min(device.tuning().product_rows, to_int(std::bit_ceil(rows)));
 }
 
 /// One work-item a tile; on a CPU one a group, as a tile is work enough for a core.
