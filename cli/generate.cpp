@@ -106,7 +106,7 @@ void add_generate_command(CLI::App& app, CommandContext& context) {
       ->add_option(
           "--temperature", generation.temperature,
           "How far hidden units are drawn from their mean: 0 draws nothing, 1 as the model "
-          "has it; at 2 nobody who walks comes to a stand")
+          "has it; 2 keeps walkers going")
       ->check(in_range(within(0, kHottest)))
       ->capture_default_str();
   command
