@@ -21,6 +21,7 @@
 #include "base/output_file.hpp"
 #include "base/shown.hpp"
 #include "commands.hpp"
+#include "fitting/blas_kernels.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "setting_flags.hpp"
 #include "signals.hpp"
@@ -194,5 +195,6 @@ int run_program(int argc, char** argv) {
 }  // namespace mcdbn::cli
 
 int main(int argc, char** argv) {
+  mcdbn::choose_blas_kernels();
   return mcdbn::cli::run_program(argc, argv);
 }

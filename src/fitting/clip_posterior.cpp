@@ -82,9 +82,9 @@ PosteriorPoint PosteriorPoint::zero(const PosteriorClip& clip) {
 }
 
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
-                           const TrackFitSettings& settings, PosteriorPoint from,
-                           double small_gain) {
-  const std::vector<ClipWindow> windows = windows_of(clip.frames());
+                           const TrackFitSettings& settings, PosteriorPoint from, double small_gain,
+                           const WindowSizes& sizes) {
+  const std::vector<ClipWindow> windows = windows_of(clip.frames(), sizes);
   const auto solved = [&](const ClipWindow& window, bool shared_too) {
     WindowProblem problem(clip, noise, settings, from, window.first, window.frames);
     problem.solve(shared_too, small_gain);
@@ -117,8 +117,8 @@ PosteriorPoint roughly_likely(const PosteriorClip& clip, const RayNoise& noise,
   const auto every = std::max<Eigen::Index>(1, std::lround(settings.roughly_s / clip.frame_time_s));
   for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
     from.*rows = thinned(from.*rows, every);
-  PosteriorPoint point =
-      most_likely(thinned(clip, every), noise, settings, std::move(from), kSmallGainOfRough);
+  PosteriorPoint point = most_likely(thinned(clip, every), noise, settings, std::move(from),
+                                     kSmallGainOfRough, kFewFrames);
   for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
     point.*rows = between(point.*rows, every, clip.frames());
   return point;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fitting/camera_doubt.hpp"
+#include "fitting/clip_windows.hpp"
 #include "fitting/lever.hpp"
 #include "fitting/marginal_prior.hpp"
 #include "mcdbn/base/matrices.hpp"
@@ -78,7 +79,8 @@ inline constexpr double kSmallGainOfAll = 2e-3;
 /// @param small_gain a step that lowers the energy by less than this share is the last one
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
                            const TrackFitSettings& settings, PosteriorPoint from,
-                           double small_gain = kSmallGainOfAll);
+                           double small_gain = kSmallGainOfAll,
+                           const WindowSizes& sizes = kAllFrames);
 
 /// The gain at which roughly_likely stops.
 inline constexpr double kSmallGainOfRough = 1e-2;

@@ -6,12 +6,12 @@
 
 namespace mcdbn {
 
-std::vector<ClipWindow> windows_of(Eigen::Index frames) {
-  if (frames <= kWindowFrames + 2 * kOverlapFrames) return {{0, frames}};
+std::vector<ClipWindow> windows_of(Eigen::Index frames, const WindowSizes& sizes) {
+  if (frames <= sizes.frames + 2 * sizes.overlap) return {{0, frames}};
   std::vector<ClipWindow> windows;
-  for (Eigen::Index own = 0; own < frames; own += kWindowFrames) {
-    const Eigen::Index first = std::max<Eigen::Index>(0, own - kOverlapFrames);
-    const Eigen::Index last = std::min(frames, own + kWindowFrames + kOverlapFrames);
+  for (Eigen::Index own = 0; own < frames; own += sizes.frames) {
+    const Eigen::Index first = std::max<Eigen::Index>(0, own - sizes.overlap);
+    const Eigen::Index last = std::min(frames, own + sizes.frames + sizes.overlap);
     windows.push_back({first, last - first});
   }
   return windows;

@@ -17,8 +17,17 @@ inline constexpr Eigen::Index kWindowFrames = 300;
 /// On either side, over several times what an error lasts: further away nothing is heard.
 inline constexpr Eigen::Index kOverlapFrames = 30;
 
-/// Every frame is in one window at least; neighbours share 2·kOverlapFrames.
-std::vector<ClipWindow> windows_of(Eigen::Index frames);
+/// How a clip is cut: each window has frames of its own and some of its neighbours' on either side.
+struct WindowSizes {
+  Eigen::Index frames, overlap;
+};
+inline constexpr WindowSizes kAllFrames{kWindowFrames, kOverlapFrames};
+/// Where there are but a few frames a second. The middle window, which all others wait for, is
+/// short; its frames still span more seconds than one of kAllFrames.
+inline constexpr WindowSizes kFewFrames{150, 10};
+
+/// Every frame is in one window at least; neighbours share twice the overlap.
+std::vector<ClipWindow> windows_of(Eigen::Index frames, const WindowSizes& sizes = kAllFrames);
 
 /// How much of a window counts in its frame `t`, beside the windows before it: it comes in over the
 /// frames that both have. @param known frames of the clip that stand already

@@ -1,23 +1,17 @@
 #include "fitting/one_thread_solver.hpp"
 
-#include <dlfcn.h>
+#include "fitting/loaded_function.hpp"
 
 namespace mcdbn {
 namespace {
 
-/// A function of a library that may be loaded, or null.
-template <typename Function>
-Function* loaded(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
-}
-
 struct SolverLibraries {
   // Levels of OpenMP are the calling thread's own; with none of them all loops run in it.
-  int (*openmp_levels)() = loaded<int()>("omp_get_max_active_levels");
-  void (*set_openmp_levels)(int) = loaded<void(int)>("omp_set_max_active_levels");
-  int (*blas_parallel)() = loaded<int()>("openblas_get_parallel");
-  int (*blas_threads)() = loaded<int()>("openblas_get_num_threads");
-  void (*set_blas_threads)(int) = loaded<void(int)>("openblas_set_num_threads");
+  int (*openmp_levels)() = loaded_function<int()>("omp_get_max_active_levels");
+  void (*set_openmp_levels)(int) = loaded_function<void(int)>("omp_set_max_active_levels");
+  int (*blas_parallel)() = loaded_function<int()>("openblas_get_parallel");
+  int (*blas_threads)() = loaded_function<int()>("openblas_get_num_threads");
+  void (*set_blas_threads)(int) = loaded_function<void(int)>("openblas_set_num_threads");
 
   bool has_openmp() const { return openmp_levels && set_openmp_levels; }
   bool has_openblas() const { return blas_parallel && blas_threads && set_blas_threads; }

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fitting/blas_kernels.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;
@@ -31,6 +32,12 @@ TEST_CASE("help and version go to stdout") {
   CHECK(help.exit_code == 0);
   CHECK(help.standard_error.empty());
   CHECK(help.standard_output.find("Exit codes") != std::string::npos);
+}
+
+TEST_CASE("a CPU that OpenBLAS does not know gets the kernels of one that it does") {
+  const std::string cores = run_cli("--version", "OPENBLAS_VERBOSE=2").standard_error;
+  CAPTURE(cores);
+  if (cores.ends_with("Core: Prescott\n")) CHECK(mcdbn::known_cpu_like_this().empty());
 }
 
 TEST_CASE("every command's help shows an example") {

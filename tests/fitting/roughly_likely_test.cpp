@@ -64,30 +64,42 @@ PosteriorClip every_third(const PosteriorClip& clip) {
   return thin;
 }
 
-}  // namespace
-
-TEST_CASE("roughly likely: it is the likeliest of every third frame, straight between them") {
-  constexpr Eigen::Index kFrames = 44;  // the last one lies beyond the last of every third
-  const PosteriorClip clip = swinging(kFrames), thin = every_third(clip);
+/// Straight between the likeliest of every third frame, which are solved in windows of few frames.
+void check_between_thirds(Eigen::Index frames, std::size_t windows) {
+  const PosteriorClip clip = swinging(frames), thin = every_third(clip);
+  DOCTEST_REQUIRE(windows_of(thin.frames(), kFewFrames).size() == windows);
   PosteriorPoint from = PosteriorPoint::zero(clip), thin_from = PosteriorPoint::zero(thin);
   from.ground_m.setConstant(-0.8);
   thin_from.ground_m = from.ground_m;
   const PosteriorPoint rough = roughly_likely(clip, kNoise, {}, from),
-                       expected = most_likely(thin, kNoise, {}, thin_from, kSmallGainOfRough);
-  REQUIRE(rough.turns.rows() == kFrames);
-  CHECK(expected.turns.cwiseAbs().maxCoeff() > 0.1);
+                       expected =
+                           most_likely(thin, kNoise, {}, thin_from, kSmallGainOfRough, kFewFrames);
+  DOCTEST_REQUIRE(rough.turns.rows() == frames);
+  DOCTEST_CHECK(expected.turns.cwiseAbs().maxCoeff() > 0.1);
   constexpr double kClose = 1e-12;
-  for (Eigen::Index t = 0; t < kFrames; ++t) {
+  for (Eigen::Index t = 0; t < frames; ++t) {
     CAPTURE(t);
     const Eigen::Index before = t / kEvery, after = std::min(before + 1, expected.turns.rows() - 1);
     const double share = static_cast<double>(t % kEvery) / kEvery;
     const auto straight = [&](const MatrixD& rows) {
       return ((1 - share) * rows.row(before) + share * rows.row(after)).eval();
     };
-    CHECK((rough.turns.row(t) - straight(expected.turns)).cwiseAbs().maxCoeff() < kClose);
-    CHECK((rough.shift.row(t) - straight(expected.shift)).cwiseAbs().maxCoeff() < kClose);
+    DOCTEST_CHECK((rough.turns.row(t) - straight(expected.turns)).cwiseAbs().maxCoeff() < kClose);
+    DOCTEST_CHECK((rough.shift.row(t) - straight(expected.shift)).cwiseAbs().maxCoeff() < kClose);
   }
-  CHECK(std::abs(rough.ground_m[0] - expected.ground_m[0]) < kClose);
+  DOCTEST_CHECK(std::abs(rough.ground_m[0] - expected.ground_m[0]) < kClose);
+}
+
+}  // namespace
+
+TEST_CASE("roughly likely: it is the likeliest of every third frame, straight between them") {
+  check_between_thirds(44, 1);  // the last frame lies beyond the last of every third
+}
+
+TEST_CASE("roughly likely: a long clip's windows have few frames") {
+  constexpr Eigen::Index kFrames = 600;
+  REQUIRE(windows_of((kFrames + kEvery - 1) / kEvery).size() == 1);
+  check_between_thirds(kFrames, 2);
 }
 
 TEST_CASE("roughly likely: a clip whose frames are as far apart as that is solved as it is") {
