@@ -34,6 +34,13 @@ ceres::LossFunction* scaled(ceres::LossFunction* loss, double weight) {
   return new ceres::ScaledLoss(loss, weight, ceres::TAKE_OWNERSHIP);
 }
 
+/// Ceres looks for each block that is added whether it overlaps others; ours are rows of matrices.
+ceres::Problem::Options unchecked() {
+  ceres::Problem::Options options;
+  options.disable_all_safety_checks = true;
+  return options;
+}
+
 template <typename Block>
 void append(std::vector<Block>& to, const std::type_identity_t<std::vector<Block>>& more) {
   to.insert(to.end(), more.begin(), more.end());
@@ -50,7 +57,8 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
       prior_(clip, noise, settings),
       first_(first),
       turns_(static_cast<int>(clip.parents.size())),
-      x_{MatrixD(frames, from.turns.cols()), MatrixD(frames, 3), from.log_lengths, from.ground_m} {
+      x_{MatrixD(frames, from.turns.cols()), MatrixD(frames, 3), from.log_lengths, from.ground_m},
+      problem_(unchecked()) {
   start_from(from);
   find_used(unknowns);
   add_rays();

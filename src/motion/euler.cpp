@@ -1,8 +1,8 @@
-#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "base/numbers.hpp"
 
@@ -30,13 +30,20 @@ RotationChannels rotation_channels(const Joint& joint) {
   return found;
 }
 
-Eigen::Matrix3d axis_rotation(int axis, double angle_rad) {
-  return Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::Unit(axis)).toRotationMatrix();
+/// Multiplies `rotation` from the right by a turn about an axis, which leaves that axis' column.
+void turn_about(Eigen::Matrix3d& rotation, int axis, double angle_rad) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const double cosine = std::cos(angle_rad), sine = std::sin(angle_rad);
+  const Eigen::Vector3d before = rotation.col(u);
+  rotation.col(u) = cosine * before + sine * rotation.col(v);
+  rotation.col(v) = cosine * rotation.col(v) - sine * before;
 }
 
 /// `angle` plus the whole turns that bring it nearest to `reference`.
 double nearest_turn(double angle_rad, double reference_rad) {
-  return reference_rad + std::remainder(angle_rad - reference_rad, 2 * std::numbers::pi);
+  const double change = angle_rad - reference_rad;
+  if (std::abs(change) <= std::numbers::pi) return angle_rad;  // a remainder takes long
+  return reference_rad + std::remainder(change, 2 * std::numbers::pi);
 }
 
 using Triple = std::array<double, 3>;
@@ -49,7 +56,7 @@ double squared_distance(const Triple& a, const Triple& b) {
 
 /// Angles of R = R_i(a)·R_j(b)·R_k(c) for three distinct axes; without `previous` the branch with
 /// |b| <= 90° is taken, in -180° to 180°.
-Triple distinct_axes_angles(const Eigen::Matrix3d& rotation, const std::vector<int>& axes,
+Triple distinct_axes_angles(const Eigen::Matrix3d& rotation, const std::array<int, 3>& axes,
                             const Triple* previous) {
   const int i = axes[0], j = axes[1], k = axes[2];
   const double parity = (i + 1) % 3 == j ? 1.0 : -1.0;
@@ -81,7 +88,7 @@ Triple distinct_axes_angles(const Eigen::Matrix3d& rotation, const std::vector<i
 Eigen::Matrix3d product(const std::vector<int>& axes, const std::vector<double>& angles_rad,
                         std::size_t begin, std::size_t end) {
   Eigen::Matrix3d result = Eigen::Matrix3d::Identity();
-  for (std::size_t n = begin; n < end; ++n) result *= axis_rotation(axes[n], angles_rad[n]);
+  for (std::size_t n = begin; n < end; ++n) turn_about(result, axes[n], angles_rad[n]);
   return result;
 }
 
@@ -130,8 +137,35 @@ std::vector<double> nearest_angles(const Eigen::Matrix3d& rotation, const std::v
   return best;
 }
 
-bool has_three_distinct(const std::vector<int>& axes) {
-  return axes.size() == 3 && axes[0] != axes[1] && axes[1] != axes[2] && axes[0] != axes[2];
+/// Where a joint that turns about three distinct axes has their channels; most joints do.
+std::optional<std::array<std::size_t, 3>> three_distinct(const Joint& joint) {
+  std::array<std::size_t, 3> at{};
+  std::array<bool, 3> has{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < joint.channels.size(); ++i) {
+    if (!is_rotation(joint.channels[i])) continue;
+    const auto axis = static_cast<std::size_t>(axis_of(joint.channels[i]));
+    if (count == at.size() || has[axis]) return {};
+    has[axis] = true;
+    at[count++] = i;
+  }
+  if (count < at.size()) return {};
+  return at;
+}
+
+void set_distinct_axes(const Joint& joint, const std::array<std::size_t, 3>& at,
+                       const Eigen::Matrix3d& parent_from_joint, const double* previous,
+                       double* joint_channels) {
+  std::array<int, 3> axes{};
+  Triple before{};
+  for (std::size_t n = 0; n < at.size(); ++n) {
+    axes[n] = axis_of(joint.channels[at[n]]);
+    if (previous) before[n] = previous[at[n]] * kRadiansPerDegree;
+  }
+  const Triple angles_rad =
+      distinct_axes_angles(parent_from_joint, axes, previous ? &before : nullptr);
+  for (std::size_t n = 0; n < at.size(); ++n)
+    joint_channels[at[n]] = angles_rad[n] / kRadiansPerDegree;
 }
 
 }  // namespace
@@ -140,29 +174,23 @@ Eigen::Matrix3d local_rotation(const Joint& joint, const double* joint_channels)
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   for (std::size_t i = 0; i < joint.channels.size(); ++i) {
     const Channel channel = joint.channels[i];
-    if (is_rotation(channel)) {
-      rotation *= axis_rotation(axis_of(channel), joint_channels[i] * kRadiansPerDegree);
-    }
+    if (is_rotation(channel))
+      turn_about(rotation, axis_of(channel), joint_channels[i] * kRadiansPerDegree);
   }
   return rotation;
 }
 
 void set_local_rotation(const Joint& joint, const Eigen::Matrix3d& parent_from_joint,
                         const double* previous, double* joint_channels) {
+  if (const auto at = three_distinct(joint))
+    return set_distinct_axes(joint, *at, parent_from_joint, previous, joint_channels);
   const RotationChannels rotations = rotation_channels(joint);
   if (rotations.axes.empty()) return;
   std::vector<double> angles_rad(rotations.axes.size(), 0.0);
   for (std::size_t n = 0; previous && n < angles_rad.size(); ++n) {
     angles_rad[n] = previous[rotations.channel_indices[n]] * kRadiansPerDegree;
   }
-  if (has_three_distinct(rotations.axes)) {
-    const Triple before = {angles_rad[0], angles_rad[1], angles_rad[2]};
-    const Triple angles =
-        distinct_axes_angles(parent_from_joint, rotations.axes, previous ? &before : nullptr);
-    angles_rad.assign(angles.begin(), angles.end());
-  } else {
-    angles_rad = nearest_angles(parent_from_joint, rotations.axes, angles_rad);
-  }
+  angles_rad = nearest_angles(parent_from_joint, rotations.axes, angles_rad);
   for (std::size_t n = 0; n < angles_rad.size(); ++n) {
     joint_channels[rotations.channel_indices[n]] = angles_rad[n] / kRadiansPerDegree;
   }
