@@ -22,6 +22,7 @@ struct CommandContext {
   bool json = false;
   std::vector<std::pair<CLI::Option*, OutputKind>> outputs;  ///< files to write: mark_output
   std::function<void()> run;
+  char** arguments = nullptr;  ///< main's
 };
 
 void add_device_options(CLI::App& command, CommandContext& context);  ///< --platform, --device

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "mcdbn/base/errors.hpp"
+#include "program_folder.hpp"
 
 namespace mcdbn::cli {
 
@@ -16,11 +17,8 @@ void add_model_option(CLI::App& command, std::filesystem::path& model) {
 
 std::filesystem::path model_or_default(const std::filesystem::path& said) {
   if (!said.empty()) return said;
-  std::error_code unknown;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  auto model =
-      program.parent_path().parent_path() / "share" / "mcdbn-cl" / "default_model.safetensors";
-  if (unknown || !std::filesystem::exists(model))
+  auto model = beside_program("share") / "mcdbn-cl" / "default_model.safetensors";
+  if (!std::filesystem::exists(model))
     throw ConfigError(
         fmt::format("no --model, and none comes with this program: {} is missing", model.string()));
   spdlog::info("no --model: the general one, {}", model.string());

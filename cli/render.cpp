@@ -1,42 +1,10 @@
-#include "mcdbn/drawing/render.hpp"
-#include "mcdbn/formats/camera_file.hpp"
+#include "render.hpp"
 
-#include <spdlog/spdlog.h>
-
-#include <filesystem>
 #include <memory>
-#include <vector>
 
-#include "camera_options.hpp"
-#include "clip_options.hpp"
-#include "commands.hpp"
 #include "setting_flags.hpp"
 
 namespace mcdbn::cli {
-namespace {
-
-struct RenderCommandOptions {
-  std::vector<std::filesystem::path> clips;
-  std::filesystem::path output;
-  CameraOptions camera;
-  ClipOptions preparation;
-  RenderOptions render;
-};
-
-void run_render(RenderCommandOptions options) {
-  std::vector<RenderClip> clips;
-  for (const std::filesystem::path& path : options.clips) {
-    clips.push_back({load_clip_with_notices(path, options.preparation), path.filename().string()});
-  }
-  options.render.placement = options.camera.placement;
-  if (!options.camera.file.empty())
-    options.render.camera = options.camera.camera_for(clips.front().motion);
-  render(clips, options.output, options.render);
-  spdlog::info("{}: {} {}", options.output.string(), clips.size(),
-               clips.size() == 1 ? "clip" : "clips");
-}
-
-}  // namespace
 
 void add_render_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<RenderCommandOptions>();
@@ -76,7 +44,9 @@ void add_render_command(CLI::App& app, CommandContext& context) {
   add_camera_options(*command, options->camera);
   add_quiet_option(*command, context);
   command->footer("Example:\n  mcdbn-cl render truth.bvh regenerated.bvh --orbit -o compare.mp4");
-  command->callback([&context, options] { context.run = [options] { run_render(*options); }; });
+  command->callback([&context, options] {
+    context.run = [&context, options] { run_render(*options, context); };
+  });
 }
 
 }  // namespace mcdbn::cli

@@ -5,10 +5,17 @@
 
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
+#include "fitting/blas_kernels.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
 #include "motion_model/sample_calibration.hpp"
 
 namespace mcdbn::test {
+namespace {
+
+/// As the program has it: what is compared with its files takes the same kernels.
+[[maybe_unused]] const bool kKernelsChosen = (choose_blas_kernels(), true);
+
+}  // namespace
 
 Device& usual_device() {
   static Device& device = *std::make_unique<Device>(Device::open()).release();

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "camera_options.hpp"
+#include "clip_options.hpp"
+#include "commands.hpp"
+#include "mcdbn/drawing/render.hpp"
+
+namespace mcdbn::cli {
+
+struct RenderCommandOptions {
+  std::vector<std::filesystem::path> clips;
+  std::filesystem::path output;
+  CameraOptions camera;
+  ClipOptions preparation;
+  RenderOptions render;
+};
+
+/// Draws. mcdbn-cl has a program of its own for it, which it becomes here: what OpenCV needs for
+/// films is two hundred libraries, which would take every command a sixth of a second to load.
+void run_render(RenderCommandOptions options, const CommandContext& context);
+
+}  // namespace mcdbn::cli

@@ -1,0 +1,29 @@
+// mcdbn-cl render, a program of its own: see run_render.
+#include <spdlog/spdlog.h>
+
+#include <array>
+
+#include "render.hpp"
+#include "run_program.hpp"
+
+namespace mcdbn::cli {
+
+void run_render(RenderCommandOptions options, const CommandContext&) {
+  std::vector<RenderClip> clips;
+  for (const std::filesystem::path& path : options.clips) {
+    clips.push_back({load_clip_with_notices(path, options.preparation), path.filename().string()});
+  }
+  options.render.placement = options.camera.placement;
+  if (!options.camera.file.empty())
+    options.render.camera = options.camera.camera_for(clips.front().motion);
+  render(clips, options.output, options.render);
+  spdlog::info("{}: {} {}", options.output.string(), clips.size(),
+               clips.size() == 1 ? "clip" : "clips");
+}
+
+}  // namespace mcdbn::cli
+
+int main(int argc, char** argv) {
+  constexpr std::array<mcdbn::cli::AddCommand, 1> kCommands = {mcdbn::cli::add_render_command};
+  return mcdbn::cli::run_program(argc, argv, kCommands);
+}
