@@ -168,4 +168,18 @@ TEST_CASE("render --over: a file that is no film is refused in one line of our o
   CHECK(result.standard_error.find("moov") == std::string::npos);
 }
 
+TEST_CASE("render: without the program that draws, the message names it") {
+  const ScratchFolder folder;
+  fs::create_directory(folder / "bin");
+  const fs::path alone = folder / "bin" / "mcdbn-cl", clip = folder.write("one.bvh", small_bvh(9));
+  fs::copy_file(MCDBN_CLI, alone);
+  const CliResult result = run_program(
+      alone, fmt::format("render '{}' -o '{}'", clip.string(), (folder / "sheet.png").string()));
+  CHECK(result.exit_code == 1);
+  CHECK(
+      result.standard_error ==
+      fmt::format("mcdbn-cl: error: what draws cannot be started, {}: No such file or directory\n",
+                  (folder / "libexec" / "mcdbn-cl" / "render").string()));
+}
+
 }  // namespace render_options_test
