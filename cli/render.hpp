@@ -20,6 +20,6 @@ struct RenderCommandOptions {
 
 /// Draws. mcdbn-cl has a program of its own for it, which it becomes here: what OpenCV needs for
 /// films is two hundred libraries, which would take every command a sixth of a second to load.
-void run_render(RenderCommandOptions options, const CommandContext& context);
+void run_render(const RenderCommandOptions& options, const CommandContext& context);
 
 }  // namespace mcdbn::cli

@@ -8,15 +8,15 @@
 
 namespace mcdbn::cli {
 
-void run_render(RenderCommandOptions options, const CommandContext&) {
+void run_render(const RenderCommandOptions& options, const CommandContext&) {
   std::vector<RenderClip> clips;
   for (const std::filesystem::path& path : options.clips) {
     clips.push_back({load_clip_with_notices(path, options.preparation), path.filename().string()});
   }
-  options.render.placement = options.camera.placement;
-  if (!options.camera.file.empty())
-    options.render.camera = options.camera.camera_for(clips.front().motion);
-  render(clips, options.output, options.render);
+  RenderOptions look = options.render;
+  look.placement = options.camera.placement;
+  if (!options.camera.file.empty()) look.camera = options.camera.camera_for(clips.front().motion);
+  render(clips, options.output, look);
   spdlog::info("{}: {} {}", options.output.string(), clips.size(),
                clips.size() == 1 ? "clip" : "clips");
 }
