@@ -75,6 +75,7 @@ class ClipFit {
     root_ = root_trajectory(positions_about(modalities_.root_name(), names_,
                                             decoded(MatrixD::Zero(features_.rows(), 3))),
                             track_, camera_, velocity_, velocity_error_m_s2_);
+    motion_.reset();
   }
 
   /// @param known as the constructor's; without a skeleton its proportions are unknown
@@ -143,13 +144,17 @@ class ClipFit {
     features_ = features;
     root_ = root;
     skeleton_ = skeleton;
+    motion_.reset();
     return motions;
   }
 
-  Motion motion() const { return decoded(root_); }
+  const Motion& motion() {
+    if (!motion_) motion_ = decoded(root_);
+    return *motion_;
+  }
 
   /// @param image whose size the result takes
-  Track2d shown(const Track2d& image) const {
+  Track2d shown(const Track2d& image) {
     Track2d result = project_motion(motion(), camera_);
     result.width_px = image.width_px;
     result.height_px = image.height_px;
@@ -162,6 +167,7 @@ class ClipFit {
                           modalities_.pose_features.root_features(features_).col(0).mean();
     const Eigen::RowVector3d shift(-root_(0, 0), wanted - root_.col(1).mean(), -root_(0, 2));
     root_.rowwise() += shift;
+    motion_.reset();
     shift_ += shift;
     camera_.translation -= camera_.camera_from_world * shift.transpose();
   }
@@ -182,9 +188,8 @@ class ClipFit {
     evidence_->find_planted(motion());
     point_.ground_m = evidence_->ground(point_);
     if (clip.camera)
-      clip.camera->balanced = evidence_->balanced(
-          upright_in_camera(decoded(MatrixD::Zero(features_.rows(), 3)), camera_),
-          settings.balance_deg * kRadiansPerDegree);
+      clip.camera->balanced = evidence_->balanced(upright_in_camera(motion(), camera_),
+                                                  settings.balance_deg * kRadiansPerDegree);
   }
 
   /// Pose, root and, if it is unknown, body are what the point makes of the prior's mean. A single
@@ -200,6 +205,7 @@ class ClipFit {
     }
     if (evidence_->clip.camera) look_as(point);
     root_ = evidence_->root(point, scale, seen_by()).rowwise() + shift_;
+    motion_.reset();
   }
 
   void look_as(const PosteriorPoint& point) {
@@ -238,6 +244,7 @@ class ClipFit {
   MatrixD velocity_;  ///< of the root, world axes, file units per second
   double velocity_error_m_s2_;
   MatrixD root_;                       ///< its path where the camera sees it, [frames x 3]
+  std::optional<Motion> motion_;       ///< of features, skeleton, camera and root as they are
   Eigen::RowVector3d shift_{0, 0, 0};  ///< that put it at the origin
   // Of meet_track:
   MatrixD mean_;  ///< the features that it began with
