@@ -11,7 +11,7 @@
 namespace mcdbn::cli {
 
 void run_render(const RenderCommandOptions&, const CommandContext& context) {
-  const auto program = beside_program("libexec") / "mcdbn-cl" / "render";
+  const auto program = beside_program("libexec/mcdbn-cl/render");
   ::execv(program.c_str(), context.arguments);
   throw Error(fmt::format("what draws cannot be started, {}: {}", program.string(),
                           std::generic_category().message(errno)));

@@ -17,7 +17,7 @@ void add_model_option(CLI::App& command, std::filesystem::path& model) {
 
 std::filesystem::path model_or_default(const std::filesystem::path& said) {
   if (!said.empty()) return said;
-  auto model = beside_program("share") / "mcdbn-cl" / "default_model.safetensors";
+  auto model = beside_program("share/mcdbn-cl/default_model.safetensors");
   if (!std::filesystem::exists(model))
     throw ConfigError(
         fmt::format("no --model, and none comes with this program: {} is missing", model.string()));

@@ -2,10 +2,11 @@
 
 namespace mcdbn::cli {
 
-std::filesystem::path beside_program(const std::filesystem::path& folder) {
+std::filesystem::path beside_program(const std::filesystem::path& file) {
   std::error_code unknown;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  return program.parent_path().parent_path() / folder;
+  if (unknown) return {};
+  return program.parent_path().parent_path() / file;
 }
 
 }  // namespace mcdbn::cli

@@ -4,7 +4,8 @@
 
 namespace mcdbn::cli {
 
-/// A folder beside that of this program, as share is beside bin; there it need not be.
-std::filesystem::path beside_program(const std::filesystem::path& folder);
+/// What lies beside the folder of this program, as share does beside bin. It need not be there.
+/// @return empty if nobody knows where this program lies
+std::filesystem::path beside_program(const std::filesystem::path& file);
 
 }  // namespace mcdbn::cli
