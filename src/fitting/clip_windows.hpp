@@ -12,16 +12,16 @@ struct ClipWindow {
   Eigen::Index end() const { return first + frames; }
 };
 
-/// Memory and time of a window's equations grow with its frames, so that those of a clip do.
-inline constexpr Eigen::Index kWindowFrames = 300;
-/// On either side, over several times what an error lasts: further away nothing is heard.
-inline constexpr Eigen::Index kOverlapFrames = 30;
-
-/// How a clip is cut: each window has frames of its own and some of its neighbours' on either side.
+/// How a clip is cut.
 struct WindowSizes {
-  Eigen::Index frames, overlap;
+  /// Of its own: memory and time of a window's equations grow with them, so that those of a clip
+  /// do.
+  Eigen::Index frames;
+  /// Of its neighbours' on either side, over several times what an error lasts: further away
+  /// nothing is heard.
+  Eigen::Index overlap;
 };
-inline constexpr WindowSizes kAllFrames{kWindowFrames, kOverlapFrames};
+inline constexpr WindowSizes kAllFrames{300, 30};
 /// Where there are but a few frames a second. The middle window, which all others wait for, is
 /// short; its frames still span more seconds than one of kAllFrames.
 inline constexpr WindowSizes kFewFrames{150, 10};

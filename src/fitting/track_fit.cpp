@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "base/numbers.hpp"
 #include "camera/track_rays.hpp"
@@ -72,10 +74,9 @@ class ClipFit {
   }
 
   void place_root() {
-    root_ = root_trajectory(positions_about(modalities_.root_name(), names_,
-                                            decoded(MatrixD::Zero(features_.rows(), 3))),
-                            track_, camera_, velocity_, velocity_error_m_s2_);
-    motion_.reset();
+    put_root(root_trajectory(positions_about(modalities_.root_name(), names_,
+                                             decoded(MatrixD::Zero(features_.rows(), 3))),
+                             track_, camera_, velocity_, velocity_error_m_s2_));
   }
 
   /// @param known as the constructor's; without a skeleton its proportions are unknown
@@ -142,9 +143,8 @@ class ClipFit {
       motions.push_back(motion());
     }
     features_ = features;
-    root_ = root;
     skeleton_ = skeleton;
-    motion_.reset();
+    put_root(root);
     return motions;
   }
 
@@ -166,8 +166,7 @@ class ClipFit {
     const double wanted = file_units_per_metre(skeleton_) *
                           modalities_.pose_features.root_features(features_).col(0).mean();
     const Eigen::RowVector3d shift(-root_(0, 0), wanted - root_.col(1).mean(), -root_(0, 2));
-    root_.rowwise() += shift;
-    motion_.reset();
+    put_root(root_.rowwise() + shift);
     shift_ += shift;
     camera_.translation -= camera_.camera_from_world * shift.transpose();
   }
@@ -204,7 +203,12 @@ class ClipFit {
       for (Joint& joint : skeleton_.joints) joint.offset *= scale;
     }
     if (evidence_->clip.camera) look_as(point);
-    root_ = evidence_->root(point, scale, seen_by()).rowwise() + shift_;
+    put_root(evidence_->root(point, scale, seen_by()).rowwise() + shift_);
+  }
+
+  /// After what else changes of the motion: it is decoded anew.
+  void put_root(MatrixD root) {
+    root_ = std::move(root);
     motion_.reset();
   }
 

@@ -33,9 +33,9 @@ std::optional<std::string> kernels() {
   return name();
 }
 
-/// Chooses anew, as when the library is loaded with that variable, or without it.
+/// Chooses anew, as when the library is loaded with the variable set to that.
 void choose_as_loaded(const char* cpu) {
-  if (cpu) setenv(kVariable, cpu, 1);
+  setenv(kVariable, cpu, 1);
   loaded_function<void()>("gotoblas_dynamic_quit")();
   loaded_function<void()>("gotoblas_dynamic_init")();
   unsetenv(kVariable);

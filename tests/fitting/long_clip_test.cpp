@@ -82,8 +82,8 @@ TEST_CASE("long clip: the other windows have the body of the middle one, and beg
       CAPTURE(i);
       const PosteriorPoint alone = solved(clip, from, windows[i], false);
       // Frames that no other window has.
-      const Eigen::Index at = 2 * kOverlapFrames, own = windows[i].first + at;
-      const Eigen::Index count = std::min(kWindowFrames, windows[i].frames - at) - at;
+      const Eigen::Index at = 2 * kAllFrames.overlap, own = windows[i].first + at;
+      const Eigen::Index count = std::min(kAllFrames.frames, windows[i].frames - at) - at;
       DOCTEST_CHECK((whole.shift.middleRows(own, count) - alone.shift.middleRows(at, count))
                         .cwiseAbs()
                         .maxCoeff() < 1e-9);

@@ -9,13 +9,15 @@
 #include <optional>
 #include <thread>
 
+#include "fitting/loaded_function.hpp"
+
 using namespace mcdbn;
 
 namespace {
 
 /// @return the number, or nothing where the library that has it is not loaded
 std::optional<int> number(const char* function) {
-  auto* const found = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, function));
+  auto* const found = loaded_function<int()>(function);
   return found ? std::optional(found()) : std::nullopt;
 }
 

@@ -192,7 +192,7 @@ TEST_CASE("posterior draws: the same by the same seed, others by another, each f
   CHECK(few.row(0) != few.row(1));
   CHECK(drawn(clip, {}, 3, 4).row(0) != few.row(0));
   // The second and third window have as many frames, and nothing else to tell them apart.
-  constexpr Eigen::Index kFrames = 960, kLater = kWindowFrames * kOfFrame;
+  constexpr Eigen::Index kFrames = 960, kLater = kAllFrames.frames * kOfFrame;
   const MatrixD one = drawn(clip_of(kFrames, false), {}, 1);
   CHECK(
       (one.middleCols(400 * kOfFrame, kOfFrame) - one.middleCols(400 * kOfFrame + kLater, kOfFrame))
