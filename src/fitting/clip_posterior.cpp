@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "fitting/clip_windows.hpp"
@@ -23,16 +24,25 @@ void join(PosteriorPoint& whole, Eigen::Index known, const PosteriorPoint& part,
   }
 }
 
-/// One camera does not tell a large body from a near one: the other frames start where a body of
-/// the size that a window has found is seen as theirs was.
-void follow_body(PosteriorPoint& from, const PosteriorClip& clip, const ClipWindow& window,
+/// The other frames take what a window has found of what all frames share. One camera does not tell
+/// a large body from a near one, nor a long lens from a short way: they start where that body is
+/// seen through that lens as theirs was.
+void take_shared(PosteriorPoint& from, const PosteriorClip& clip, const ClipWindow& window,
                  const PosteriorPoint& found) {
-  const auto depth = [&](const MatrixD& shift) {
-    return (clip.root.middleRows(window.first, window.frames) + shift).col(2).sum();
-  };
-  const double further =
-      depth(found.shift) / depth(from.shift.middleRows(window.first, window.frames));
-  from.shift += (further - 1) * (clip.root + from.shift);
+  if (clip.body_unknown || clip.camera) {
+    const auto depth = [&](const MatrixD& shift) {
+      return (clip.root.middleRows(window.first, window.frames) + shift).col(2).sum();
+    };
+    const double further =
+        depth(found.shift) / depth(from.shift.middleRows(window.first, window.frames));
+    const double sideways = further * std::exp(from.log_focal - found.log_focal);
+    const MatrixD root = clip.root + from.shift;
+    from.shift += root * Eigen::Vector3d(sideways - 1, sideways - 1, further - 1).asDiagonal();
+  }
+  from.log_lengths = found.log_lengths;
+  from.ground_m = found.ground_m;
+  from.lean = found.lean;
+  from.log_focal = found.log_focal;
 }
 
 /// Every so-manieth row, from the first on.
@@ -82,27 +92,26 @@ PosteriorPoint PosteriorPoint::zero(const PosteriorClip& clip) {
 }
 
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
-                           const TrackFitSettings& settings, PosteriorPoint from, double small_gain,
-                           const WindowSizes& sizes) {
+                           const TrackFitSettings& settings, PosteriorPoint from,
+                           SharedUnknowns shared, double small_gain, const WindowSizes& sizes) {
   const std::vector<ClipWindow> windows = windows_of(clip.frames(), sizes);
   const auto solved = [&](const ClipWindow& window, bool shared_too) {
     WindowProblem problem(clip, noise, settings, from, window.first, window.frames);
     problem.solve(shared_too, small_gain);
     return problem.solution();
   };
-  const std::size_t middle_one = windows.size() / 2;
-  PosteriorPoint middle = solved(windows[middle_one], true);
-  if (windows.size() == 1) return middle;
-  from.log_lengths = middle.log_lengths;
-  from.ground_m = middle.ground_m;
-  from.lean = middle.lean;
-  from.log_focal = middle.log_focal;
-  if (clip.body_unknown) follow_body(from, clip, windows[middle_one], middle);
+  if (windows.size() == 1) return solved(windows.front(), true);
   std::vector<PosteriorPoint> parts(windows.size());
-  parts[middle_one] = std::move(middle);
-  on_two_threads(windows.size(), [&](std::size_t i) {
-    if (i != middle_one) parts[i] = solved(windows[i], false);
-  });
+  std::vector<std::size_t> others(windows.size());
+  std::iota(others.begin(), others.end(), 0);
+  if (shared == SharedUnknowns::to_be_found) {
+    const std::size_t middle = windows.size() / 2;
+    parts[middle] = solved(windows[middle], true);
+    take_shared(from, clip, windows[middle], parts[middle]);
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(middle));
+  }
+  on_two_threads(others.size(),
+                 [&](std::size_t i) { parts[others[i]] = solved(windows[others[i]], false); });
   PosteriorPoint whole = from;
   whole.energy = 0;  // frames that two windows have count twice
   for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -118,7 +127,7 @@ PosteriorPoint roughly_likely(const PosteriorClip& clip, const RayNoise& noise,
   for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
     from.*rows = thinned(from.*rows, every);
   PosteriorPoint point = most_likely(thinned(clip, every), noise, settings, std::move(from),
-                                     kSmallGainOfRough, kFewFrames);
+                                     SharedUnknowns::to_be_found, kSmallGainOfRough, kFewFrames);
   for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
     point.*rows = between(point.*rows, every, clip.frames());
   return point;

@@ -72,13 +72,19 @@ struct PosteriorPoint {
 /// The gain at which a solution of all frames stops.
 inline constexpr double kSmallGainOfAll = 2e-3;
 
+/// What all frames share: body, ground and camera.
+enum class SharedUnknowns {
+  to_be_found,  ///< by the middle one of several windows, which the others then wait for
+  as_found,     ///< a clip of several windows takes them as they stand; a single window finds them
+};
+
 /// The likeliest motion given prior and track: nonlinear least squares over all frames at once, of
-/// the costs in terms/. Long clips are solved in windows that overlap, with the body of the middle
-/// one.
+/// the costs in terms/. Long clips are solved in windows that overlap.
 /// @param from where to start
 /// @param small_gain a step that lowers the energy by less than this share is the last one
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
                            const TrackFitSettings& settings, PosteriorPoint from,
+                           SharedUnknowns shared = SharedUnknowns::to_be_found,
                            double small_gain = kSmallGainOfAll,
                            const WindowSizes& sizes = kAllFrames);
 

@@ -8,11 +8,12 @@ namespace mcdbn {
 
 std::vector<ClipWindow> windows_of(Eigen::Index frames, const WindowSizes& sizes) {
   if (frames <= sizes.frames + 2 * sizes.overlap) return {{0, frames}};
+  const Eigen::Index count = (frames + sizes.frames - 1) / sizes.frames;
   std::vector<ClipWindow> windows;
-  for (Eigen::Index own = 0; own < frames; own += sizes.frames) {
-    const Eigen::Index first = std::max<Eigen::Index>(0, own - sizes.overlap);
-    const Eigen::Index last = std::min(frames, own + sizes.frames + sizes.overlap);
-    windows.push_back({first, last - first});
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index first = std::max<Eigen::Index>(0, i * frames / count - sizes.overlap);
+    const Eigen::Index end = std::min(frames, (i + 1) * frames / count + sizes.overlap);
+    windows.push_back({first, end - first});
   }
   return windows;
 }

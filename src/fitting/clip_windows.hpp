@@ -14,8 +14,8 @@ struct ClipWindow {
 
 /// How a clip is cut.
 struct WindowSizes {
-  /// Of its own: memory and time of a window's equations grow with them, so that those of a clip
-  /// do.
+  /// Of its own, at most: memory and time of a window's equations grow with them, so that those of
+  /// a clip do.
   Eigen::Index frames;
   /// Of its neighbours' on either side, over several times what an error lasts: further away
   /// nothing is heard.
@@ -26,7 +26,8 @@ inline constexpr WindowSizes kAllFrames{300, 30};
 /// short; its frames still span more seconds than one of kAllFrames.
 inline constexpr WindowSizes kFewFrames{150, 10};
 
-/// Every frame is in one window at least; neighbours share twice the overlap.
+/// Every frame is in one window at least; neighbours share twice the overlap. All have as many of
+/// their own, so that the one which tells what all share is not a short rest.
 std::vector<ClipWindow> windows_of(Eigen::Index frames, const WindowSizes& sizes = kAllFrames);
 
 /// How much of a window counts in its frame `t`, beside the windows before it: it comes in over the

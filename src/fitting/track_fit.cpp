@@ -82,7 +82,8 @@ class ClipFit {
   /// @param known as the constructor's; without a skeleton its proportions are unknown
   void meet_track(const PosePrior& prior, double track_noise_px, const KnownOfClip& known,
                   const Track2d& track, const TrackFitSettings& settings) {
-    const bool own_skeleton = known.skeleton.has_value();
+    const bool own_skeleton = known.skeleton.has_value(),
+               may_be_exact = own_skeleton && !known.detected;
     mean_ = features_;
     evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, camera_);
     PosteriorClip& clip = evidence_->clip;
@@ -90,17 +91,19 @@ class ClipFit {
     clip.root_m_s2 = fitted_root_acceleration_deviation_m_s2(prior, modalities_, settings);
     clip.body_unknown = !own_skeleton;
     clip.camera = doubt_of(known, modalities_, track, settings);
-    SeenNoise noise(track_noise_px, camera_, evidence_->usual_depth_m(),
-                    own_skeleton && !known.detected, settings);
+    SeenNoise noise(track_noise_px, camera_, evidence_->usual_depth_m(), may_be_exact, settings);
     point_ = PosteriorPoint::zero(clip);
     look_again(settings);
     rays_ = noise.rays();
     rays_.steady = false;  // a rough solution is as far off as a detector's
     take(point_ = roughly_likely(clip, rays_, settings, std::move(point_)));
+    // Of a detector's track more frames a second tell no more of what all frames share, and a rough
+    // solution's window spans more seconds.
+    const auto shared = may_be_exact ? SharedUnknowns::to_be_found : SharedUnknowns::as_found;
     for (std::size_t solution = 0; solution < settings.solutions; ++solution) {
       look_again(settings);
       rays_ = noise.rays();
-      take(point_ = most_likely(clip, rays_, settings, std::move(point_)));
+      take(point_ = most_likely(clip, rays_, settings, std::move(point_), shared));
       if (!noise.learn(evidence_->usual_residual(point_, clip.frames())) && !noise.measure()) break;
     }
     if (!rays_.exact) return;

@@ -3,15 +3,12 @@
 #include <ceres/crs_matrix.h>
 #include <ceres/loss_function.h>
 #include <ceres/manifold.h>
-#include <ceres/solver.h>
 
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
 #include <utility>
 
-#include "base/interruption.hpp"
-#include "fitting/one_thread_solver.hpp"
 #include "fitting/robust_residuals.hpp"
 #include "fitting/terms/camera_lean.hpp"
 #include "fitting/terms/ground_contact.hpp"
@@ -71,30 +68,6 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
   if (clip_.past) add_past();
 }
 
-void WindowProblem::solve(bool shared_too, double small_gain, int most_iterations) {
-  if (!shared_too)
-    for (const UnknownBlock& block : shared_blocks())
-      if (problem_.HasParameterBlock(block.unknown))
-        problem_.SetParameterBlockConstant(block.unknown);
-  minimize(small_gain, most_iterations);
-  turn_unused();
-}
-
-void WindowProblem::solve_turns(const std::vector<int>& turns, double small_gain,
-                                int most_iterations) {
-  std::vector<double*> free, unknowns, held;
-  for (Eigen::Index t = 0; t < x_.turns.rows(); ++t)
-    for (const int turn : turns) free.push_back(turn_at(t, turn));
-  std::ranges::sort(free);
-  problem_.GetParameterBlocks(&unknowns);
-  for (double* const unknown : unknowns)
-    if (!problem_.IsParameterBlockConstant(unknown) && !std::ranges::binary_search(free, unknown))
-      held.push_back(unknown);
-  for (double* const unknown : held) problem_.SetParameterBlockConstant(unknown);
-  minimize(small_gain, most_iterations);
-  for (double* const unknown : held) problem_.SetParameterBlockVariable(unknown);
-}
-
 void WindowProblem::start_from(const PosteriorPoint& from) {
   x_.turns = from.turns.middleRows(first_, x_.turns.rows());
   x_.shift = from.shift.middleRows(first_, x_.shift.rows());
@@ -108,23 +81,6 @@ double WindowProblem::energy() {
   double energy = 0;
   problem_.Evaluate({}, &energy, nullptr, nullptr, nullptr);
   return energy;
-}
-
-void WindowProblem::minimize(double small_gain, int most_iterations) {
-  check_interruption();
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-  options.max_num_iterations = most_iterations;
-  // Half as many steps as Levenberg and Marquardt's.
-  options.trust_region_strategy_type = ceres::DOGLEG;
-  options.dogleg_type = ceres::SUBSPACE_DOGLEG;
-  options.function_tolerance = small_gain;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  const OneThreadSolver one_thread;
-  ceres::Solve(options, &problem_, &summary);
-  x_.energy = summary.final_cost;
 }
 
 Eigen::SparseMatrix<double> WindowProblem::derivatives() {
@@ -382,18 +338,6 @@ void WindowProblem::add_lengths(Unknowns unknowns) {
     if (unknowns != Unknowns::seen || problem_.HasParameterBlock(&length))
       problem_.AddResidualBlock(
           new LinearTerm({1}, Eigen::VectorXd::Zero(1), settings_.proportions), nullptr, &length);
-}
-
-void WindowProblem::turn_unused() {
-  for (Eigen::Index t = 0; t < x_.turns.rows(); ++t)
-    for (int turn = 0; turn < turns_; ++turn) {
-      if (used_[static_cast<std::size_t>(turn)]) continue;
-      const int parent = clip_.parents[static_cast<std::size_t>(turn)];
-      if (parent < 0) continue;
-      const double share = prior_.share_of_parent(first_ + t, turn);
-      x_.turns.row(t).segment<3>(3 * turn) =
-          share * x_.turns.row(t).segment<3>(3 * parent) + (1 - share) * x_.lean.transpose();
-    }
 }
 
 }  // namespace mcdbn

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <ceres/ordered_groups.h>
 #include <ceres/problem.h>
 
 #include <Eigen/SparseCore>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -68,6 +70,7 @@ class WindowProblem {
            const std::vector<double*>& blocks);
   void turn_unused();
   void minimize(double small_gain, int most_iterations);
+  std::shared_ptr<ceres::ParameterBlockOrdering> frame_by_frame();
 
   const std::vector<SeenJoint>& seen(Eigen::Index t) const;
   double* turn_at(Eigen::Index t, int turn) { return x_.turns.row(t).data() + 3 * turn; }

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
+#include <cmath>
 
 #include "fitting/clip_posterior.hpp"
 #include "fitting/clip_windows.hpp"
@@ -21,7 +21,7 @@ const RayNoise kNoise{0.002, 0.004};
 
 /// Two bones beside each other that hang still from a root, seen larger than the prior takes them
 /// for: the body is larger or nearer. It walks by, further and further away.
-PosteriorClip large_body(bool body_unknown) {
+PosteriorClip large_body(bool body_unknown, bool lens_unknown) {
   PosteriorClip clip;
   clip.parents = {-1, 0};
   clip.lengths = {0, 1};
@@ -33,6 +33,11 @@ PosteriorClip large_body(bool body_unknown) {
   clip.turn_deviation_rad = MatrixD::Constant(kFrames, 2, 0.2);
   clip.frame_time_s = 1.0 / 30;
   clip.body_unknown = body_unknown;
+  if (lens_unknown) {
+    clip.camera.emplace();
+    clip.camera->log_focal = 0.2;
+    clip.camera->log_focal_deviation = 0.01;
+  }
   for (Eigen::Index t = 0; t < kFrames; ++t) {
     const Eigen::Vector3d root = clip.root.row(t).transpose();
     std::vector<SeenJoint> seen;
@@ -57,41 +62,77 @@ double depth_m(const PosteriorClip& clip, const MatrixD& shift, const ClipWindow
   return (clip.root.middleRows(window.first, window.frames) + shift).col(2).sum();
 }
 
+/// Frames that no other window has are as the window alone has them.
+void check_own_frames(const PosteriorPoint& whole, const ClipWindow& window,
+                      const PosteriorPoint& alone) {
+  CAPTURE(window.first);
+  const Eigen::Index at = 2 * kAllFrames.overlap, count = window.frames - 2 * at;
+  for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
+    DOCTEST_CHECK(
+        ((whole.*rows).middleRows(window.first + at, count) - (alone.*rows).middleRows(at, count))
+            .cwiseAbs()
+            .maxCoeff() < 1e-9);
+}
+
 }  // namespace
 
-TEST_CASE("long clip: the other windows have the body of the middle one, and begin at its depth") {
-  for (const bool body_unknown : {true, false}) {
-    CAPTURE(body_unknown);
-    const PosteriorClip clip = large_body(body_unknown);
-    const PosteriorPoint zero = PosteriorPoint::zero(clip);
-    const std::vector<ClipWindow> windows = windows_of(kFrames);
-    REQUIRE(windows.size() == 4);
-    const PosteriorPoint middle = solved(clip, zero, windows[2], true);
-    PosteriorPoint from = zero;
-    from.log_lengths = middle.log_lengths;
-    if (body_unknown) {
-      REQUIRE(middle.log_lengths.cwiseAbs().maxCoeff() > 0.05);
-      const double nearer = depth_m(clip, middle.shift, windows[2]) /
-                            depth_m(clip, MatrixD::Zero(windows[2].frames, 3), windows[2]);
-      REQUIRE(nearer < 0.9);
-      from.shift = (nearer - 1) * clip.root;  // every root on its own ray, so much nearer
+TEST_CASE("long clip: the other windows take what the middle one finds, and begin at its depth") {
+  for (const bool body_unknown : {true, false})
+    for (const bool lens_unknown : {true, false}) {
+      CAPTURE(body_unknown);
+      CAPTURE(lens_unknown);
+      const PosteriorClip clip = large_body(body_unknown, lens_unknown);
+      const PosteriorPoint zero = PosteriorPoint::zero(clip);
+      const std::vector<ClipWindow> windows = windows_of(kFrames);
+      DOCTEST_REQUIRE(windows.size() == 4);
+      const PosteriorPoint middle = solved(clip, zero, windows[2], true);
+      PosteriorPoint from = zero;
+      from.log_lengths = middle.log_lengths;
+      from.lean = middle.lean;
+      from.log_focal = middle.log_focal;
+      DOCTEST_REQUIRE((middle.log_lengths.cwiseAbs().maxCoeff() > 0.05) == body_unknown);
+      DOCTEST_REQUIRE((middle.log_focal > 0.1) == lens_unknown);
+      if (body_unknown || lens_unknown) {
+        const double nearer = depth_m(clip, middle.shift, windows[2]) /
+                              depth_m(clip, MatrixD::Zero(windows[2].frames, 3), windows[2]);
+        DOCTEST_REQUIRE(nearer < 0.95);
+        // Every root on the ray that this lens has it on, so much nearer.
+        from.shift = (nearer - 1) * clip.root;
+        from.shift.leftCols<2>() =
+            (nearer / std::exp(middle.log_focal) - 1) * clip.root.leftCols<2>();
+      }
+      const PosteriorPoint whole =
+          most_likely(clip, kNoise, {}, zero, SharedUnknowns::to_be_found, kGain);
+      DOCTEST_CHECK(whole.log_lengths == middle.log_lengths);
+      DOCTEST_CHECK(whole.log_focal == middle.log_focal);
+      DOCTEST_CHECK(whole.lean == middle.lean);
+      for (const std::size_t i : {0U, 1U, 3U})
+        check_own_frames(whole, windows[i], solved(clip, from, windows[i], false));
     }
-    const PosteriorPoint whole = most_likely(clip, kNoise, {}, zero, kGain);
-    DOCTEST_CHECK(whole.log_lengths == middle.log_lengths);
-    for (const std::size_t i : {0U, 1U, 3U}) {
-      CAPTURE(i);
-      const PosteriorPoint alone = solved(clip, from, windows[i], false);
-      // Frames that no other window has.
-      const Eigen::Index at = 2 * kAllFrames.overlap, own = windows[i].first + at;
-      const Eigen::Index count = std::min(kAllFrames.frames, windows[i].frames - at) - at;
-      DOCTEST_CHECK((whole.shift.middleRows(own, count) - alone.shift.middleRows(at, count))
-                        .cwiseAbs()
-                        .maxCoeff() < 1e-9);
-      DOCTEST_CHECK((whole.turns.middleRows(own, count) - alone.turns.middleRows(at, count))
-                        .cwiseAbs()
-                        .maxCoeff() < 1e-9);
-    }
-  }
+}
+
+TEST_CASE("long clip: what was found already stays, and every window is solved with it") {
+  const PosteriorClip clip = large_body(true, true);
+  PosteriorPoint from = PosteriorPoint::zero(clip);
+  from.log_lengths << 0.1, -0.05;
+  from.log_focal = 0.3;
+  const PosteriorPoint whole = most_likely(clip, kNoise, {}, from, SharedUnknowns::as_found, kGain);
+  DOCTEST_CHECK(whole.log_lengths == from.log_lengths);
+  DOCTEST_CHECK(whole.log_focal == from.log_focal);
+  for (const ClipWindow& window : windows_of(kFrames))
+    check_own_frames(whole, window, solved(clip, from, window, false));
+}
+
+TEST_CASE("long clip: a single window always finds what all frames share") {
+  PosteriorClip clip = large_body(true, true);
+  clip.seen.resize(300);
+  for (const auto rows : {&PosteriorClip::turn_deviation_rad, &PosteriorClip::root,
+                          &PosteriorClip::travelled, &PosteriorClip::planted})
+    (clip.*rows).conservativeResize(300, Eigen::NoChange);
+  const PosteriorPoint zero = PosteriorPoint::zero(clip);
+  const PosteriorPoint found = most_likely(clip, kNoise, {}, zero, SharedUnknowns::as_found, kGain);
+  DOCTEST_CHECK(found.log_focal == doctest::Approx(0.2).epsilon(0.1));
+  DOCTEST_CHECK(found.log_lengths.cwiseAbs().maxCoeff() > 0.05);
 }
 
 }  // namespace long_clip_test

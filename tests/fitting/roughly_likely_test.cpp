@@ -73,7 +73,8 @@ void check_between_thirds(Eigen::Index frames, std::size_t windows) {
   thin_from.ground_m = from.ground_m;
   const PosteriorPoint rough = roughly_likely(clip, kNoise, {}, from),
                        expected =
-                           most_likely(thin, kNoise, {}, thin_from, kSmallGainOfRough, kFewFrames);
+                           most_likely(thin, kNoise, {}, thin_from, SharedUnknowns::to_be_found,
+                                       kSmallGainOfRough, kFewFrames);
   DOCTEST_REQUIRE(rough.turns.rows() == frames);
   DOCTEST_CHECK(expected.turns.cwiseAbs().maxCoeff() > 0.1);
   constexpr double kClose = 1e-12;
@@ -107,7 +108,8 @@ TEST_CASE("roughly likely: a clip whose frames are as far apart as that is solve
   clip.frame_time_s = TrackFitSettings{}.roughly_s;
   const PosteriorPoint from = PosteriorPoint::zero(clip);
   const PosteriorPoint rough = roughly_likely(clip, kNoise, {}, from),
-                       full = most_likely(clip, kNoise, {}, from, kSmallGainOfRough);
+                       full = most_likely(clip, kNoise, {}, from, SharedUnknowns::to_be_found,
+                                          kSmallGainOfRough);
   CHECK(rough.turns == full.turns);
 }
 

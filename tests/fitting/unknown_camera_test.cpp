@@ -93,6 +93,31 @@ TEST_CASE("unknown camera: what was found before is where the search starts, and
   CHECK(pitch_deg() < 25);
 }
 
+TEST_CASE("unknown camera: of a long clip a detector's track is as the rough solution has it") {
+  const Scene scene(12, 3, SynthesisAction::walk, 14);  // two windows
+  KnownOfClip known;
+  TrackFitSettings rough;
+  rough.solutions = 0;
+  const auto fit = [&](const TrackFitSettings& settings) {
+    return fit_to_track(scene.pose, scene.modalities, scene.track, known, settings);
+  };
+  for (const bool detected : {true, false}) {
+    CAPTURE(detected);
+    known.detected = detected;
+    for (const bool body_known : {true, false}) {
+      CAPTURE(body_known);
+      known.skeleton.reset();
+      if (body_known) known.skeleton = scene.truth.skeleton;
+      const FittedClip roughly = fit(rough), finally = fit({});
+      // What may be exact is found anew, with the noise that it has.
+      const bool as_found = detected || !body_known;
+      CHECK((*roughly.view.pitch_deg == *finally.view.pitch_deg) == as_found);
+      CHECK((roughly.motion.skeleton.joints[1].offset == finally.motion.skeleton.joints[1].offset));
+      CHECK(roughly.motion.channels != finally.motion.channels);
+    }
+  }
+}
+
 TEST_CASE("unknown camera: the focal length gives way to what the track shows") {
   // Seen by a longer lens than the 60 degrees across that are assumed: walking away, people shrink
   // less.
