@@ -34,8 +34,8 @@ void WindowProblem::solve_turns(const std::vector<int>& turns, double small_gain
   for (double* const unknown : held) problem_.SetParameterBlockVariable(unknown);
 }
 
-/// Frames have unknowns in common with their neighbours alone: so the equations' factor stays
-/// narrow.
+/// Frames have unknowns in common with their neighbours alone, but for what all share, which comes
+/// last: so the equations' factor stays narrow.
 std::shared_ptr<ceres::ParameterBlockOrdering> WindowProblem::frame_by_frame() {
   auto order = std::make_shared<ceres::ParameterBlockOrdering>();
   std::vector<double*> unknowns;
