@@ -231,7 +231,7 @@ TEST_CASE("posterior: a long clip is solved in windows, and nothing jumps betwee
   const Motion fitted = scene.fit(scene.track, settings);
   CHECK(error_cm(scene, fitted) < 0.4 * error_cm(scene, scene.unfitted()));
   const MatrixD off = joint_positions(fitted) - joint_positions(scene.truth);
-  // Frames 270 to 330 are in two windows; 120 frames before everything is the same, in one.
+  // Frames 180 to 240 are in two windows; 120 frames later everything is the same, in one.
   constexpr Eigen::Index kAgain = 120, kFirst = 250, kCount = 95;
   const MatrixD change = off.middleRows(kFirst, kCount) - off.middleRows(kFirst - kAgain, kCount);
   CHECK(change.cwiseAbs().maxCoeff() < 0.2);  // cm
