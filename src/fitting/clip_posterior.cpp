@@ -27,8 +27,8 @@ void join(PosteriorPoint& whole, Eigen::Index known, const PosteriorPoint& part,
 /// The other frames take what a window has found of what all frames share. One camera does not tell
 /// a large body from a near one, nor a long lens from a short way: they start where that body is
 /// seen through that lens as theirs was.
-void take_shared(PosteriorPoint& from, const PosteriorClip& clip, const ClipWindow& window,
-                 const PosteriorPoint& found) {
+void start_as_seen(PosteriorPoint& from, const PosteriorClip& clip, const ClipWindow& window,
+                   const PosteriorPoint& found) {
   if (clip.body_unknown || clip.camera) {
     const auto depth = [&](const MatrixD& shift) {
       return (clip.root.middleRows(window.first, window.frames) + shift).col(2).sum();
@@ -39,10 +39,7 @@ void take_shared(PosteriorPoint& from, const PosteriorClip& clip, const ClipWind
     const MatrixD root = clip.root + from.shift;
     from.shift += root * Eigen::Vector3d(sideways - 1, sideways - 1, further - 1).asDiagonal();
   }
-  from.log_lengths = found.log_lengths;
-  from.ground_m = found.ground_m;
-  from.lean = found.lean;
-  from.log_focal = found.log_focal;
+  from.take_shared(found);
 }
 
 /// Every so-manieth row, from the first on.
@@ -56,6 +53,7 @@ PosteriorClip thinned(const PosteriorClip& clip, Eigen::Index every) {
   for (const auto rows : {&PosteriorClip::turn_deviation_rad, &PosteriorClip::root,
                           &PosteriorClip::travelled, &PosteriorClip::planted})
     coarse.*rows = thinned(clip.*rows, every);
+  if (clip.mean_lean.rows() > 0) coarse.mean_lean = thinned(clip.mean_lean, every);
   coarse.seen.clear();
   for (Eigen::Index t = 0; t < clip.frames(); t += every) {
     coarse.seen.push_back(clip.seen[static_cast<std::size_t>(t)]);
@@ -91,6 +89,13 @@ PosteriorPoint PosteriorPoint::zero(const PosteriorClip& clip) {
           Eigen::VectorXd::Zero(lengths), Eigen::VectorXd::Zero(grounds)};
 }
 
+void PosteriorPoint::take_shared(const PosteriorPoint& other) {
+  log_lengths = other.log_lengths;
+  ground_m = other.ground_m;
+  lean = other.lean;
+  log_focal = other.log_focal;
+}
+
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
                            const TrackFitSettings& settings, PosteriorPoint from,
                            SharedUnknowns shared, double small_gain, const WindowSizes& sizes) {
@@ -107,7 +112,7 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
   if (shared == SharedUnknowns::to_be_found) {
     const std::size_t middle = windows.size() / 2;
     parts[middle] = solved(windows[middle], true);
-    take_shared(from, clip, windows[middle], parts[middle]);
+    start_as_seen(from, clip, windows[middle], parts[middle]);
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(middle));
   }
   on_two_threads(others.size(),

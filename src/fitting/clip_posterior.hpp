@@ -67,6 +67,8 @@ struct PosteriorPoint {
   double energy = 0;              ///< −log of how likely the solution is, but for a constant
 
   static PosteriorPoint zero(const PosteriorClip& clip);
+  /// Body, ground and camera become the other's.
+  void take_shared(const PosteriorPoint& other);
 };
 
 /// The gain at which a solution of all frames stops.

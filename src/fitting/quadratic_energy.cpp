@@ -40,11 +40,16 @@ void QuadraticEnergy::add(const ceres::Problem& problem, ceres::ResidualBlockId 
   double rho[3] = {0, 1, 0};
   if (loss) loss->Evaluate(residual.squaredNorm(), rho);
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const Eigen::Index row = columns_.at(unknowns[i]);
-    gradient_.segment(row, derivatives[i].cols()) += rho[1] * derivatives[i].transpose() * residual;
-    for (std::size_t j = 0; j < unknowns.size(); ++j)
-      hessian_.block(row, columns_.at(unknowns[j]), derivatives[i].cols(), derivatives[j].cols()) +=
+    const auto row = columns_.find(unknowns[i]);
+    if (row == columns_.end()) continue;
+    const Eigen::Index size = derivatives[i].cols();
+    gradient_.segment(row->second, size) += rho[1] * derivatives[i].transpose() * residual;
+    for (std::size_t j = 0; j < unknowns.size(); ++j) {
+      const auto column = columns_.find(unknowns[j]);
+      if (column == columns_.end()) continue;
+      hessian_.block(row->second, column->second, size, derivatives[j].cols()) +=
           rho[1] * derivatives[i].transpose() * derivatives[j];
+    }
   }
 }
 

@@ -22,7 +22,7 @@ class QuadraticEnergy {
  public:
   explicit QuadraticEnergy(const std::vector<UnknownBlock>& unknowns);
 
-  /// @param term whose unknowns are all among them
+  /// @param term whose other unknowns stay as they are
   void add(const ceres::Problem& problem, ceres::ResidualBlockId term);
 
   /// What is left when the first so many numbers take their likeliest value, whatever the others

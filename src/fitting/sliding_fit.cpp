@@ -12,6 +12,7 @@
 #include "fitting/upright.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
+#include "motion/interpolated_pose.hpp"
 
 namespace mcdbn {
 namespace {
@@ -23,6 +24,17 @@ constexpr int kIterations = 2;
 constexpr double kSmallGain = 1e-3;
 /// Solutions of so long a time tell what lasts of the track's noise.
 constexpr double kLearned_s = 0.2;
+/// So much of the past is looked at again: the middle window of fit_to_track, which finds body and
+/// camera, is as long. With 8 s the answer is a millimetre further from that of the whole clip.
+constexpr double kLookedAt_s = 15;
+/// It is, so often; while the clip is short, after half as many frames again.
+constexpr double kLookEvery_s = 0.5;
+constexpr long long kLookAfter = 4;
+/// What is found is taken when it is looked again, so that frames need not wait for it. So short a
+/// past they do wait for: it takes no longer than a frame or two, and is worth two millimetres.
+constexpr double kWaitedFor_s = 3;
+/// Settled frames that tell of those that are held, once the body is another.
+constexpr Eigen::Index kBeforeHeld = 8;
 
 /// The last rows are others; there may be more of them than before.
 template <typename Rows>
@@ -40,9 +52,8 @@ void go_on(MatrixD& rows, Eigen::Index count, Eigen::Index columns) {
   for (Eigen::Index t = before; t < count; ++t) rows.row(t) = last;
 }
 
-template <typename Rows>
-void drop_rows(Rows& rows, Eigen::Index count) {
-  if (rows.rows() > 0) rows = Rows(rows.bottomRows(rows.rows() - count));
+void drop_rows(MatrixD& rows, Eigen::Index count) {
+  rows = rows.bottomRows(std::max<Eigen::Index>(0, rows.rows() - count)).eval();
 }
 
 }  // namespace
@@ -71,21 +82,22 @@ Motion SlidingFit::decoded(const MatrixD& features, const Skeleton& skeleton, co
 /// Held frames keep the prior that they settled with.
 void SlidingFit::take_prior(const PosePrior& prior) {
   const Eigen::Index open = prior.mean.rows();
-  replace_behind(prior_.mean, held_, prior.mean);
-  if (prior.has_deviation()) replace_behind(prior_.deviation, held_, prior.deviation);
-  replace_behind(mean_, held_, modalities_.pose_in_camera(prior.mean, camera_.camera_from_world));
-  replace_behind(mean_lean_, held_, MatrixD(point_.lean.transpose().replicate(open, 1)));
+  replace_behind(rows_.prior.mean, held_, prior.mean);
+  if (prior.has_deviation()) replace_behind(rows_.prior.deviation, held_, prior.deviation);
+  replace_behind(rows_.mean, held_,
+                 modalities_.pose_in_camera(prior.mean, camera_.camera_from_world));
+  replace_behind(rows_.mean_lean, held_, MatrixD(point_.lean.transpose().replicate(open, 1)));
 }
 
 /// Where the track shows the root of the body as the prior turns it.
-MatrixD SlidingFit::placed_root(const Track2d& track, const MatrixD& velocity_m_s,
-                                double velocity_error_m_s2) const {
+MatrixD SlidingFit::placed_root(const MatrixD& velocity_m_s) const {
   const MatrixD relative =
       positions_about(modalities_.root_name(), names_,
-                      decoded(mean_, body_, camera_, MatrixD::Zero(mean_.rows(), 3)));
+                      decoded(rows_.mean, body_, camera_, MatrixD::Zero(rows_.frames(), 3)));
   const MatrixD root =
-      root_trajectory(relative, track_rays(names_, track, camera_), camera_,
-                      units_per_m_ * velocity_m_s * camera_.camera_from_world, velocity_error_m_s2);
+      root_trajectory(relative, track_rays(names_, rows_.track, camera_), camera_,
+                      units_per_m_ * velocity_m_s * camera_.camera_from_world,
+                      fitted_root_acceleration_deviation_m_s2(rows_.prior, modalities_, settings_));
   return ((root * camera_.camera_from_world.transpose()).rowwise() +
           camera_.translation.transpose()) /
          units_per_m_;
@@ -93,67 +105,146 @@ MatrixD SlidingFit::placed_root(const Track2d& track, const MatrixD& velocity_m_
 
 /// A new frame goes on as the prior says, from where the solution before ended. At first, and of
 /// somebody who was out of sight, the track shows where.
-void SlidingFit::place_root(const Track2d& track, const MatrixD& velocity_m_s,
-                            double velocity_error_m_s2) {
-  const Eigen::Index before = root_m_.rows();
+void SlidingFit::place_root() {
+  const Track2d& track = rows_.track;
+  const MatrixD velocity_m_s = modalities_.pose_features.root_features(rows_.mean).rightCols(3);
+  const Eigen::Index before = rows_.root_m.rows();
   const bool somebody = before > 0 && (track.confidence.topRows(before).array() > 0).any();
   if (!somebody && (before == 0 || (track.confidence.array() > 0).any())) {
     try {
-      root_m_ = placed_root(track, velocity_m_s, velocity_error_m_s2);
+      rows_.root_m = placed_root(velocity_m_s);
     } catch (const InputError&) {  // not enough of a body
       if (before == 0) throw;
     }
   }
-  go_on(root_m_, mean_.rows(), 3);
-  for (Eigen::Index t = std::max<Eigen::Index>(1, before); t < mean_.rows() && somebody; ++t)
-    root_m_.row(t) = root_m_.row(t - 1) + velocity_m_s.row(t) / modalities_.fps;
+  go_on(rows_.root_m, rows_.frames(), 3);
+  for (Eigen::Index t = std::max<Eigen::Index>(1, before); t < rows_.frames() && somebody; ++t)
+    rows_.root_m.row(t) = rows_.root_m.row(t - 1) + velocity_m_s.row(t) / modalities_.fps;
+}
+
+/// As the prior's mean has them, where their roots were found.
+Motion SlidingFit::unturned(const ClipRows& rows) const {
+  const MatrixD root = ((rows.root_m * units_per_m_).rowwise() - assumed_.translation.transpose()) *
+                       assumed_.camera_from_world;
+  return decoded(rows.mean, skeleton_, assumed_, root);
+}
+
+/// @param answer of the rows, unturned
+ClipEvidence SlidingFit::evidence_of(const ClipRows& rows, const Motion& answer) const {
+  const PoseFeatures& features = modalities_.pose_features;
+  const MatrixD velocity_m_s = features.root_features(rows.mean).rightCols(3);
+  MatrixD travelled = MatrixD::Zero(rows.frames(), 3);
+  for (Eigen::Index t = 1; t < rows.frames(); ++t)
+    travelled.row(t) = travelled.row(t - 1) + velocity_m_s.row(t) / modalities_.fps;
+  ClipEvidence evidence(features, answer, units_per_m_ * travelled * assumed_.camera_from_world,
+                        track_rays(names_, rows.track, assumed_), assumed_);
+  PosteriorClip& clip = evidence.clip;
+  clip.turn_deviation_rad = fitted_turn_deviations_rad(rows.prior, modalities_, settings_);
+  clip.root_m_s2 = fitted_root_acceleration_deviation_m_s2(rows.prior, modalities_, settings_);
+  clip.body_unknown = body_unknown_;
+  clip.mean_lean = rows.mean_lean;
+  clip.camera = doubt_;
+  return evidence;
+}
+
+/// @param evidence of a camera that nobody knows, else it stays as it is
+void SlidingFit::expect_balance(ClipEvidence& evidence) const {
+  if (evidence.clip.camera)
+    evidence.clip.camera->balanced =
+        evidence.balanced(upright(), settings_.balance_deg * kRadiansPerDegree);
 }
 
 void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double track_noise_px) {
   take_prior(prior);
-  const PoseFeatures& features = modalities_.pose_features;
-  const MatrixD velocity_m_s = features.root_features(mean_).rightCols(3);
-  const double root_m_s2 = fitted_root_acceleration_deviation_m_s2(prior_, modalities_, settings_);
-  place_root(track, velocity_m_s, root_m_s2);
-
-  MatrixD travelled = MatrixD::Zero(mean_.rows(), 3);
-  for (Eigen::Index t = 1; t < travelled.rows(); ++t)
-    travelled.row(t) = travelled.row(t - 1) + velocity_m_s.row(t) / modalities_.fps;
-  const MatrixD root = ((root_m_ * units_per_m_).rowwise() - assumed_.translation.transpose()) *
-                       assumed_.camera_from_world;
+  rows_.track = track;
+  place_root();
   problem_.reset();
-  evidence_ = std::make_unique<ClipEvidence>(features, decoded(mean_, skeleton_, assumed_, root),
-                                             units_per_m_ * travelled * assumed_.camera_from_world,
-                                             track_rays(names_, track, assumed_), assumed_);
+  evidence_ = std::make_unique<ClipEvidence>(evidence_of(rows_, unturned(rows_)));
   PosteriorClip& clip = evidence_->clip;
   if (point_.log_lengths.size() == 0) point_ = PosteriorPoint::zero(clip);
   go_on(point_.turns, clip.frames(), point_.turns.cols());
   point_.shift = MatrixD::Zero(clip.frames(), 3);
   take(point_);
   evidence_->find_planted(motion_);
+  expect_balance(*evidence_);
   // From where the solution before ended it would not leave a valley that few frames had led into.
   point_.turns.setZero();
   if (!past_) point_.ground_m = evidence_->ground(point_);
-  clip.turn_deviation_rad = fitted_turn_deviations_rad(prior_, modalities_, settings_);
-  clip.root_m_s2 = root_m_s2;
-  clip.body_unknown = body_unknown_;
-  clip.mean_lean = mean_lean_;
   clip.past = past_;
-  clip.camera = doubt_;
-  if (clip.camera)
-    clip.camera->balanced =
-        evidence_->balanced(upright(), settings_.balance_deg * kRadiansPerDegree);
   SeenNoise noise(track_noise_px, assumed_, evidence_->usual_depth_m(),
                   !body_unknown_ && !detected_, settings_, lasting_noise_);
+  rays_ = noise.rays();
 
-  problem_ = std::make_unique<WindowProblem>(clip, noise.rays(), settings_, point_, 0,
-                                             clip.frames(), Unknowns::tracked);
-  problem_->solve(true, kSmallGain, past_ ? kIterations : WindowProblem::kMostIterations);
+  problem_ = std::make_unique<WindowProblem>(clip, rays_, settings_, point_, 0, clip.frames(),
+                                             Unknowns::tracked);
+  problem_->solve(!past_, kSmallGain, past_ ? kIterations : WindowProblem::kMostIterations);
   point_ = problem_->solution();
-  root_m_ = clip.root + point_.shift;
+  rows_.root_m = clip.root + point_.shift;
   learn(noise);
   take(point_);
+  fade();
   shown_ = project_motion(motion_, camera_);
+}
+
+/// The rows as a whole clip's fit begins with them.
+ClipEvidence SlidingFit::fresh(const ClipRows& rows) const {
+  const Motion answer = unturned(rows);
+  ClipEvidence evidence = evidence_of(rows, answer);
+  evidence.find_planted(answer);
+  expect_balance(evidence);
+  return evidence;
+}
+
+/// @return the prior's mean, with what all frames share as it is known by now
+PosteriorPoint SlidingFit::start_of(const ClipEvidence& evidence) const {
+  PosteriorPoint point = PosteriorPoint::zero(evidence.clip);
+  point.take_shared(point_);
+  return point;
+}
+
+/// Finds body, ground and camera in the last seconds, by a whole clip's rough solution, while other
+/// frames come.
+void SlidingFit::look_back() {
+  ClipRows rows = past_rows_;
+  rows.append(rows_);
+  auto evidence = std::make_shared<const ClipEvidence>(fresh(rows));
+  PosteriorPoint point = start_of(*evidence);
+  point.ground_m = evidence->ground(point);
+  RayNoise rays = rays_;
+  rays.steady = false;
+  look_ = std::async(std::launch::async, [=, settings = settings_] {
+    return roughly_likely(evidence->clip, rays, settings, point);
+  });
+}
+
+/// Waits for what was looked for. The held frames go on from what those before them tell of such a
+/// body.
+void SlidingFit::take_look() {
+  if (!look_.valid()) return;
+  point_.take_shared(look_.get());
+  const Eigen::Index before = std::min(kBeforeHeld, past_rows_.frames());
+  ClipRows rows = past_rows_;
+  rows.drop_first(rows.frames() - before);
+  rows.append(rows_);
+  const ClipEvidence evidence = fresh(rows);
+  WindowProblem window(evidence.clip, rays_, settings_, start_of(evidence), 0, rows.frames(),
+                       Unknowns::tracked);
+  window.solve(false, kSmallGain);
+  past_ = window.without_first(before);
+  fading_ = motion_.channels.bottomRows(motion_.frames() - held_);
+  fading_frames_ = fading_.rows();
+}
+
+/// Frames that were open when a look was taken turn from what they were then to what they are now,
+/// the sooner they settle the less, so that what settles does not jump.
+void SlidingFit::fade() {
+  const Eigen::Index rest = fading_.rows();
+  for (Eigen::Index i = 0; i < rest; ++i) {
+    const double part = static_cast<double>(fading_frames_ - rest + i + 1) /
+                        static_cast<double>(fading_frames_ + 1);
+    auto now = motion_.channels.row(held_ + i);
+    now = interpolated_pose(motion_.skeleton, fading_.row(i), now, part, now);
+  }
 }
 
 /// As often as in a whole clip, each time from other solutions. Of the held frames: open ones, with
@@ -178,7 +269,7 @@ void SlidingFit::take(const PosteriorPoint& point) {
   if (!camera_known_)
     look_as(point,
             scale * units_per_m_ * (evidence_->clip.root.row(0) + point.shift.row(0)).transpose());
-  motion_ = decoded(evidence_->turned(mean_, point), body_, camera_,
+  motion_ = decoded(evidence_->turned(rows_.mean, point), body_, camera_,
                     evidence_->root(point, scale, camera_));
 }
 
@@ -189,7 +280,8 @@ void SlidingFit::look_as(const PosteriorPoint& point, const Eigen::Vector3d& fir
   camera_.fy_px = std::exp(point.log_focal) * assumed_.fy_px;
   if (settled_ == 0) {
     first_root_ = first_root;
-    first_height_ = units_per_m_ * modalities_.pose_features.root_features(mean_).col(0).mean();
+    first_height_ =
+        units_per_m_ * modalities_.pose_features.root_features(rows_.mean).col(0).mean();
   }
   camera_.translation = first_root_ - first_height_ * camera_.camera_from_world.col(1);
 }
@@ -204,15 +296,24 @@ Eigen::Index SlidingFit::settle(Eigen::Index frames) {
   upright_sum_ += static_cast<double>(frames) * upright_in_camera(motion_, camera_);
   settled_ += frames;
   held_ += frames;
+  drop_rows(fading_, frames);
   const Eigen::Index dropped = std::max<Eigen::Index>(0, held_ - kHeld);
   if (dropped == 0) return 0;
   past_ = problem_->without_first(dropped);
   held_ -= dropped;
-  for (MatrixD* rows : {&mean_, &mean_lean_, &root_m_, &point_.turns, &motion_.channels,
-                        &shown_.x_px, &shown_.y_px, &shown_.confidence})
+  past_rows_.append(rows_.first(dropped));
+  rows_.drop_first(dropped);
+  for (MatrixD* rows :
+       {&point_.turns, &motion_.channels, &shown_.x_px, &shown_.y_px, &shown_.confidence})
     drop_rows(*rows, dropped);
-  drop_rows(prior_.mean, dropped);
-  drop_rows(prior_.deviation, dropped);
+  if (settled_ < next_look_) return dropped;
+  const Eigen::Index kept = std::lround(kLookedAt_s * modalities_.fps);
+  past_rows_.drop_first(std::max<Eigen::Index>(0, past_rows_.frames() - kept));
+  take_look();
+  look_back();
+  if (static_cast<double>(past_rows_.frames()) <= kWaitedFor_s * modalities_.fps) take_look();
+  const long long most = std::lround(kLookEvery_s * modalities_.fps);
+  next_look_ = settled_ + std::clamp(settled_ / 2, kLookAfter, std::max(kLookAfter, most));
   return dropped;
 }
 

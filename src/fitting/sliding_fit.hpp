@@ -1,11 +1,13 @@
 #pragma once
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "fitting/clip_evidence.hpp"
+#include "fitting/clip_rows.hpp"
 #include "fitting/seen_noise.hpp"
 #include "fitting/window_problem.hpp"
 #include "mcdbn/fitting/track_fit.hpp"
@@ -15,8 +17,10 @@ namespace mcdbn {
 /// The fit of a clip that is still growing: fit_to_track's problem for its last frames, solved anew
 /// with every frame, from the prior's mean. Its newest frames are open; of those
 /// before, which have settled, the last are held: they are solved, too, but nobody asks for them
-/// again. What still earlier frames tell of these, of the body, the ground and the camera is kept
-/// as a normal distribution (MarginalPrior).
+/// again. What still earlier frames tell of these is kept as a normal distribution (MarginalPrior).
+/// Body, ground and camera are found by looking back: the last seconds are solved again as
+/// fit_to_track first solves a clip, beside the frames that come, on a thread of its own. Frame
+/// numbers alone say when what it found is taken.
 class SlidingFit {
  public:
   /// Settled frames that the problem holds at most. They are at least those that a dropped frame
@@ -53,11 +57,18 @@ class SlidingFit {
   Motion decoded(const MatrixD& features, const Skeleton& skeleton, const Camera& camera,
                  const MatrixD& root) const;
   void take_prior(const PosePrior& prior);
-  void place_root(const Track2d& track, const MatrixD& velocity_m_s, double velocity_error_m_s2);
-  MatrixD placed_root(const Track2d& track, const MatrixD& velocity_m_s,
-                      double velocity_error_m_s2) const;
+  Motion unturned(const ClipRows& rows) const;
+  void expect_balance(ClipEvidence& evidence) const;
+  ClipEvidence evidence_of(const ClipRows& rows, const Motion& answer) const;
+  void place_root();
+  MatrixD placed_root(const MatrixD& velocity_m_s) const;
   void learn(SeenNoise& noise);
   void take(const PosteriorPoint& point);
+  ClipEvidence fresh(const ClipRows& rows) const;
+  PosteriorPoint start_of(const ClipEvidence& evidence) const;
+  void look_back();
+  void take_look();
+  void fade();
   void look_as(const PosteriorPoint& point, const Eigen::Vector3d& first_root);
   Eigen::Vector3d upright() const;
 
@@ -74,14 +85,18 @@ class SlidingFit {
   std::vector<double> residuals_;  ///< what solutions since left
   // Of the frames of the last solution, held and open:
   Eigen::Index held_ = 0;
-  PosePrior prior_;
-  MatrixD mean_;       ///< the prior's, along the camera's axes
-  MatrixD mean_lean_;  ///< [frames x 3] how the camera leaned that it was seen by
-  MatrixD root_m_;     ///< [frames x 3] camera axes, metres of a 1.7 m body
+  ClipRows rows_;
+  RayNoise rays_;
   PosteriorPoint point_;
   std::unique_ptr<ClipEvidence> evidence_;
   std::unique_ptr<WindowProblem> problem_;
-  std::optional<MarginalPrior> past_;  ///< by frames before
+  // Of frames before:
+  std::optional<MarginalPrior> past_;
+  ClipRows past_rows_;                ///< of the last seconds
+  long long next_look_ = 0;           ///< when so many frames have settled
+  std::future<PosteriorPoint> look_;  ///< what is asked of it is what all frames share
+  MatrixD fading_;  ///< channels of frames that were open when a look was taken, as they were
+  Eigen::Index fading_frames_ = 0;  ///< as many as they were
   // Of all frames that have settled, along the camera's axes, file units:
   Eigen::Vector3d upright_sum_{0, 0, 0};
   long long settled_ = 0;

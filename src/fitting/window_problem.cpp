@@ -71,10 +71,7 @@ WindowProblem::WindowProblem(const PosteriorClip& clip, const RayNoise& noise,
 void WindowProblem::start_from(const PosteriorPoint& from) {
   x_.turns = from.turns.middleRows(first_, x_.turns.rows());
   x_.shift = from.shift.middleRows(first_, x_.shift.rows());
-  x_.log_lengths = from.log_lengths;
-  x_.ground_m = from.ground_m;
-  x_.lean = from.lean;
-  x_.log_focal = from.log_focal;
+  x_.take_shared(from);
 }
 
 double WindowProblem::energy() {
@@ -307,9 +304,7 @@ std::vector<UnknownBlock> WindowProblem::blocks_of_frames(Eigen::Index first, Ei
 void WindowProblem::add_past() {
   std::vector<double*> unknowns;
   std::vector<int> sizes;
-  std::vector<UnknownBlock> blocks = blocks_of_frames(0, MarginalPrior::kReach);
-  append(blocks, shared_blocks());
-  for (const UnknownBlock& block : blocks) {
+  for (const UnknownBlock& block : blocks_of_frames(0, MarginalPrior::kReach)) {
     unknowns.push_back(block.unknown);
     sizes.push_back(block.size);
   }
@@ -321,9 +316,7 @@ void WindowProblem::add_past() {
 }
 
 MarginalPrior WindowProblem::without_first(Eigen::Index frames) {
-  std::vector<UnknownBlock> blocks = blocks_of_frames(0, frames + MarginalPrior::kReach);
-  append(blocks, shared_blocks());
-  QuadraticEnergy energy(blocks);
+  QuadraticEnergy energy(blocks_of_frames(0, frames + MarginalPrior::kReach));
   for (const auto& [term, first] : terms_)
     if (first < frames) energy.add(problem_, term);
   const Eigen::Index of_frame = numbers_of_frame();

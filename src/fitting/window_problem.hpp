@@ -50,7 +50,8 @@ class WindowProblem {
   Eigen::SparseMatrix<double> derivatives();
 
   /// What the first so many frames, and those before them, tell of those behind, near the point
-  /// where the problem is. It has to be one of tracked or all unknowns, and of kReach frames more.
+  /// where the problem is, body, ground and camera as they are there. It has to be one of tracked
+  /// or all unknowns, and of kReach frames more.
   MarginalPrior without_first(Eigen::Index frames);
 
   /// Of these frames. What moves no seen joint turns as its parent makes likely.

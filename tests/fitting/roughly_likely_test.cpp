@@ -103,6 +103,22 @@ TEST_CASE("roughly likely: a long clip's windows have few frames") {
   check_between_thirds(kFrames, 2);
 }
 
+TEST_CASE("roughly likely: how the camera leaned is that of every third frame") {
+  PosteriorClip clip = swinging(44);
+  clip.camera = CameraDoubt{};
+  clip.mean_lean = MatrixD::Zero(44, 3);
+  for (Eigen::Index t = 0; t < 44; ++t) clip.mean_lean(t, 0) = 0.01 * static_cast<double>(t);
+  PosteriorClip thin = every_third(clip);
+  for (Eigen::Index k = 0; k < thin.frames(); ++k)
+    thin.mean_lean.row(k) = clip.mean_lean.row(kEvery * k);
+  const PosteriorPoint rough = roughly_likely(clip, kNoise, {}, PosteriorPoint::zero(clip)),
+                       expected = most_likely(thin, kNoise, {}, PosteriorPoint::zero(thin),
+                                              SharedUnknowns::to_be_found, kSmallGainOfRough);
+  CHECK(expected.lean.norm() > 0.01);
+  CHECK((rough.lean - expected.lean).norm() < 1e-12);
+  CHECK((rough.turns.row(0) - expected.turns.row(0)).norm() < 1e-12);
+}
+
 TEST_CASE("roughly likely: a clip whose frames are as far apart as that is solved as it is") {
   PosteriorClip clip = swinging(10);
   clip.frame_time_s = TrackFitSettings{}.roughly_s;
