@@ -306,7 +306,8 @@ Eigen::Index SlidingFit::settle(Eigen::Index frames) {
   for (MatrixD* rows :
        {&point_.turns, &motion_.channels, &shown_.x_px, &shown_.y_px, &shown_.confidence})
     drop_rows(*rows, dropped);
-  if (settled_ < next_look_) return dropped;
+  const bool ended = motion_.frames() == held_;
+  if (ended || settled_ < next_look_) return dropped;
   const Eigen::Index kept = std::lround(kLookedAt_s * modalities_.fps);
   past_rows_.drop_first(std::max<Eigen::Index>(0, past_rows_.frames() - kept));
   take_look();
