@@ -28,13 +28,15 @@ constexpr double kUsualTemperature = 2.0;
 struct GenerateOptions {
   std::filesystem::path model, output;
   std::vector<std::filesystem::path> seed_clips;
+  double seed_every_s = 0;
   GenerationOptions generation{.temperature = kUsualTemperature};
 };
 
 std::vector<SeedClip> load_seeds(const GenerateOptions& options, double fps) {
   std::vector<SeedClip> seeds;
   for (const std::filesystem::path& file : options.seed_clips)
-    seeds.push_back({file.string(), load_clip_with_notices(file, {.fps = fps})});
+    seeds.push_back(
+        {file.string(), load_clip_with_notices(file, {.fps = fps}), options.seed_every_s});
   return seeds;
 }
 
@@ -76,7 +78,8 @@ void run_generate(const CommandContext& context, const GenerateOptions& options)
 }  // namespace
 
 void add_generate_command(CLI::App& app, CommandContext& context) {
-  constexpr double kMostFrames = 1e6, kMostSamples = 1000, kHottest = 10;
+  constexpr double kMostFrames = 1e6, kMostSamples = 1000, kHottest = 10, kLeastSeconds = 0.1,
+                   kMostSeconds = 1e6;
   auto options = std::make_shared<GenerateOptions>();
   GenerationOptions& generation = options->generation;
   CLI::App* command = app.add_subcommand(
@@ -89,6 +92,12 @@ void add_generate_command(CLI::App& app, CommandContext& context) {
           "one after another")
       ->required()
       ->type_name("FILE");
+  command
+      ->add_option("--seed-every", options->seed_every_s,
+                   "Go on from moments all over a clip, so far apart; from its end alone where "
+                   "nothing is said")
+      ->check(in_range(within(kLeastSeconds, kMostSeconds)))
+      ->type_name("SECONDS");
   mark_output(
       command->add_option("-o,--output", options->output, "BVH file to write: the new frames"),
       context)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -61,24 +62,44 @@ PreparedSeed prepared(const Model& model, const Motion& seed) {
   return own;
 }
 
+/// Where the samples go on from.
+struct Moment {
+  std::size_t clip;
+  Eigen::Index frames;  ///< of the clip, up to it
+};
+
+/// Of one clip, in order; the last is its end.
+std::vector<Moment> moments_of(std::size_t clip, const Motion& seed, double every_s,
+                               Eigen::Index least_frames) {
+  std::vector<Moment> moments{{clip, seed.frames()}};
+  if (every_s > 0) {
+    const double step = std::max(1.0, every_s * seed.fps());
+    for (double frames = seed.frames() - step; std::lround(frames) >= least_frames; frames -= step)
+      moments.push_back({clip, std::lround(frames)});
+  }
+  std::ranges::reverse(moments);
+  return moments;
+}
+
 /// What the samples go on from, one after another.
-struct SeedEnds {
-  Eigen::Index frames;
-  std::vector<MatrixF> features = {};  ///< the last frames
-  std::vector<double> speed = {};      ///< mean_speed of the whole seed
+struct Starts {
+  Eigen::Index frames;  ///< that the network looks at
+  std::vector<Moment> moments = {};
+  std::vector<MatrixF> features = {};  ///< the last frames before each moment, for each sample
+  std::vector<double> speed = {};      ///< mean_speed of the whole clip, for each sample
 
   /// @param directions camera_from_world; the samples take them in turn
-  void add(const Modalities& modalities, const Motion& seed,
+  void add(const Modalities& modalities, const Motion& seed, const std::vector<Moment>& of_seed,
            const std::vector<Eigen::Matrix3d>& directions, std::size_t samples) {
-    const std::size_t first = features.size();
-    for (std::size_t i = 0; i < samples; ++i) {
-      if (i < directions.size()) {
-        const MatrixF seen = modalities.encode_pose(seed, directions[i]);
-        features.emplace_back(seen.bottomRows(frames));
-        speed.push_back(mean_speed(seen));
-      } else {
-        features.push_back(features[first + i % directions.size()]);
-        speed.push_back(speed[first + i % directions.size()]);
+    std::vector<MatrixF> seen;
+    for (std::size_t i = 0; i < std::min(samples, directions.size()); ++i)
+      seen.push_back(modalities.encode_pose(seed, directions[i]));
+    for (const Moment& moment : of_seed) {
+      moments.push_back(moment);
+      for (std::size_t i = 0; i < samples; ++i) {
+        const MatrixF& pose = seen[i % seen.size()];
+        features.emplace_back(pose.middleRows(moment.frames - frames, frames));
+        speed.push_back(mean_speed(pose));
       }
     }
   }
@@ -96,11 +117,12 @@ void check_amount(const Crbm& layer, std::size_t sequences, const GenerationOpti
         static_cast<double>(std::numeric_limits<std::int32_t>::max())));
 }
 
-/// What was generated, on the seed's person and from where the seed ends.
+/// What was generated, on the seed's person and from where they are after so many of its frames.
 Motion decoded(const Modalities& modalities, const MatrixF& pose, const PreparedSeed& seed,
-               const Eigen::Matrix3d& axes_from_world) {
+               Eigen::Index frames_before, const Eigen::Matrix3d& axes_from_world) {
   const Skeleton& skeleton = seed.motion.skeleton;
-  const WorldPose last = forward_kinematics(skeleton, seed.motion.channels.bottomRows(1));
+  const WorldPose last =
+      forward_kinematics(skeleton, seed.motion.channels.middleRows(frames_before - 1, 1));
   const Eigen::Vector3d start =
       last.position[static_cast<std::size_t>(skeleton.find(modalities.root_name()))];
   const MatrixD features = modalities.pose_scale.invert(pose);
@@ -119,26 +141,29 @@ std::vector<Motion> generate_clips(const Model& model, const std::vector<SeedCli
   const Cdbn& cdbn = model.network.cdbns[kPose];
   const std::vector<Eigen::Matrix3d> directions = directions_of(modalities);
   std::vector<PreparedSeed> prepared_seeds;
-  SeedEnds ends{static_cast<Eigen::Index>(seed_frames(cdbn))};
+  Starts starts{static_cast<Eigen::Index>(seed_frames(cdbn))};
   for (const SeedClip& seed : seeds) {
     try {
-      prepared_seeds.push_back(prepared(model, seed.motion));
-      ends.add(modalities, prepared_seeds.back().motion, directions, options.samples);
+      const std::size_t clip = prepared_seeds.size();
+      const Motion& motion = prepared_seeds.emplace_back(prepared(model, seed.motion)).motion;
+      starts.add(modalities, motion, moments_of(clip, motion, seed.every_s, starts.frames),
+                 directions, options.samples);
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", seed.name, error.what()));
     }
   }
-  for (const Crbm& layer : cdbn.layers)
-    check_amount(layer, seeds.size() * options.samples, options);
+  for (const Crbm& layer : cdbn.layers) check_amount(layer, starts.features.size(), options);
   GenerationOptions of_each = options;
   of_each.samples = 1;
-  const auto poses = generate(cdbn, ends.features, of_each);
-  if (health) *health = generation_health(poses, ends.speed);
+  const auto poses = generate(cdbn, starts.features, of_each);
+  if (health) *health = generation_health(poses, starts.speed);
   std::vector<Motion> motions;
-  for (std::size_t i = 0; i < poses.size(); ++i)
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Moment& moment = starts.moments[i / options.samples];
     motions.push_back(
-        decoded(modalities, poses[i], prepared_seeds[i / options.samples],
+        decoded(modalities, poses[i], prepared_seeds[moment.clip], moment.frames,
                 modalities.pose_axes(directions[i % options.samples % directions.size()])));
+  }
   return motions;
 }
 

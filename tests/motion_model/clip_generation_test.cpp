@@ -112,6 +112,49 @@ TEST_CASE("generate_clips: the root goes on from the seed's end, as height and v
   });
 }
 
+TEST_CASE("generate_clips: from moments all over each clip, the last of which is its end") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const Model model = scene.model(device);
+    const std::vector<Motion> clips = {swinging(small_body(), 70), swinging(small_body(), 40)};
+    const Eigen::Matrix3d camera = camera_rotation(35, 12);
+    const auto seen = [&](std::size_t clip) {
+      return scene.modalities.encode_pose(clips[clip], camera);
+    };
+    // Every second of 30 frames; the network's order is 3.
+    const std::vector<std::pair<std::size_t, int>> moments = {
+        {0, 10}, {0, 40}, {0, 70}, {1, 10}, {1, 40}};
+    GenerationOptions options = some_options();
+    std::vector<MatrixF> before;
+    for (const auto& [clip, frames] : moments)
+      for (std::size_t i = 0; i < options.samples; ++i)
+        before.emplace_back(seen(clip).topRows(frames));
+    GenerationHealth health;
+    const auto got =
+        generate_clips(model, {{"a", clips[0], 1}, {"b", clips[1], 1}}, options, &health);
+    options.samples = 1;
+    const auto poses = generate(model.network.cdbns[1], before, options);
+    REQUIRE(got.size() == poses.size());
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      CAPTURE(i);
+      const auto [clip, frames] = moments[i / 2];
+      CHECK(health.seed_speed[i] == doctest::Approx(mean_speed(seen(clip))));
+      const MatrixD want = scene.modalities.pose_scale.invert(poses[i]);
+      const Motion there = scene.modalities.pose_features.decode(want, camera, clips[clip].skeleton,
+                                                                 30, path_of(got[i], "Hips"));
+      CHECK(largest(got[i].channels - there.channels) < 1e-6);
+      const double units = file_units_per_metre(clips[clip].skeleton);
+      const Eigen::RowVector3d step =
+          units / 30 * scene.modalities.pose_features.root_features(want).row(0).tail(3) * camera;
+      const Eigen::RowVector3d start = path_of(clips[clip], "Hips").row(frames - 1);
+      CHECK(path_of(got[i], "Hips")(0, 0) - start.x() == doctest::Approx(step.x()).epsilon(1e-9));
+    }
+    // Nothing lies so long before the end; and moments are no nearer than a frame.
+    CHECK(generate_clips(model, {{"b", clips[1], 60}}, options).size() == 1);
+    CHECK(generate_clips(model, {{"b", clips[1], 1e-9}}, options).size() == 38);
+  });
+}
+
 TEST_CASE("generate_clips: every option comes to its use, and too short a seed is refused") {
   const Scene scene;
   on_every_device([&](Device& device) {
