@@ -92,14 +92,17 @@ struct Starts {
   void add(const Modalities& modalities, const Motion& seed, const std::vector<Moment>& of_seed,
            const std::vector<Eigen::Matrix3d>& directions, std::size_t samples) {
     std::vector<MatrixF> seen;
-    for (std::size_t i = 0; i < std::min(samples, directions.size()); ++i)
+    std::vector<double> seen_speed;
+    for (std::size_t i = 0; i < std::min(samples, directions.size()); ++i) {
       seen.push_back(modalities.encode_pose(seed, directions[i]));
+      seen_speed.push_back(mean_speed(seen.back()));
+    }
     for (const Moment& moment : of_seed) {
       moments.push_back(moment);
       for (std::size_t i = 0; i < samples; ++i) {
-        const MatrixF& pose = seen[i % seen.size()];
-        features.emplace_back(pose.middleRows(moment.frames - frames, frames));
-        speed.push_back(mean_speed(pose));
+        const std::size_t direction = i % seen.size();
+        features.emplace_back(seen[direction].middleRows(moment.frames - frames, frames));
+        speed.push_back(seen_speed[direction]);
       }
     }
   }
