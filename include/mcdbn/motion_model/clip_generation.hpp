@@ -13,8 +13,8 @@ namespace mcdbn {
 struct SeedClip {
   std::string name;  ///< for messages
   Motion motion;     ///< at any rate, at least seed_frames() frames at the model's
-  /// Gone on from its end, and from every moment so long before it that has seed_frames() frames;
-  /// 0: from its end alone.
+  /// Gone on from its end, and from moments `every_s` apart before it while seed_frames() frames
+  /// are left; 0: from its end alone.
   double every_s = 0;
 };
 
