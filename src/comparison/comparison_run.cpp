@@ -110,7 +110,8 @@ ClipPlacement placement_of(const EncodedClip& truth, const TestRunOptions& optio
     // The answer may stand on a skeleton of other units.
     placement.camera->unit_m = 1.0 / file_units_per_metre(truth.motion.skeleton);
   }
-  if (!options.detector) placement.skeleton = truth.motion.skeleton;
+  placement.detected = options.detector.has_value();
+  if (!placement.detected) placement.skeleton = truth.motion.skeleton;
   placement.fit = options.fit;
   return placement;
 }

@@ -100,10 +100,11 @@ class ClipFit {
     // Of a detector's track more frames a second tell no more of what all frames share, and a rough
     // solution's window spans more seconds.
     const auto shared = may_be_exact ? SharedUnknowns::to_be_found : SharedUnknowns::as_found;
+    const double small_gain = known.detected ? kSmallGainOfDetector : kSmallGainOfAll;
     for (std::size_t solution = 0; solution < settings.solutions; ++solution) {
       look_again(settings);
       rays_ = noise.rays();
-      take(point_ = most_likely(clip, rays_, settings, std::move(point_), shared));
+      take(point_ = most_likely(clip, rays_, settings, std::move(point_), shared, small_gain));
       if (!noise.learn(evidence_->usual_residual(point_, clip.frames())) && !noise.measure()) break;
     }
     if (!rays_.exact) return;

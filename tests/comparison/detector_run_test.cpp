@@ -10,6 +10,8 @@
 #include "device/every_device.hpp"
 #include "mcdbn/camera/side_swaps.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
+#include "motion/body_size.hpp"
+#include "motion_model/pose_priors.hpp"
 
 namespace detector_run_test {
 
@@ -97,6 +99,30 @@ TEST_CASE("a detector's test run: the clip by another body, from another camera,
     const auto clips = report_clips(model, results, false);
     CHECK(clips[0].track_px.array().isNaN().any());
     CHECK(!clips[0].track_px.array().isNaN().all());
+  });
+}
+
+TEST_CASE("a detector's test run fits a detector's track of an unknown body, as regenerate does") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    const TestRunOptions options = scene.options();
+    const Model model = scene.model(device);
+    bool matters = false;
+    for (const ClipResult& result : run_test(model, scene.tests, options)) {
+      KnownOfClip known{result.truth.camera, {}};
+      known.camera->unit_m = 1.0 / file_units_per_metre(result.truth.motion.skeleton);
+      known.found = result.seen.view;
+      const PosePrior prior =
+          pose_priors(model.network, {result.seen.features}, options.regeneration).front();
+      const auto fitted = [&](bool detected) {
+        known.detected = detected;
+        return fit_to_track(prior, model.modalities, result.seen.joints, known, options.fit)
+            .motion.channels;
+      };
+      CHECK((result.samples.at(0).motion.channels == fitted(true)));
+      matters = matters || (fitted(false) != fitted(true));
+    }
+    CHECK(matters);
   });
 }
 

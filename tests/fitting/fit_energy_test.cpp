@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "camera/track_columns.hpp"
+#include "camera/track_noise.hpp"
 #include "features/clip_modalities.hpp"
 #include "mcdbn/fitting/track_fit.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
@@ -40,6 +41,22 @@ TEST_CASE(
     }
   }
   CHECK(fit_to_track(mean, modalities, track, known, std::nullopt).energy == 0);
+}
+
+TEST_CASE("fit energy: a detector's track is left sooner, near where steps end") {
+  const Motion truth = synthesize({.seconds = 4});
+  const Modalities modalities = modalities_of({truth}, {});
+  KnownOfClip known{place_camera(truth, {}), {}};
+  Track2d track = project_motion(truth, *known.camera);
+  add_pixel_noise(track, 3, 1);
+  const MatrixF mean = MatrixF::Zero(track.frames(), modalities.pose_scale.output_dimension());
+  const auto energy = [&](bool detected) {
+    known.detected = detected;
+    return fit_to_track(mean, modalities, track, known, TrackFitSettings{}).energy;
+  };
+  const double left = energy(true), ended = energy(false);
+  CHECK(left > ended);
+  CHECK(left < 1.02 * ended);
 }
 
 }  // namespace fit_energy_test
