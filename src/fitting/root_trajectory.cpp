@@ -205,4 +205,10 @@ MatrixD root_trajectory(const MatrixD& relative_positions, const TrackRays& trac
   return (path.rowwise() - camera.translation.transpose()) * camera.camera_from_world;
 }
 
+MatrixD travelled_way(const MatrixD& velocity, double fps) {
+  MatrixD way = MatrixD::Zero(velocity.rows(), 3);
+  for (Eigen::Index t = 1; t < way.rows(); ++t) way.row(t) = way.row(t - 1) + velocity.row(t) / fps;
+  return way;
+}
+
 }  // namespace mcdbn

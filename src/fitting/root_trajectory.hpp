@@ -19,4 +19,8 @@ MatrixD root_trajectory(const MatrixD& relative_positions, const TrackRays& trac
                         const Camera& camera, const MatrixD& velocity,
                         double velocity_error_m_s2 = 1.0);
 
+/// The way from the first frame on at such velocities, each that of the step to its frame.
+/// @param velocity [frames x 3] per second  @return [frames x 3]
+MatrixD travelled_way(const MatrixD& velocity, double fps);
+
 }  // namespace mcdbn

@@ -65,7 +65,7 @@ SlidingFit::SlidingFit(const Modalities& modalities, const KnownOfClip& known, c
       skeleton_(known.skeleton ? *known.skeleton : modalities.pose_features.skeleton()),
       body_(skeleton_),
       body_unknown_(!known.skeleton),
-      detected_(known.detected),
+      may_be_exact_(known.may_be_exact()),
       camera_known_(known.camera.has_value()),
       units_per_m_(file_units_per_metre(skeleton_)),
       assumed_(in_file_units(known.camera_of(like, modalities), skeleton_)),
@@ -132,11 +132,9 @@ Motion SlidingFit::unturned(const ClipRows& rows) const {
 /// @param answer of the rows, unturned
 ClipEvidence SlidingFit::evidence_of(const ClipRows& rows, const Motion& answer) const {
   const PoseFeatures& features = modalities_.pose_features;
-  const MatrixD velocity_m_s = features.root_features(rows.mean).rightCols(3);
-  MatrixD travelled = MatrixD::Zero(rows.frames(), 3);
-  for (Eigen::Index t = 1; t < rows.frames(); ++t)
-    travelled.row(t) = travelled.row(t - 1) + velocity_m_s.row(t) / modalities_.fps;
-  ClipEvidence evidence(features, answer, units_per_m_ * travelled * assumed_.camera_from_world,
+  const MatrixD travelled_m =
+      travelled_way(features.root_features(rows.mean).rightCols(3), modalities_.fps);
+  ClipEvidence evidence(features, answer, units_per_m_ * travelled_m * assumed_.camera_from_world,
                         track_rays(names_, rows.track, assumed_), assumed_);
   PosteriorClip& clip = evidence.clip;
   clip.turn_deviation_rad = fitted_turn_deviations_rad(rows.prior, modalities_, settings_);
@@ -171,8 +169,8 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
   point_.turns.setZero();
   if (!past_) point_.ground_m = evidence_->ground(point_);
   clip.past = past_;
-  SeenNoise noise(track_noise_px, assumed_, evidence_->usual_depth_m(),
-                  !body_unknown_ && !detected_, settings_, lasting_noise_);
+  SeenNoise noise(track_noise_px, assumed_, evidence_->usual_depth_m(), may_be_exact_, settings_,
+                  lasting_noise_);
   rays_ = noise.rays();
 
   problem_ = std::make_unique<WindowProblem>(clip, rays_, settings_, point_, 0, clip.frames(),

@@ -75,7 +75,7 @@ class SlidingFit {
   const Modalities& modalities_;
   TrackFitSettings settings_;
   Skeleton skeleton_, body_;  ///< as it was given, and as it is estimated
-  bool body_unknown_, detected_, camera_known_;
+  bool body_unknown_, may_be_exact_, camera_known_;
   double units_per_m_;
   Camera assumed_, camera_;  ///< at first, and as it was found
   std::optional<CameraDoubt> doubt_;

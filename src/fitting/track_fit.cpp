@@ -82,14 +82,13 @@ class ClipFit {
   /// @param known as the constructor's; without a skeleton its proportions are unknown
   void meet_track(const PosePrior& prior, double track_noise_px, const KnownOfClip& known,
                   const Track2d& track, const TrackFitSettings& settings) {
-    const bool own_skeleton = known.skeleton.has_value(),
-               may_be_exact = own_skeleton && !known.detected;
+    const bool may_be_exact = known.may_be_exact();
     mean_ = features_;
     evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, camera_);
     PosteriorClip& clip = evidence_->clip;
     clip.turn_deviation_rad = fitted_turn_deviations_rad(prior, modalities_, settings);
     clip.root_m_s2 = fitted_root_acceleration_deviation_m_s2(prior, modalities_, settings);
-    clip.body_unknown = !own_skeleton;
+    clip.body_unknown = !known.skeleton;
     clip.camera = doubt_of(known, modalities_, track, settings);
     SeenNoise noise(track_noise_px, camera_, evidence_->usual_depth_m(), may_be_exact, settings);
     point_ = PosteriorPoint::zero(clip);
@@ -230,12 +229,7 @@ class ClipFit {
   }
 
   /// [frames x 3] world axes, file units
-  MatrixD travelled() const {
-    MatrixD way = MatrixD::Zero(velocity_.rows(), 3);
-    for (Eigen::Index t = 1; t < way.rows(); ++t)
-      way.row(t) = way.row(t - 1) + velocity_.row(t) / track_.fps;
-    return way;
-  }
+  MatrixD travelled() const { return travelled_way(velocity_, track_.fps); }
 
   Motion decoded(const MatrixD& root) const {
     return modalities_.pose_features.decode(features_, camera_.camera_from_world, skeleton_,

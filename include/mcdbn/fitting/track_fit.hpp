@@ -42,6 +42,9 @@ struct KnownOfClip {
   /// Whether the joints are a detector's keypoints: they are taken for no better than usual.
   bool detected = false;
 
+  /// Whether the track can be an exact projection: of a known body, and no detector's.
+  bool may_be_exact() const { return skeleton.has_value() && !detected; }
+
   /// The camera, or the one that is assumed for that track.
   Camera camera_of(const Track2d& track, const Modalities& modalities) const {
     return camera ? *camera : modalities.assumed_camera(assumed(), track.width_px, track.height_px);
