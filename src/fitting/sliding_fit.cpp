@@ -178,9 +178,10 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
   problem_->solve(!past_, kSmallGain, past_ ? kIterations : WindowProblem::kMostIterations);
   point_ = problem_->solution();
   rows_.root_m = clip.root + point_.shift;
-  learn(noise);
+  const bool other_noise = learn(noise);
   take(point_);
   fade();
+  if (other_noise) begin_fade();
   shown_ = project_motion(motion_, camera_);
 }
 
@@ -229,12 +230,17 @@ void SlidingFit::take_look() {
                        Unknowns::tracked);
   window.solve(false, kSmallGain);
   past_ = window.without_first(before);
+  begin_fade();
+}
+
+void SlidingFit::begin_fade() {
   fading_ = motion_.channels.bottomRows(motion_.frames() - held_);
   fading_frames_ = fading_.rows();
 }
 
-/// Frames that were open when a look was taken turn from what they were then to what they are now,
-/// the sooner they settle the less, so that what settles does not jump.
+/// Frames that were open when a look was taken, or other noise was learned, turn from what they
+/// were then to what they are now, the sooner they settle the less, so that what settles does not
+/// jump.
 void SlidingFit::fade() {
   const Eigen::Index rest = fading_.rows();
   for (Eigen::Index i = 0; i < rest; ++i) {
@@ -247,14 +253,16 @@ void SlidingFit::fade() {
 
 /// As often as in a whole clip, each time from other solutions. Of the held frames: open ones, with
 /// few or none behind them, come nearer to the rays than a whole clip's do.
-void SlidingFit::learn(SeenNoise& noise) {
-  if (!past_ || learned_ + 1 >= settings_.solutions) return;
+/// @return whether the next solution is told other noise
+bool SlidingFit::learn(SeenNoise& noise) {
+  if (!past_ || learned_ + 1 >= settings_.solutions) return false;
   if (const double residual = evidence_->usual_residual(point_, held_); residual > 0)
     residuals_.push_back(residual);
-  if (std::ssize(residuals_) < std::lround(kLearned_s * modalities_.fps)) return;
+  if (std::ssize(residuals_) < std::lround(kLearned_s * modalities_.fps)) return false;
   learned_ = noise.learn(upper_median(std::move(residuals_))) ? learned_ + 1 : settings_.solutions;
   lasting_noise_ = noise.share();
   residuals_.clear();
+  return true;
 }
 
 void SlidingFit::take(const PosteriorPoint& point) {

@@ -62,12 +62,13 @@ class SlidingFit {
   ClipEvidence evidence_of(const ClipRows& rows, const Motion& answer) const;
   void place_root();
   MatrixD placed_root(const MatrixD& velocity_m_s) const;
-  void learn(SeenNoise& noise);
+  bool learn(SeenNoise& noise);
   void take(const PosteriorPoint& point);
   ClipEvidence fresh(const ClipRows& rows) const;
   PosteriorPoint start_of(const ClipEvidence& evidence) const;
   void look_back();
   void take_look();
+  void begin_fade();
   void fade();
   void look_as(const PosteriorPoint& point, const Eigen::Vector3d& first_root);
   Eigen::Vector3d upright() const;
@@ -95,7 +96,7 @@ class SlidingFit {
   ClipRows past_rows_;                ///< of the last seconds
   long long next_look_ = 0;           ///< when so many frames have settled
   std::future<PosteriorPoint> look_;  ///< what is asked of it is what all frames share
-  MatrixD fading_;  ///< channels of frames that were open when a look was taken, as they were
+  MatrixD fading_;  ///< channels of frames that were open when it began, as they were
   Eigen::Index fading_frames_ = 0;  ///< as many as they were
   // Of all frames that have settled, along the camera's axes, file units:
   Eigen::Vector3d upright_sum_{0, 0, 0};
