@@ -9,7 +9,8 @@
 // A window is `frames` rows, of which those from `lead` on count. Rows of `prediction`, `target` and
 // `error` are LD wide; `differences` holds 3 · BONES floats a row, place − target's place in metres.
 // Compile-time: DIMENSION, LD, BONES; FEET, VELOCITY (the first of the root velocity's raw features).
-//   bones      int4 each: parent (−1: the root), block, whether a foot is at its end, unused
+//   bones      int4 each: parent (−1: the root), block, whether a foot is at its end, the block's
+//              leading axis (0: x, 1: y)
 //   levers     float4 each, metres
 //   columns    int4 for each block pair: see column_of
 //   scale      float2 for each raw feature: mean, deviation
@@ -36,10 +37,16 @@
 
 #define INLINE static inline __attribute__((always_inline))
 
-// The orientation that a 6D block stands for, as its axes (Gram-Schmidt), and what its derivative needs.
+// An axis that is shorter does not become a unit vector: its derivative would grow without bound, and a
+// network that is in doubt about an axis answers a short one. Longer ones are as features are decoded.
+#define SHORT_AXIS 0.5f
+
+// The orientation that a 6D block stands for, as its axes (Gram-Schmidt from the leading one on), and what
+// its derivative needs: the other axis as the block has it, how far it is along the leading one, lengths.
 typedef struct {
-  float3 x, y, z, b;
-  float length_a, length_u, along;
+  float3 x, y, z, other;
+  float length_leading, length_u, along;
+  int leading;
 } Turn;
 
 INLINE float raw_feature(global const float* row, int feature, global const int* columns,
@@ -48,20 +55,23 @@ INLINE float raw_feature(global const float* row, int feature, global const int*
   return column < 0 ? scale[feature].x : scale[feature].x + scale[feature].y * row[column];
 }
 
-INLINE Turn turn_of(global const float* row, int block, global const int* columns,
+INLINE Turn turn_of(global const float* row, int block, int leading, global const int* columns,
                     global const float2* scale) {
-  const float kLeast = 1e-6f;
   float v[6];
   for (int i = 0; i < 6; ++i) v[i] = raw_feature(row, 6 * block + i, columns, scale);
-  const float3 a = (float3)(v[0], v[1], v[2]);
+  const float3 x = (float3)(v[0], v[1], v[2]), y = (float3)(v[3], v[4], v[5]);
+  const float3 first = leading ? y : x;
   Turn turn;
-  turn.b = (float3)(v[3], v[4], v[5]);
-  turn.length_a = fmax(sqrt(dot(a, a)), kLeast);
-  turn.x = a / turn.length_a;
-  turn.along = dot(turn.x, turn.b);
-  const float3 u = turn.b - turn.along * turn.x;
-  turn.length_u = fmax(sqrt(dot(u, u)), kLeast);
-  turn.y = u / turn.length_u;
+  turn.leading = leading;
+  turn.other = leading ? x : y;
+  turn.length_leading = sqrt(dot(first, first));
+  const float3 axis = first / fmax(turn.length_leading, SHORT_AXIS);
+  turn.along = dot(axis, turn.other);
+  const float3 u = turn.other - turn.along * axis;
+  turn.length_u = sqrt(dot(u, u));
+  const float3 rest = u / fmax(turn.length_u, SHORT_AXIS);
+  turn.x = leading ? rest : axis;
+  turn.y = leading ? axis : rest;
   turn.z = cross(turn.x, turn.y);
   return turn;
 }
@@ -80,12 +90,17 @@ kernel void position_differences(global const float* prediction, global const fl
   target += row * LD;
   differences += row * difference_ld;
   for (int i = 0; i < BONES; ++i) {
-    const int parent = bones[i].x, block = bones[i].y;
-    float3 place = turned(turn_of(prediction, block, columns, scale), levers[i]) -
-                   turned(turn_of(target, block, columns, scale), levers[i]);
+    const int parent = bones[i].x, block = bones[i].y, leading = bones[i].w;
+    float3 place = turned(turn_of(prediction, block, leading, columns, scale), levers[i]) -
+                   turned(turn_of(target, block, leading, columns, scale), levers[i]);
     if (parent >= 0) place += vload3(parent, differences);
     vstore3(place, i, differences);
   }
+}
+
+// The derivative by a vector from that by the axis which it became.
+INLINE float3 lengthened_error(float3 error, float3 axis, float length) {
+  return length < SHORT_AXIS ? error / SHORT_AXIS : (error - axis * dot(axis, error)) / length;
 }
 
 // Adds the derivative by a block's axes, taken back through Gram-Schmidt, to its six features.
@@ -94,11 +109,16 @@ INLINE void add_turn_error(global float* error, int block, Turn turn, float3 err
                            global const float2* scale) {
   error_x += cross(turn.y, error_z);
   error_y += cross(error_z, turn.x);
-  const float3 error_u = (error_y - turn.y * dot(turn.y, error_y)) / turn.length_u;
-  const float3 error_b = error_u - turn.x * dot(turn.x, error_u);
-  error_x -= turn.b * dot(turn.x, error_u) + turn.along * error_u;
-  const float3 error_a = (error_x - turn.x * dot(turn.x, error_x)) / turn.length_a;
-  const float v[6] = {error_a.x, error_a.y, error_a.z, error_b.x, error_b.y, error_b.z};
+  const float3 axis = turn.leading ? turn.y : turn.x, rest = turn.leading ? turn.x : turn.y;
+  const float3 error_u =
+      lengthened_error(turn.leading ? error_x : error_y, rest, turn.length_u);
+  const float3 error_other = error_u - axis * dot(axis, error_u);
+  const float3 error_axis = (turn.leading ? error_y : error_x) - turn.other * dot(axis, error_u) -
+                            turn.along * error_u;
+  const float3 error_first = lengthened_error(error_axis, axis, turn.length_leading);
+  const float3 of_x = turn.leading ? error_other : error_first,
+               of_y = turn.leading ? error_first : error_other;
+  const float v[6] = {of_x.x, of_x.y, of_x.z, of_y.x, of_y.y, of_y.z};
   for (int i = 0; i < 6; ++i) {
     const int column = columns[6 * block + i];
     if (column >= 0) error[column] += v[i] * scale[6 * block + i].y;
@@ -121,7 +141,7 @@ INLINE float3 place_of(global const float* row, int bone, global const int4* bon
                        global const float2* scale) {
   float3 place = 0.0f;
   for (int i = bone; i >= 0; i = bones[i].x)
-    place += turned(turn_of(row, bones[i].y, columns, scale), levers[i]);
+    place += turned(turn_of(row, bones[i].y, bones[i].w, columns, scale), levers[i]);
   return place;
 }
 
@@ -210,7 +230,7 @@ kernel void pose_errors(global const float* prediction, global const float* targ
       const int parent = bones[i].x, block = bones[i].y;
       if (parent >= 0) carried[parent] += carried[i];
       const float4 lever = levers[i];
-      add_turn_error(error, block, turn_of(prediction, block, columns, scale),
+      add_turn_error(error, block, turn_of(prediction, block, bones[i].w, columns, scale),
                      carried[i] * lever.x, carried[i] * lever.y, carried[i] * lever.z, columns,
                      scale);
     }

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Makes a model ready to be passed on: share_model.py MODEL OUT ACKNOWLEDGEMENT
 
-Training clips keep their names and fingerprints and lose the folders that they lay in; the
-acknowledgement goes into the metadata. Numbers stay as they are.
+Training clips, and the model that the training began with, keep their names and fingerprints and
+lose the folders that they lay in; the acknowledgement goes into the metadata. Numbers stay as they
+are.
 """
 
 import json
@@ -15,6 +16,9 @@ def shared(header: dict, acknowledgement: str) -> dict:
     about = json.loads(header["__metadata__"]["mcdbn"])
     for clip in about["training_clips"]:
         clip["path"] = pathlib.Path(clip["path"]).name
+    if "started_from" in about:
+        start = about["started_from"]
+        start["model"] = pathlib.Path(start["model"]).name
     metadata = {"acknowledgement": acknowledgement, "mcdbn": json.dumps(about)}
     return {**header, "__metadata__": metadata}
 

@@ -9,6 +9,7 @@
 #include "corpus/people.hpp"
 #include "evaluation/bone_length.hpp"
 #include "evaluation/foot_slide.hpp"
+#include "evaluation/orientation_error.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/side_swaps.hpp"
@@ -294,6 +295,7 @@ ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                                           turned(other.rightCols(joints), axes));
   score.error = joint_error(real, other, truth.motion.fps(), 0);
   score.limbs = limb_error(limb_positions_mm(truth.motion), limb_positions_mm(regenerated));
+  score.mpjae_deg = mpjae_deg(truth.motion, regenerated);
   const auto mm = [](const Motion& motion) {
     return 1000.0 / file_units_per_metre(motion.skeleton);
   };

@@ -26,6 +26,7 @@ ClipScore mean_score(const std::vector<ClipScore>& scores) {
   S result;
   result.pcc_flat = mean([](const S& s) { return s.pcc_flat; });
   result.pcc_channel = mean([](const S& s) { return s.pcc_channel; });
+  result.mpjae_deg = mean([](const S& s) { return s.mpjae_deg; });
   result.root_mm = mean([](const S& s) { return s.root_mm; });
   result.error.mpjpe_mm = mean([](const S& s) { return s.error.mpjpe_mm; });
   result.error.pa_mpjpe_mm = mean([](const S& s) { return s.error.pa_mpjpe_mm; });
@@ -58,6 +59,7 @@ const std::vector<ScoreFigure>& score_figures() {
        [](const S& s) { return s.limbs.turned_mpjpe_mm; }, true},
       {"limb_pa_mpjpe_mm", "PA-MPJPE, limbs (mm)", [](const S& s) { return s.limbs.pa_mpjpe_mm; },
        true},
+      {"mpjae_deg", "MPJAE (°)", [](const S& s) { return s.mpjae_deg; }, true},
       {"mpjve_mm_s", "MPJVE (mm/s)", [](const S& s) { return s.error.mpjve_mm_s; }, true},
       {"acceleration_error_mm_s2", "Acceleration error (mm/s²)",
        [](const S& s) { return s.error.acceleration_error_mm_s2; }, true},

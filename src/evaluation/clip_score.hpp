@@ -15,7 +15,8 @@ struct ClipScore {
   double pcc_channel = 0;  ///< mean over channels: the strict one
   JointError error;
   LimbError limbs;
-  double root_mm = 0;  ///< mean distance of the regenerated root from the true one, in the world
+  double mpjae_deg = 0;  ///< mean angle of joints' orientations in the world: orientation_error.hpp
+  double root_mm = 0;    ///< mean distance of the regenerated root from the true one, in the world
   FootSlide foot_slide;
   double bone_length_spread_mm = 0;
   /// Share of 90 % intervals that hold the truth (share_within_90), each joint but the root along

@@ -17,18 +17,22 @@ struct DecodedJoint {
   const Joint* model = nullptr;       ///< the model's joint of that name, or null
   const double* constants = nullptr;  ///< the model's constant channels of that joint
   int feature = -1;                   ///< first column of its 6D block, or -1
+  int leading_axis = 0;               ///< of that block
 };
 
-/// The rotation whose first two columns are nearest to the six numbers (Gram-Schmidt);
-/// `otherwise` where they say nothing (zero, parallel or not finite).
-Eigen::Matrix3d orthonormal(const double* block, const Eigen::Matrix3d& otherwise) {
-  const Eigen::Vector3d first = Eigen::Map<const Eigen::Vector3d>(block).normalized();
-  const Eigen::Map<const Eigen::Vector3d> second(block + 3);
+/// The rotation whose leading column is along that of the block, and the other of its first two as
+/// near as can be (Gram-Schmidt); `otherwise` where they say nothing (zero, parallel or not
+/// finite).
+Eigen::Matrix3d orthonormal(const double* block, int leading_axis,
+                            const Eigen::Matrix3d& otherwise) {
+  const Eigen::Map<const Eigen::Matrix<double, 3, 2>> axes(block);
+  const Eigen::Vector3d first = axes.col(leading_axis).normalized();
+  const auto second = axes.col(1 - leading_axis);
   const Eigen::Vector3d rest = second - first.dot(second) * first;
   if (!(rest.norm() > 1e-9 && first.norm() > 0.5)) return otherwise;
   Eigen::Matrix3d rotation;
-  rotation.col(0) = first;
-  rotation.col(1) = rest.normalized();
+  rotation.col(leading_axis) = first;
+  rotation.col(1 - leading_axis) = rest.normalized();
   rotation.col(2) = rotation.col(0).cross(rotation.col(1));
   return rotation;
 }
@@ -94,7 +98,8 @@ class FrameDecoder {
                            own);
       }
       if (decoded.feature >= 0) {
-        camera_from_joint_[j] = orthonormal(features + decoded.feature, camera_from_joint_[j]);
+        camera_from_joint_[j] =
+            orthonormal(features + decoded.feature, decoded.leading_axis, camera_from_joint_[j]);
         set_local_rotation(
             joint, world_from_parent.transpose() * world_from_camera_ * camera_from_joint_[j],
             previous ? previous + decoded.channel : nullptr, own);
@@ -137,6 +142,7 @@ Motion PoseFeatures::decode(const MatrixD& features, const Eigen::Matrix3d& came
   }
   for (std::size_t k = 0; k < joints_.size(); ++k) {
     joints[match[joints_[k]]].feature = kBlock * static_cast<int>(k);
+    joints[match[joints_[k]]].leading_axis = leading_axes_[k];
   }
   Motion motion{skeleton, 1.0 / fps, MatrixD(features.rows(), skeleton.channel_count())};
   for (const DecodedJoint& joint : joints) {

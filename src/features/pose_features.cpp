@@ -79,6 +79,7 @@ PoseFeatures PoseFeatures::fit(const std::vector<const Motion*>& clips) {
       constants[k] = definition.offset[axis_of(channel)] + mean_displacement(clips, joint, channel);
     }
   }
+  result.find_leading_axes();
   return result;
 }
 
@@ -159,7 +160,23 @@ PoseFeatures PoseFeatures::restored(Skeleton skeleton, int root, std::vector<int
   result.root_ = root;
   result.joints_ = std::move(joints);
   result.constant_channels_ = std::move(fixed_channels);
+  result.find_leading_axes();
   return result;
+}
+
+void PoseFeatures::find_leading_axes() {
+  for (const int joint : joints_) {
+    Eigen::Vector3d longest(0, 0, 0);
+    const auto consider = [&](const Eigen::Vector3d& bone) {
+      if (bone.norm() > longest.norm()) longest = bone;
+    };
+    for (const Eigen::Vector3d& end : skeleton_.joints[joint].end_sites) consider(end);
+    for (int child = 0; child < skeleton_.joint_count(); ++child)
+      if (skeleton_.joints[child].parent == joint)
+        consider(local_position(skeleton_.joints[child],
+                                constant_channels_.data() + skeleton_.first_channel(child)));
+    leading_axes_.push_back(std::abs(longest.y()) > std::abs(longest.x()) ? 1 : 0);
+  }
 }
 
 }  // namespace mcdbn

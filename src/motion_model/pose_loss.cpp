@@ -39,7 +39,8 @@ PoseLoss::PoseLoss(Device& device, const Modalities& modalities, const SequenceW
   for (const PoseBone& bone : bones) {
     const bool foot = std::find(feet.begin(), feet.end(), bone.joint) != feet.end();
     feet_ += foot ? 1 : 0;
-    table.push_back({{bone.parent, bone.block, foot ? 1 : 0, 0}});
+    table.push_back({{bone.parent, bone.block, foot ? 1 : 0,
+                      modalities.pose_features.leading_axis(bone.block)}});
     const Eigen::Vector3f lever = bone.lever_m.cast<float>();
     levers.push_back({{lever.x(), lever.y(), lever.z(), 0.0F}});
   }

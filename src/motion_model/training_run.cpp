@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "base/user_cache.hpp"
@@ -56,7 +57,14 @@ TrainedRun train_model(Device& device, const TrainingSet& data, const ClipStore&
   const double training_s = std::chrono::duration<double>(Clock::now() - begin).count();
   Model model{std::move(network), data.modalities, {}, settings_json(config), std::move(stopped)};
   // What the model to start from has seen is no test for this one either.
-  if (start != nullptr) model.training_clips = start->training_clips;
+  if (start != nullptr) {
+    model.training_clips = start->training_clips;
+    std::erase_if(model.training_clips, [&](const TrainingClip& before) {
+      return std::ranges::any_of(data.clips, [&](const TrainingClip& clip) {
+        return clip.fingerprint == before.fingerprint;
+      });
+    });
+  }
   model.training_clips.insert(model.training_clips.end(), data.clips.begin(), data.clips.end());
   return {std::move(model), training_s};
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 
@@ -14,9 +15,14 @@ Eigen::Vector3d unit_axis(Channel channel) {
   return Eigen::Vector3d::Unit(static_cast<int>(channel) % 3);
 }
 
-/// Places of all joints, in file units.
-Points places_of(const Motion& motion) {
-  Points frames;
+/// Where all joints are, in file units, and how they are turned in the world.
+struct Poses {
+  Points places;
+  std::vector<std::vector<Eigen::Matrix3d>> turns;  ///< of each frame and joint
+};
+
+Poses poses_of(const Motion& motion) {
+  Poses poses;
   const auto& joints = motion.skeleton.joints;
   for (int t = 0; t < motion.frames(); ++t) {
     Eigen::Matrix3Xd places(3, static_cast<Eigen::Index>(joints.size()));
@@ -44,9 +50,19 @@ Points places_of(const Motion& motion) {
         turns.emplace_back(above * turn);
       }
     }
-    frames.push_back(places);
+    poses.places.push_back(places);
+    poses.turns.push_back(turns);
   }
-  return frames;
+  return poses;
+}
+
+/// Rotations by an angle are √8·sin of half of it apart. All joints have channels here.
+double mean_angle_deg(const Poses& a, const Poses& b) {
+  double sum = 0;
+  for (std::size_t t = 0; t < a.turns.size(); ++t)
+    for (std::size_t j = 0; j < a.turns[t].size(); ++j)
+      sum += 2 * std::asin(std::min(1.0, (a.turns[t][j] - b.turns[t][j]).norm() / std::sqrt(8.0)));
+  return sum / static_cast<double>(a.turns.size() * a.turns[0].size()) * 180 / std::acos(-1.0);
 }
 
 /// A leg, thigh and shank, is 0.491 of the height; a body is 1.7 m tall. The root's own offset and
@@ -249,7 +265,8 @@ double bone_spread(const Points& places, const Skeleton& skeleton, double mm) {
 std::map<std::string, double> independent_scores(const Motion& truth, const Motion& regenerated,
                                                  const Eigen::Matrix3d& camera_from_world) {
   const double mm = mm_per_unit(truth.skeleton), other_mm = mm_per_unit(regenerated.skeleton);
-  const Points real = places_of(truth), other = places_of(regenerated);
+  const Poses real_poses = poses_of(truth), other_poses = poses_of(regenerated);
+  const Points &real = real_poses.places, &other = other_poses.places;
   const auto joints = judged_joints(truth.skeleton);
   const Points a = relative(real, joints, mm), b = relative(other, joints, other_mm);
   std::map<std::string, double> scores;
@@ -271,6 +288,7 @@ std::map<std::string, double> independent_scores(const Motion& truth, const Moti
   scores["rmse_mm"] = std::sqrt(square);
   scores["pck_150mm"] = within;
   scores["root_mm"] = root;
+  scores["mpjae_deg"] = mean_angle_deg(real_poses, other_poses);
   const Points limbs = limbs_of(real, truth.skeleton, mm),
                made = limbs_of(other, regenerated.skeleton, other_mm);
   const Eigen::Matrix3d turn = best_turn(limbs, made);

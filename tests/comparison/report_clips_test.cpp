@@ -70,6 +70,7 @@ TEST_CASE("a clip's score: every figure by hand") {
   CHECK(score.error.mpjpe_mm ==
         doctest::Approx(distances / (40.0 * static_cast<double>(names.size()))));
   CHECK(score.root_mm == doctest::Approx(5.0 * mm));
+  CHECK(score.mpjae_deg == doctest::Approx(2 * 40.0 / 13));  // arm and hand, of all but the chest
   CHECK(score.pcc_flat == doctest::Approx(pearson_flat(real, made)));
   MatrixD real_seen = real, made_seen = made;
   for (Eigen::Index t = 0; t < 40; ++t)
@@ -102,6 +103,7 @@ TEST_CASE("a clip's score: every figure by hand") {
   CHECK(perfect.pcc_channel == doctest::Approx(1));
   CHECK(perfect.error.mpjpe_mm < 1e-9);
   CHECK(perfect.root_mm < 1e-9);
+  CHECK(perfect.mpjae_deg < 1e-6);
 }
 
 TEST_CASE("a clip's score: an answer on another body is judged at the truth's joints") {

@@ -6,6 +6,7 @@
 #include "clips.hpp"
 #include "evaluation/bone_length.hpp"
 #include "evaluation/foot_slide.hpp"
+#include "evaluation/orientation_error.hpp"
 #include "evaluation/sample_spread.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/foot_joints.hpp"
@@ -106,6 +107,35 @@ TEST_CASE("best_of: the nearest sample, with all of its errors") {
   CHECK(best.error.mpjpe_mm == joint_error(truth, samples[1], 30).mpjpe_mm);
   CHECK(best.error.mpjpe_mm < joint_error(truth, samples[0], 30).mpjpe_mm);
   CHECK_THROWS_AS(best_of(truth, {}, 30), ShapeError);
+}
+
+TEST_CASE("mpjae_deg: by hand; of joints that no place tells apart, too") {
+  Skeleton skeleton = chain({"Hips", "Knee", "Ankle", "Toe"});
+  for (std::size_t j = 0; j < 3; ++j)  // the toe never turns
+    skeleton.joints[j].channels = {Channel::y_rotation, Channel::x_rotation};
+  for (std::size_t j = 1; j < 4; ++j) skeleton.joints[j].offset = {0, -10, 0};
+  Motion truth{skeleton, 0.1, MatrixD::Zero(2, 6)};
+  Motion twisted = truth;
+  twisted.channels(0, 2) = 90;  // the shank about its own length, and back at the ankle
+  twisted.channels(0, 4) = -90;
+  CHECK(joint_positions(twisted).isApprox(joint_positions(truth)));
+  CHECK(mpjae_deg(truth, twisted) == doctest::Approx(90.0 / 6));
+  twisted.channels(1, 0) = -170;  // all joints of the other frame
+  CHECK(mpjae_deg(truth, twisted) == doctest::Approx((90.0 + 3 * 170) / 6));
+  CHECK(mpjae_deg(truth, truth) == doctest::Approx(0));
+  // By name, in any order.
+  Motion other = twisted;
+  std::swap(other.skeleton.joints[1].name, other.skeleton.joints[2].name);
+  CHECK(mpjae_deg(truth, other) == doctest::Approx((90.0 + 3 * 170) / 6));
+  other.channels(0, 4) = 0;
+  CHECK(mpjae_deg(truth, other) == doctest::Approx((2 * 90.0 + 3 * 170) / 6));
+
+  other.skeleton.joints[1].name = "Shin";
+  CHECK_THROWS_AS(mpjae_deg(truth, other), ShapeError);
+  CHECK_THROWS_AS(mpjae_deg(truth, {skeleton, 0.1, MatrixD::Zero(3, 6)}), ShapeError);
+  for (Joint& joint : skeleton.joints) joint.channels.clear();
+  const Motion still{skeleton, 0.1, MatrixD::Zero(2, 0)};
+  CHECK(std::isnan(mpjae_deg(still, still)));
 }
 
 }  // namespace mcdbn

@@ -17,6 +17,7 @@ const std::map<std::string, Line>& lines() {
                                                   {"limb_mpjpe_mm", {31, 1.1}},
                                                   {"limb_turned_mpjpe_mm", {28, 0.9}},
                                                   {"limb_pa_mpjpe_mm", {19, 0.8}},
+                                                  {"mpjae_deg", {9, 0.3}},
                                                   {"mpjve_mm_s", {100, 3}},
                                                   {"acceleration_error_mm_s2", {1000, 5}},
                                                   {"pck_150mm", {0.95, -0.001}},
@@ -75,6 +76,7 @@ ClipScore numbered_score(double number) {
   score.error.pck_150mm = at("pck_150mm");
   score.error.rmse_mm = at("rmse_mm");
   score.limbs = {at("limb_mpjpe_mm"), at("limb_turned_mpjpe_mm"), at("limb_pa_mpjpe_mm")};
+  score.mpjae_deg = at("mpjae_deg");
   score.root_mm = at("root_mm");
   score.foot_slide = {at("foot_slide_of_truth_mm_s"), at("foot_slide_mm_s"), 4};
   score.bone_length_spread_mm = at("bone_length_spread_mm");

@@ -196,6 +196,45 @@ TEST_CASE("pose features: noisy and empty blocks still give rotations") {
   CHECK(largest_difference(again.block(14, 12, 1, 6), encoded.block(9, 12, 1, 6)) < 1e-9);
 }
 
+TEST_CASE("pose features: the axis along a joint's longest bone leads, the other gives way") {
+  const Motion motion = swinging(small_body(), 30);
+  const PoseFeatures features = PoseFeatures::fit({&motion});
+  const MatrixD encoded = features.encode(motion, kCamera), root = root_positions(features, motion);
+  const auto block_of = [&](const std::string& name) {
+    const auto found = std::ranges::find(features.joints(), motion.skeleton.find(name));
+    return static_cast<int>(found - features.joints().begin());
+  };
+  // Bones are offsets of children and ends; a hand has none.
+  for (const auto& [name, axis] : {std::pair{"Hips", 1},
+                                   {"LLeg", 1},
+                                   {"LShin", 1},
+                                   {"Neck", 1},
+                                   {"LArm", 0},
+                                   {"RArm", 0},
+                                   {"LHand", 0}})
+    CHECK_MESSAGE(features.leading_axis(block_of(name)) == axis, name);
+  for (const auto& [name, end] : {std::pair{"LLeg", "LShin"}, {"RArm", "RHand"}}) {
+    CAPTURE(name);
+    const int block = 6 * block_of(name), leads = 3 * features.leading_axis(block_of(name));
+    // The other axis says nothing of where the bone ends, however far it is off.
+    MatrixD askew = encoded;
+    askew.middleCols<3>(block + 3 - leads) += 0.4 * encoded.middleCols<3>(block + leads);
+    askew.middleCols<3>(block + 3 - leads).array() += 0.1;
+    const Motion same = features.decode(askew, kCamera, motion.skeleton, 30, root);
+    CHECK(largest_difference(positions_of(same, end), positions_of(motion, end)) < 1e-9);
+    const MatrixD again = features.encode(same, kCamera);
+    CHECK(largest_difference(again.middleCols<3>(block + leads),
+                             encoded.middleCols<3>(block + leads)) < 1e-9);
+    CHECK(largest_difference(again.middleCols<3>(block + 3 - leads),
+                             encoded.middleCols<3>(block + 3 - leads)) > 0.05);
+  }
+  // A model that is read knows it, too.
+  const PoseFeatures read = PoseFeatures::restored(features.skeleton(), features.root(),
+                                                   features.joints(), features.fixed_channels());
+  for (std::size_t k = 0; k < features.joints().size(); ++k)
+    CHECK(read.leading_axis(static_cast<int>(k)) == features.leading_axis(static_cast<int>(k)));
+}
+
 TEST_CASE("pose features: what does not fit is refused") {
   const Motion motion = swinging(small_body(), 4);
   const PoseFeatures features = PoseFeatures::fit({&motion});

@@ -88,6 +88,11 @@ TEST_CASE("a training from a model begins with its parameters, in its features a
     REQUIRE(learnt.training_clips.size() == 2);
     CHECK(learnt.training_clips[0].path == scene.first.record(0).clip.path);
     CHECK(learnt.training_clips[1].path == scene.second.record(0).clip.path);
+    // Learnt again it is listed once.
+    const Model again = train_model(device, data, scene.second, still, {}, nullptr, &learnt).model;
+    REQUIRE(again.training_clips.size() == 2);
+    CHECK(again.training_clips[0].path == scene.first.record(0).clip.path);
+    CHECK(again.training_clips[1].path == scene.second.record(0).clip.path);
   });
 }
 

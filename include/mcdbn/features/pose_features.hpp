@@ -29,6 +29,10 @@ class PoseFeatures {
   int root() const { return root_; }  ///< the moving root: a joint of skeleton()
   /// The joints of skeleton() that have a 6D block, in the blocks' order.
   const std::vector<int>& joints() const { return joints_; }
+  /// Which of a block's two axes is kept where they are not at right angles, 0: x, 1: y. It is the
+  /// one that is more along the joint's longest bone, so that this axis alone says where the bone
+  /// ends, and the other how the bone is turned about its length.
+  int leading_axis(int block) const { return leading_axes_[static_cast<std::size_t>(block)]; }
   /// What the channels of joints without features are, [1 x channels]; see decode.
   const RowVectorD& fixed_channels() const { return constant_channels_; }
   std::vector<std::string> feature_names() const;
@@ -40,7 +44,8 @@ class PoseFeatures {
   MatrixD encode(const Motion& clip, const Eigen::Matrix3d& camera_from_world) const;
 
   /// Back to channels on `skeleton` (the model's own or any with the same joint names), angles
-  /// continuous. 6D blocks are made orthonormal by Gram-Schmidt; joints without features take
+  /// continuous. 6D blocks are made orthonormal by Gram-Schmidt from their leading axis on; joints
+  /// without features take
   /// their parent's motion times their constant local rotation. Position channels of other joints
   /// than the moving root stay as far from the joint's OFFSET as they were on average in training.
   /// @param features [frames x dimension]  @param root_position [frames x 3] world, file units
@@ -62,12 +67,15 @@ class PoseFeatures {
                                RowVectorD fixed_channels);
 
  private:
+  void find_leading_axes();
+
   static constexpr int kRootFeatures = 4;  ///< height, velocity
 
   Skeleton skeleton_;
-  int root_ = 0;                  ///< the moving root (see moving_root)
-  std::vector<int> joints_;       ///< indices of the joints with features
-  RowVectorD constant_channels_;  ///< [1 x channels], what joints without features take
+  int root_ = 0;                   ///< the moving root (see moving_root)
+  std::vector<int> joints_;        ///< indices of the joints with features
+  RowVectorD constant_channels_;   ///< [1 x channels], what joints without features take
+  std::vector<int> leading_axes_;  ///< by block
 };
 
 }  // namespace mcdbn
