@@ -107,7 +107,7 @@ TEST_CASE(
     const Mcdbn network = random_network(device, scene.modalities);
     const auto usual = regenerate(network, scene.tracks);
     for (std::size_t i = 0; i < usual.size(); ++i)
-      scene.poses[i] = usual[i] + 0.14F * scene.poses[i];
+      scene.poses[i] = usual[i] + 0.4F * scene.poses[i];
     const double scale =
         calibrated_sampling(network, scene.modalities, scene.tracks, scene.poses).scale;
     CHECK(scale == scale_by_halving(network, scene, 48));
@@ -121,7 +121,7 @@ TEST_CASE("calibration looks at every so many clips once they are longer than te
     const Mcdbn network = random_network(device, scene.modalities);
     const auto answers = regenerate(network, scene.tracks);
     for (std::size_t i = 0; i < 3; ++i)
-      scene.poses[i] = answers[i] + 0.04F * static_cast<float>(i + 1) * scene.poses[i];
+      scene.poses[i] = answers[i] + 0.12F * static_cast<float>(i + 1) * scene.poses[i];
     const auto scale_of = [&](double fps, const std::vector<std::size_t>& clips) {
       Modalities modalities = scene.modalities;
       modalities.fps = fps;
