@@ -26,9 +26,7 @@ namespace mcdbn {
 namespace {
 
 bool was_trained_on(const Model& model, const std::filesystem::path& file) {
-  const std::string fingerprint = identify_clip(file).fingerprint;
-  return std::any_of(model.training_clips.begin(), model.training_clips.end(),
-                     [&](const TrainingClip& clip) { return clip.fingerprint == fingerprint; });
+  return is_among(model.training_clips, identify_clip(file));
 }
 
 /// The person of a clip if a training clip shows the same one; else empty.

@@ -139,4 +139,9 @@ TrainingClip identify_clip(const fs::path& path) {
   return identified(path, read_text_file(path));
 }
 
+bool is_among(const std::vector<TrainingClip>& clips, const TrainingClip& clip) {
+  return std::ranges::any_of(
+      clips, [&](const TrainingClip& other) { return other.fingerprint == clip.fingerprint; });
+}
+
 }  // namespace mcdbn

@@ -4,11 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
-#include <numbers>
 #include <utility>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -36,7 +35,7 @@ double mpjae_deg(const Motion& truth, const Motion& regenerated) {
     throw ShapeError(
         fmt::format("orientations of {} frames and of {}", truth.frames(), regenerated.frames()));
   const auto joints = turning_joints(truth.skeleton, regenerated.skeleton);
-  if (joints.empty() || truth.frames() == 0) return std::numeric_limits<double>::quiet_NaN();
+  if (joints.empty() || truth.frames() == 0) return kNan;
   double sum = 0;
   for (int t = 0; t < truth.frames(); ++t) {
     const WorldPose real = forward_kinematics(truth.skeleton, truth.channels.row(t)),
@@ -46,7 +45,7 @@ double mpjae_deg(const Motion& truth, const Motion& regenerated) {
           Eigen::AngleAxisd(real.world_from_joint[own].transpose() * other.world_from_joint[there])
               .angle();
   }
-  return sum * 180 / std::numbers::pi /
+  return sum / kRadiansPerDegree /
          (static_cast<double>(joints.size()) * static_cast<double>(truth.frames()));
 }
 

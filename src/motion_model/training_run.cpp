@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 
 #include "base/user_cache.hpp"
@@ -59,11 +58,8 @@ TrainedRun train_model(Device& device, const TrainingSet& data, const ClipStore&
   // What the model to start from has seen is no test for this one either.
   if (start != nullptr) {
     model.training_clips = start->training_clips;
-    std::erase_if(model.training_clips, [&](const TrainingClip& before) {
-      return std::ranges::any_of(data.clips, [&](const TrainingClip& clip) {
-        return clip.fingerprint == before.fingerprint;
-      });
-    });
+    std::erase_if(model.training_clips,
+                  [&](const TrainingClip& clip) { return is_among(data.clips, clip); });
   }
   model.training_clips.insert(model.training_clips.end(), data.clips.begin(), data.clips.end());
   return {std::move(model), training_s};

@@ -36,6 +36,9 @@ struct TrainingClip {
 /// @throws InputError if the file cannot be read
 TrainingClip identify_clip(const std::filesystem::path& path);
 
+/// Whether one of the clips has the same bytes.
+bool is_among(const std::vector<TrainingClip>& clips, const TrainingClip& clip);
+
 /// A clip to train on, its file read once for all that is made of it.
 struct LoadedClip {
   TrainingClip clip;

@@ -45,9 +45,9 @@ class PoseFeatures {
 
   /// Back to channels on `skeleton` (the model's own or any with the same joint names), angles
   /// continuous. 6D blocks are made orthonormal by Gram-Schmidt from their leading axis on; joints
-  /// without features take
-  /// their parent's motion times their constant local rotation. Position channels of other joints
-  /// than the moving root stay as far from the joint's OFFSET as they were on average in training.
+  /// without features take their parent's motion times their constant local rotation. Position
+  /// channels of other joints than the moving root stay as far from the joint's OFFSET as they were
+  /// on average in training.
   /// @param features [frames x dimension]  @param root_position [frames x 3] world, file units
   /// @throws ShapeError, InputError if `skeleton` lacks a joint
   Motion decode(const MatrixD& features, const Eigen::Matrix3d& camera_from_world,
