@@ -32,7 +32,8 @@ void FusedDownPass::forward(const Matrix& drive, const Matrix& states) const {
   const Crbm& crbm = layer_->crbm;
   Defines defines = crbm_row_defines(crbm.shape(), tile_);
   defines["ORDER_B"] = 0;
-  defines["CENTERED"] = below_ == Below::code ? 1 : 0;
+  // Else left to its default, as a decoder does: the two then share one compiled program.
+  if (below_ == Below::code) defines["CENTERED"] = 1;
   launch(crbm.device(), crbm.device().programs().kernel("cdbn_decoder.cl", "decode_means", defines),
          size(), states.buffer(), drive.buffer(), to_int(windows_.frames - windows_.first),
          to_int(windows_.first), to_int(windows_.count), to_int(windows_.frames),
