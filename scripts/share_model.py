@@ -20,7 +20,7 @@ def shared(header: dict, acknowledgement: str) -> dict:
         start = about["started_from"]
         start["model"] = pathlib.Path(start["model"]).name
     metadata = {"acknowledgement": acknowledgement, "mcdbn": json.dumps(about)}
-    return {**header, "__metadata__": metadata}
+    return {**header, "__metadata__": {**header["__metadata__"], **metadata}}
 
 
 def main() -> None:

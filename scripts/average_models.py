@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""The mean of a model's parameters and of those that it came to: average_models.py MODEL FURTHER OUT
+
+FURTHER is what `train --from MODEL` made. Each forgot or learnt by heart something else, and between
+them lie parameters that do better than either (docs/corpus.md). All but the numbers is FURTHER's, and
+the metadata say `averaged_with`.
+"""
+
+import json
+import pathlib
+import struct
+import sys
+
+LETTERS = {"F16": "e", "F32": "f", "F64": "d"}  # of struct
+MAY_DIFFER = ("config", "sampling", "started_from", "training_clips")
+
+
+def read_model(path: str) -> tuple[dict, bytes]:
+    content = pathlib.Path(path).read_bytes()
+    (length,) = struct.unpack_from("<Q", content)
+    return json.loads(content[8 : 8 + length]), content[8 + length :]
+
+
+def network(header: dict) -> dict:
+    """What two models must have in common: features, scaling, camera, sizes."""
+    about = json.loads(header["__metadata__"]["mcdbn"])
+    return {name: value for name, value in about.items() if name not in MAY_DIFFER}
+
+
+def numbers(tensor: dict, content: bytes) -> tuple[float, ...]:
+    begin, end = tensor["data_offsets"]
+    return tuple(number for (number,) in struct.iter_unpack("<" + LETTERS[tensor["dtype"]],
+                                                            content[begin:end]))
+
+
+def averaged(header: dict, content: bytes, other_header: dict, other_content: bytes) -> bytes:
+    """The second model's bytes with the mean of both's numbers in each tensor."""
+    if network(header) != network(other_header):
+        sys.exit("the models differ in features, scaling, camera or sizes")
+    result = bytearray(other_content)
+    for name, tensor in other_header.items():
+        if name == "__metadata__":
+            continue
+        other = header.get(name, {})
+        if (tensor["dtype"], tensor["shape"]) != (other.get("dtype"), other.get("shape")):
+            sys.exit(f"{name} is not of one type and shape in both models")
+        begin, end = tensor["data_offsets"]
+        means = [(a + b) / 2
+                 for a, b in zip(numbers(other, content), numbers(tensor, other_content))]
+        result[begin:end] = struct.pack(f"<{len(means)}{LETTERS[tensor['dtype']]}", *means)
+    return bytes(result)
+
+
+def main() -> None:
+    model, further, out = sys.argv[1:]
+    header, content = read_model(further)
+    result = averaged(*read_model(model), header, content)
+    header["__metadata__"]["averaged_with"] = pathlib.Path(model).name
+    text = json.dumps(header, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 8)
+    pathlib.Path(out).write_bytes(struct.pack("<Q", len(text)) + text + result)
+
+
+if __name__ == "__main__":
+    main()

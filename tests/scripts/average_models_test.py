@@ -1,0 +1,71 @@
+"""scripts/average_models.py: the mean of each number, all else the second model's, nothing of unlike models.
+
+    average_models_test.py
+"""
+
+import json
+import pathlib
+import struct
+import subprocess
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/average_models.py"
+
+
+def write_model(path, half, single, seed, fps=30.0, dtype="F32"):
+    about = {"config": {"seed": seed}, "modalities": {"fps": fps}}
+    header = {
+        "__metadata__": {"mcdbn": json.dumps(about)},
+        "W": {"dtype": "F16", "shape": [1, len(half)], "data_offsets": [0, 2 * len(half)]},
+        "b": {"dtype": dtype, "shape": [len(single)],
+              "data_offsets": [2 * len(half), 2 * len(half) + 4 * len(single)]},
+    }
+    text = json.dumps(header).encode()
+    path.write_bytes(struct.pack("<Q", len(text)) + text + struct.pack(f"<{len(half)}e", *half) +
+                     struct.pack(f"<{len(single)}f", *single))
+
+
+class AverageModels(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+        self.model, self.further, self.out = (
+            self.folder / name for name in ("model.safetensors", "further.safetensors", "out"))
+        write_model(self.model, [1.0, -2.0, 0.5], [10.0, 20.0], seed=1)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def average(self):
+        return subprocess.run([SCRIPT, self.model, self.further, self.out], capture_output=True,
+                              text=True, check=False)
+
+    def test_means_and_the_rest_of_the_second(self):
+        write_model(self.further, [3.0, -4.0, 0.25], [11.0, -20.0], seed=2)
+        result = self.average()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        content = self.out.read_bytes()
+        (length,) = struct.unpack_from("<Q", content)
+        header = json.loads(content[8 : 8 + length])
+        self.assertEqual(length % 8, 0)
+        self.assertEqual(struct.unpack_from("<3e", content, 8 + length), (2.0, -3.0, 0.375))
+        self.assertEqual(struct.unpack_from("<2f", content, 8 + length + 6), (10.5, 0.0))
+        self.assertEqual(len(content), 8 + length + 14)
+        self.assertEqual(json.loads(header["__metadata__"]["mcdbn"])["config"], {"seed": 2})
+        self.assertEqual(header["__metadata__"]["averaged_with"], "model.safetensors")
+
+    def test_unlike_models_are_refused(self):
+        for unlike, words in (({"fps": 25.0}, "features, scaling, camera or sizes"),
+                              ({"dtype": "I32"}, "b is not of one type"),
+                              ({"single": [1.0, 2.0, 3.0]}, "b is not of one type")):
+            single = unlike.pop("single", [1.0, 2.0])
+            write_model(self.further, [1.0, 2.0, 3.0], single, seed=2, **unlike)
+            result = self.average()
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn(words, result.stderr)
+            self.assertFalse(self.out.exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
