@@ -11,14 +11,10 @@ import pathlib
 import struct
 import sys
 
+from model_file import read_model, write_model
+
 LETTERS = {"F16": "e", "F32": "f", "F64": "d"}  # of struct
 MAY_DIFFER = ("config", "sampling", "started_from", "training_clips")
-
-
-def read_model(path: str) -> tuple[dict, bytes]:
-    content = pathlib.Path(path).read_bytes()
-    (length,) = struct.unpack_from("<Q", content)
-    return json.loads(content[8 : 8 + length]), content[8 + length :]
 
 
 def network(header: dict) -> dict:
@@ -56,9 +52,7 @@ def main() -> None:
     header, content = read_model(further)
     result = averaged(*read_model(model), header, content)
     header["__metadata__"]["averaged_with"] = pathlib.Path(model).name
-    text = json.dumps(header, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 8)
-    pathlib.Path(out).write_bytes(struct.pack("<Q", len(text)) + text + result)
+    write_model(out, header, result)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,9 @@ are.
 
 import json
 import pathlib
-import struct
 import sys
+
+from model_file import read_model, write_model
 
 
 def shared(header: dict, acknowledgement: str) -> dict:
@@ -25,12 +26,8 @@ def shared(header: dict, acknowledgement: str) -> dict:
 
 def main() -> None:
     source, target, acknowledgement = sys.argv[1:]
-    content = pathlib.Path(source).read_bytes()
-    (length,) = struct.unpack_from("<Q", content)
-    header = shared(json.loads(content[8 : 8 + length]), acknowledgement)
-    text = json.dumps(header, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 8)
-    pathlib.Path(target).write_bytes(struct.pack("<Q", len(text)) + text + content[8 + length :])
+    header, numbers = read_model(source)
+    write_model(target, shared(header, acknowledgement), numbers)
 
 
 if __name__ == "__main__":
