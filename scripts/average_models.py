@@ -29,12 +29,13 @@ def numbers(tensor: dict, content: bytes) -> tuple[float, ...]:
                                                             content[begin:end]))
 
 
-def averaged(header: dict, content: bytes, other_header: dict, other_content: bytes) -> bytes:
-    """The second model's bytes with the mean of both's numbers in each tensor."""
-    if network(header) != network(other_header):
+def averaged(model: tuple[dict, bytes], further: tuple[dict, bytes]) -> bytes:
+    """The further model's numbers, each the mean of both models'."""
+    (header, content), (further_header, further_content) = model, further
+    if network(header) != network(further_header):
         sys.exit("the models differ in features, scaling, camera or sizes")
-    result = bytearray(other_content)
-    for name, tensor in other_header.items():
+    result = bytearray(further_content)
+    for name, tensor in further_header.items():
         if name == "__metadata__":
             continue
         other = header.get(name, {})
@@ -42,7 +43,7 @@ def averaged(header: dict, content: bytes, other_header: dict, other_content: by
             sys.exit(f"{name} is not of one type and shape in both models")
         begin, end = tensor["data_offsets"]
         means = [(a + b) / 2
-                 for a, b in zip(numbers(other, content), numbers(tensor, other_content))]
+                 for a, b in zip(numbers(other, content), numbers(tensor, further_content))]
         result[begin:end] = struct.pack(f"<{len(means)}{LETTERS[tensor['dtype']]}", *means)
     return bytes(result)
 
@@ -50,9 +51,9 @@ def averaged(header: dict, content: bytes, other_header: dict, other_content: by
 def main() -> None:
     model, further, out = sys.argv[1:]
     header, content = read_model(further)
-    result = averaged(*read_model(model), header, content)
+    means = averaged(read_model(model), (header, content))
     header["__metadata__"]["averaged_with"] = pathlib.Path(model).name
-    write_model(out, header, result)
+    write_model(out, header, means)
 
 
 if __name__ == "__main__":
