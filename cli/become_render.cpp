@@ -13,7 +13,7 @@ namespace mcdbn::cli {
 void run_render(const RenderCommandOptions&, const CommandContext& context) {
   const auto program = beside_program("libexec/mcdbn-cl/render");
   ::execv(program.c_str(), context.arguments);
-  throw Error(fmt::format("what draws cannot be started, {}: {}", program.string(),
+  throw Error(fmt::format("the drawing program cannot be started, {}: {}", program.string(),
                           std::generic_category().message(errno)));
 }
 

@@ -154,10 +154,12 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
                              "persistent_binary_crbm", "mrbm", "joint_likelihood", "fine_tuning",
                              "mrbm_chain", "gemm", "regeneration", "generation", "epoch"}))
       ->type_name("LAYER");
-  command->add_flag("--tune", options->tune,
-                    "First find what suits the device best and keep it in the user's cache folder");
-  command->add_flag("--roofline", options->roofline,
-                    "Also each kernel's arithmetic and bytes against what the device can do");
+  command->add_flag(
+      "--tune", options->tune,
+      "First tune the kernels for the device; the result is kept in the user's cache folder");
+  command->add_flag(
+      "--roofline", options->roofline,
+      "Also compare each kernel's arithmetic and memory traffic with the device's limits");
   mark_output(command->add_option("--trace", options->trace,
                                   "Writes one run's launches of each step, for chrome://tracing or "
                                   "Perfetto"),
@@ -165,7 +167,7 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
       ->type_name("FILE.json");
   command
       ->add_option("--seconds", options->seconds,
-                   "Time for each measurement; 0: one try, to see that it runs")
+                   "Seconds for each measurement; 0: run once, to check that it works")
       ->check(in_range(within(0, kLongest_s)))
       ->capture_default_str();
   add_device_options(*command, context);

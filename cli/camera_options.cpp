@@ -24,8 +24,9 @@ Camera read_camera_with_notices(const std::filesystem::path& file) {
   std::vector<std::string> assumed;
   Camera camera = read_camera(file, &assumed);
   if (camera.unit_m)
-    assumed.push_back(fmt::format("{}: its units of {:g} m meet the motion's by a body of 1.7 m",
-                                  file.string(), *camera.unit_m));
+    assumed.push_back(fmt::format(
+        "{}: its units of {:g} m are scaled to the motion's, whose body is taken as 1.7 m",
+        file.string(), *camera.unit_m));
   for (const std::string& line : assumed) spdlog::warn("{}", line);
   return camera;
 }
@@ -38,9 +39,10 @@ std::optional<Camera> SeenByOptions::camera() const {
 void add_seen_by_options(CLI::App& command, SeenByOptions& options) {
   auto* file = command
                    .add_option("--camera", options.file,
-                               "Calibration that saw the track, or is to see the motion; one of a "
-                               "file's cameras as FILE:NAME (default: none is known, see the "
-                               "others; --to track: the model's view)")
+                               "Calibration of the camera that filmed the track, or, with --to "
+                               "track, of the one that is to see the motion; one of a file's "
+                               "cameras as FILE:NAME (default: unknown, see the options below; "
+                               "with --to track: the model's view)")
                    ->type_name("FILE[:NAME]")
                    ->group(kCameraGroup);
   const auto add = [&](const std::string& flag, const Setting& setting,
@@ -49,15 +51,16 @@ void add_seen_by_options(CLI::App& command, SeenByOptions& options) {
   };
   add("--camera-pitch",
       {"pitch", AssumedView::kPitch_deg, "degrees",
-       "how far a camera without a file looks down; default: level"},
+       "how far a camera without calibration looks down; default: found from feet on level ground, "
+       "where the model can, else level"},
       options.view.pitch_deg);
   add("--camera-roll",
       {"roll", AssumedView::kRoll_deg, "degrees",
-       "how far it is turned clockwise, seen from behind it; default: not at all"},
+       "how far that camera is turned clockwise, seen from behind; default: likewise"},
       options.view.roll_deg);
   add("--camera-fov",
       {"fov", CameraPlacement::kFieldOfView_deg, "degrees",
-       "its vertical field of view; default: 60 across the image's longer side"},
+       "that camera's vertical field of view; default: 60 across the image's longer side"},
       options.view.field_of_view_deg);
 }
 

@@ -9,7 +9,7 @@
 
 namespace mcdbn::cli {
 
-/// The camera as a command line says it: a file, or where to place one that looks at the clip.
+/// The command line's camera: a file, or where to place one that looks at the clip.
 struct CameraOptions {
   std::filesystem::path file;
   CameraPlacement placement;
@@ -18,7 +18,7 @@ struct CameraOptions {
   Camera camera_for(const Motion& motion) const;
 };
 
-/// What a command line says of the camera that saw a track.
+/// What a command line gives of the camera that filmed a track.
 struct SeenByOptions {
   std::filesystem::path file;  ///< FILE or FILE:NAME
   AssumedView view;            ///< of a camera without a file
@@ -27,7 +27,7 @@ struct SeenByOptions {
   std::optional<Camera> camera() const;
 };
 
-/// A camera file's camera; says what was taken for granted of it. @throws InputError
+/// A camera file's camera; warns what was assumed of it. @throws InputError
 Camera read_camera_with_notices(const std::filesystem::path& file);
 
 /// --camera FILE[:NAME], or --camera-pitch, --camera-roll, --camera-fov.
@@ -37,7 +37,7 @@ void add_seen_by_options(CLI::App& command, SeenByOptions& options);
 /// --image-size.
 void add_camera_options(CLI::App& command, CameraOptions& options);
 
-/// --camera-azimuth and --camera-elevation, which are as the model was trained if nobody says them.
+/// --camera-azimuth and --camera-elevation; default: those that the model was trained with.
 void add_view_flags(CLI::App& command, std::optional<double>& azimuth_deg,
                     std::optional<double>& elevation_deg);
 

@@ -25,8 +25,7 @@ void add_seed_option(CLI::App& command, CommandContext& context) {
 }
 
 void add_quiet_option(CLI::App& command, CommandContext& context) {
-  command.add_flag("--quiet", context.quiet,
-                   "No progress and no results in words: warnings and errors alone");
+  command.add_flag("--quiet", context.quiet, "No progress and no messages but warnings and errors");
 }
 
 void add_json_option(CLI::App& command, CommandContext& context) {

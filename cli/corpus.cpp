@@ -24,7 +24,7 @@ struct CorpusOptions {
   fs::path list, joint_map;
 };
 
-/// Clips that something is the same of.
+/// Clips that have something in common, such as their action.
 struct Amount {
   std::size_t clips = 0;
   double seconds = 0;
@@ -131,7 +131,7 @@ void run_corpus(const CommandContext& context, const CorpusOptions& options) {
 void add_corpus_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<CorpusOptions>();
   CLI::App* command = app.add_subcommand(
-      "corpus", "Lists clips to train on: people, actions, hours, and what is odd about them");
+      "corpus", "Lists clips to train on: people, actions, hours, and their problems");
   command
       ->add_option("data", options->data,
                    "BVH or AMC files, folders that hold some, or lists of them")
@@ -144,9 +144,10 @@ void add_corpus_command(CLI::App& app, CommandContext& context) {
               context)
       ->type_name("FILE");
   command
-      ->add_option("--joint-map", options->joint_map,
-                   "TOML file of role = \"joint name\", for skeletons whose names tell too little; "
-                   "`train` takes it too (docs/joints.md)")
+      ->add_option(
+          "--joint-map", options->joint_map,
+          "TOML file of role = \"joint name\", for skeletons whose joint names do not show "
+          "the roles; `train` takes it too (docs/joints.md)")
       ->type_name("FILE");
   add_json_option(*command, context);
   add_quiet_option(*command, context);

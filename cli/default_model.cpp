@@ -11,12 +11,12 @@ namespace mcdbn::cli {
 void add_model_option(CLI::App& command, std::filesystem::path& model) {
   command
       .add_option("--model", model,
-                  "Trained model; left out, the general one that comes with the program")
+                  "Trained model (default: the general one that comes with the program)")
       ->type_name("FILE");
 }
 
-std::filesystem::path model_or_default(const std::filesystem::path& said) {
-  if (!said.empty()) return said;
+std::filesystem::path model_or_default(const std::filesystem::path& given) {
+  if (!given.empty()) return given;
   auto model = beside_program("share/mcdbn-cl/default_model.safetensors");
   if (!std::filesystem::exists(model))
     throw ConfigError(

@@ -8,8 +8,8 @@ namespace mcdbn::cli {
 /// Adds --model for a trained model of motion; without it the one that comes with the program.
 void add_model_option(CLI::App& command, std::filesystem::path& model);
 
-/// `said`, or else the model that comes with the program, which is told: it lies under
-/// share/mcdbn-cl beside the program's own folder. @throws ConfigError if there is none
-std::filesystem::path model_or_default(const std::filesystem::path& said);
+/// `given`; where it is empty, the model that comes with the program, with a notice. That lies
+/// under share/mcdbn-cl beside the program's own folder. @throws ConfigError if there is none
+std::filesystem::path model_or_default(const std::filesystem::path& given);
 
 }  // namespace mcdbn::cli

@@ -20,20 +20,20 @@ std::string detector_names() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-DetectorViews detector_like(const std::string& said) {
-  const auto named = std::ranges::find(detectors(), said, &Detector::name);
+DetectorViews detector_like(const std::string& name_or_file) {
+  const auto named = std::ranges::find(detectors(), name_or_file, &Detector::name);
   if (named != detectors().end())
     return {joint_set(named->joint_set).keypoints, named->noise, {}, {}};
-  if (!std::filesystem::exists(said))
-    throw InputError(
-        fmt::format("{}: neither a detector ({}) nor a track file", said, detector_names()));
-  const Track2d track = read_track(said);
+  if (!std::filesystem::exists(name_or_file))
+    throw InputError(fmt::format("{}: neither a detector ({}) nor a track file", name_or_file,
+                                 detector_names()));
+  const Track2d track = read_track(name_or_file);
   const double height_px = person_height_px(track);
   if (track.keypoints.empty() || !std::isfinite(height_px))
     throw InputError(fmt::format(
         "{}: shows no person's hip, knee and ankle as a detector names them; its noise cannot be "
         "measured",
-        said));
+        name_or_file));
   return {track.keypoints, measured_noise(track, height_px), {}, {}};
 }
 

@@ -7,10 +7,10 @@
 
 namespace mcdbn::cli {
 
-/// @param said a name of detectors(), or a track file: then its joints, and the noise that it shows
-/// @return the joints and what becomes of them; cameras and people as usual
+/// @param name_or_file a name of detectors(), or a track file: then its joints and measured noise
+/// @return the joints and their noise; cameras and people by default
 /// @throws InputError if it is neither, or the file's joints are no detector's
-DetectorViews detector_like(const std::string& said);
+DetectorViews detector_like(const std::string& name_or_file);
 
 /// "openpose, mediapipe, coco".
 std::string detector_names();

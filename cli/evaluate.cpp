@@ -44,7 +44,7 @@ struct EvaluateOptions {
   std::size_t uncertainty_draws = kUncertaintyDraws;
 };
 
-/// What the protocol leaves open is filled in; what was said stays.
+/// Fills in the protocol's defaults; options that were given stay.
 /// `paper` is section V: every clip, those trained on too, regenerated ten times by the network
 /// alone.
 void apply_protocol(EvaluateOptions& options) {
@@ -79,7 +79,7 @@ void print_limbs(const EvaluationReport& report) {
   }
 }
 
-/// How many 90 % intervals hold the truth; the JSON says it joint by joint, channel by channel.
+/// The share of 90 % intervals that hold the truth; the JSON has it for each joint and channel.
 void print_coverage(const EvaluationReport& report) {
   if (report.joints.empty()) return;
   const auto by_share = [](const auto& x, const auto& y) {
@@ -211,8 +211,8 @@ void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
   add_fit_option(command, options.fit, "default: track, none in the paper's protocol; all methods");
   command
       .add_option("--uncertainty-draws", options.uncertainty_draws,
-                  "Motions drawn of each clip's posterior, to tell how sure the model's single "
-                  "answer is and in how many cases rightly; 0: it is not asked")
+                  "Motions drawn from each clip's posterior, to estimate the uncertainty of the "
+                  "model's single answer and how often its intervals hold the truth; 0: skip this")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   add_view_flags(command, options.azimuth_deg, options.elevation_deg);
@@ -224,20 +224,20 @@ void add_track_options(CLI::App& command, EvaluateOptions& options) {
       .add_option(
           "--tracks", options.tracks,
           "exact: the clips' own joints through the model's view; detector: what a detector "
-          "would see of somebody else who does the same, through cameras drawn around")
+          "would see of another person with the same motion, through cameras drawn around them")
       ->check(CLI::IsMember({kExact, kDetector}))
       ->capture_default_str()
       ->group(kGroup);
   command
       .add_option("--like", options.like,
-                  "With --tracks detector: which (" + detector_names() +
-                      "), or a track file that one wrote")
+                  "With --tracks detector: its name (" + detector_names() +
+                      "), or a track file that it wrote")
       ->capture_default_str()
       ->type_name("NAME|FILE")
       ->group(kGroup);
   command
       .add_flag("--camera-unknown", options.camera_unknown,
-                "Nobody is told where the camera stands and what its lens is")
+                "Hide the camera's place and lens from every method")
       ->group(kGroup);
   visit_group("person", options.people, [&](const Setting& setting, double& value) {
     add_setting_flag(command, flag_of(setting.name), setting, value)->group(kGroup);
@@ -245,7 +245,7 @@ void add_track_options(CLI::App& command, EvaluateOptions& options) {
   add_detector_camera_flags(command, options.cameras);
 }
 
-/// What trackers do to a track, done to the test clips' before any method sees them.
+/// Trackers' faults, applied to the test clips' tracks before any method sees them.
 void add_damage_options(CLI::App& command, TrackDamage& damage) {
   visit_group("track", damage, [&](const Setting& setting, double& value) {
     add_setting_flag(command, flag_of(setting.name), setting, value)

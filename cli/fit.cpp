@@ -59,7 +59,7 @@ struct FitOptions {
   bool standardize = false;
   MachineSettings settings;
   std::vector<std::size_t> widths, orders;  ///< of each layer, where they differ
-  /// Whether they were said.
+  /// To check whether they were given.
   const CLI::Option *order = nullptr, *layers = nullptr, *each_width = nullptr,
                     *each_order = nullptr;
 
@@ -201,7 +201,7 @@ void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
   });
 }
 
-/// The layers from below, by --widths and --orders where they are said.
+/// The layers from below, by --widths and --orders where they are given.
 std::vector<LayerSize> layer_sizes(const FitOptions& options) {
   const MachineKind& kind = options.kind();
   const auto &widths = options.widths, &orders = options.orders;
@@ -247,13 +247,14 @@ void run_fit(const CommandContext& context, const FitOptions& options) {
 }
 
 /// Before the flags of the settings: options are taken in the order in which they were added, so
-/// that flags have the last word.
+/// that flags override the file.
 void add_config_option(CLI::App& command, MachineSettings& settings) {
   command
       .add_option_function<std::filesystem::path>(
           "--config",
           [&settings](const std::filesystem::path& file) {
-            for (const SaidSetting& said : read_settings_file(file)) assign_setting(settings, said);
+            for (const GivenSetting& given : read_settings_file(file))
+              assign_setting(settings, given);
           },
           "TOML file of settings; flags override it")
       ->type_name("FILE");
@@ -287,9 +288,10 @@ void add_fit_command(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("fit", "Fits a single machine to matrices of any data");
   add_matrix_input(*command, options->data, "data",
                    "Matrices, one row a case or a frame; each file is a sequence of its own");
-  add_modality_option(*command, options->modalities,
-                      "Matrices of an MRBM's modalities, each with its name; files of one name are "
-                      "sequences, as many and as long as the other names'");
+  add_modality_option(
+      *command, options->modalities,
+      "Matrices of an MRBM's modalities, each with its name; the files of a name are "
+      "sequences, as many and as long as those of every other name");
   command
       ->add_option("--gaussian", options->gaussian,
                    "Modalities of an MRBM whose units are Gaussian; the others are binary")
@@ -309,7 +311,7 @@ void add_fit_command(CLI::App& app, CommandContext& context) {
       ->required()
       ->type_name("FILE");
   command->add_flag("--standardize", options->standardize,
-                    "Scale each column to mean 0 and deviation 1, which Gaussian units want; kept "
+                    "Scale each column to mean 0 and deviation 1, which Gaussian units need; kept "
                     "in the file, and undone on output");
   add_config_option(*command, options->settings);
   add_setting_flags(*command, options->settings);

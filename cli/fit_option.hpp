@@ -8,12 +8,12 @@
 
 namespace mcdbn::cli {
 
-/// Motions drawn to tell how sure an answer is: so many tell a deviation to a tenth of itself.
+/// Motions drawn to estimate an answer's uncertainty: so many give a deviation to within a tenth.
 inline constexpr std::size_t kUncertaintyDraws = 50;
 
 inline constexpr const char *kFitTrack = "track", *kFitNone = "none";
 
-/// --fit track|none. @param note in the help, behind what it means
+/// --fit track|none. @param note at the end of the help
 void add_fit_option(CLI::App& command, std::string& fit, const std::string& note);
 std::optional<TrackFitSettings> track_fit(const std::string& fit);
 

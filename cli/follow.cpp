@@ -25,7 +25,7 @@ namespace {
 constexpr const char *kBvh = "bvh", *kCsv = "csv", *kJson = "json";
 constexpr const char* kGroup = "Track that is still growing";
 
-/// Where frames go: a file that is there to be read while it grows, or standard output.
+/// Where frames go: a file that can be read while it is written, or standard output.
 class FrameOutput {
  public:
   FrameOutput(const std::filesystem::path& path, const std::string& frames, double fps)
@@ -47,7 +47,7 @@ class FrameOutput {
   }
   ~FrameOutput() {
     try {
-      finish();  // what there is, is whole
+      finish();  // the frames so far make a complete file
     } catch (const Error& error) {
       spdlog::error("{}", error.what());
     }
@@ -88,7 +88,7 @@ class FrameOutput {
   std::size_t written_ = 0;
 };
 
-/// A track on its way to frames.
+/// Regenerates a track frame by frame.
 class Following {
  public:
   /// @param name the track's, for messages
@@ -129,7 +129,7 @@ class Following {
       throw InputError(fmt::format("{}: {}", name_, error.what()));
     }
     frames_ = std::make_unique<FrameOutput>(output_, options_.frames, like.fps);
-    spdlog::info("frames come back {} frames of {:g} a second later at most",
+    spdlog::info("a frame is written at most {} frames (of {:g} a second) after it came in",
                  live_->latency_frames(), model_.modalities.fps);
     for (; before_ > 0; --before_) push(TrackFrame::unseen(joints_));
   }
@@ -156,21 +156,22 @@ void add_follow_options(CLI::App& command, FollowOptions& options) {
       .add_flag("--follow", options.follow,
                 "Read the track line by line while it is written, from --input or standard input: "
                 "one frame a line, JSON or our CSV; write frames as they are finished, to -o or "
-                "standard output. Ctrl-C ends it, and what there is, is whole")
+                "standard output. Ctrl-C ends it and leaves a complete file")
       ->group(kGroup);
   command
       .add_option_function<std::size_t>(
           "--look-ahead", [&options](std::size_t frames) { options.look_ahead = frames; },
-          "Frames that an answer waits for, of the model's rate, at most the model's own; 3 more "
-          "follow for the fit. A model that was trained with more sees the track carried on "
-          "(default: the model's)")
+          "Frames to come that an answer waits for, at the model's rate, at most the model's own; "
+          "the fit waits for 3 more. With fewer than the model was trained with the rest is "
+          "extrapolated from the track (default: the model's)")
       ->check(CLI::Range(0, 1000))
       ->type_name("FRAMES")
       ->group(kGroup);
   command
-      .add_option("--frames", options.frames,
-                  "How frames are written: bvh; csv, joints' places; json, a line for each with "
-                  "channels and places (default: by the output's ending, else bvh)")
+      .add_option(
+          "--frames", options.frames,
+          "Format of the frames: bvh; csv: joints' places; json: a line a frame, channels and "
+          "places (default: by the output's ending, else bvh)")
       ->check(CLI::IsMember({kBvh, kCsv, kJson}))
       ->group(kGroup);
 }
@@ -182,7 +183,7 @@ void follow_track(const Model& model, const std::filesystem::path& input,
   TrackLines lines(name, reading);
   LineSource source(input);
   Following following(model, name, output, placement, options);
-  // Whoever asks to stop gets the frames that are on their way.
+  // After a request to stop the frames in progress are still written.
   const InterruptionDeferred until_the_end;
   while (const std::optional<std::string> line = source.next()) {
     std::optional<TrackFrame> frame;
@@ -191,7 +192,7 @@ void follow_track(const Model& model, const std::filesystem::path& input,
       frame = lines.read(*line);
     } catch (const InputError& error) {
       if (!following.has_begun()) throw;
-      spdlog::warn("{}: taken as a frame in which nobody was seen", error.what());
+      spdlog::warn("{}: taken as a frame that shows no person", error.what());
       broken = true;
     }
     if (frame) following.take(*frame, lines);
@@ -199,7 +200,7 @@ void follow_track(const Model& model, const std::filesystem::path& input,
     for (const std::string& notice : lines.take_notices()) spdlog::warn("{}", with_flags(notice));
   }
   const std::size_t written = following.finish();
-  if (written == 0) throw InputError(fmt::format("{}: no frame that shows somebody", name));
+  if (written == 0) throw InputError(fmt::format("{}: no frame that shows a person", name));
   spdlog::info("{}: {} frames", output.empty() ? "standard output" : output.string(), written);
 }
 

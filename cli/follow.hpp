@@ -19,8 +19,8 @@ struct FollowOptions {
 
 void add_follow_options(CLI::App& command, FollowOptions& options);
 
-/// Reads a track line by line and writes frames as they are finished, until the input ends or
-/// somebody asks to stop; the rest is then written, too.
+/// Reads a track line by line and writes frames as they are finished, until the input ends or a
+/// stop is requested; the frames in progress are then still written.
 /// @param input "-": standard input  @param output empty: standard output
 /// @throws InputError, ConfigError, as LiveRegeneration and TrackLines do
 void follow_track(const Model& model, const std::filesystem::path& input,

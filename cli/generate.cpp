@@ -40,7 +40,7 @@ std::vector<SeedClip> load_seeds(const GenerateOptions& options, double fps) {
   return seeds;
 }
 
-/// How bounded and alive it is.
+/// Reports whether the motion stays bounded and keeps moving.
 void report(const GenerationHealth& health) {
   constexpr double kLeast = 0.5, kMost = 1.5;  // shares of the training data's deviation
   std::vector<double> deviation(health.deviation.begin(), health.deviation.end());
@@ -83,19 +83,19 @@ void add_generate_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<GenerateOptions>();
   GenerationOptions& generation = options->generation;
   CLI::App* command = app.add_subcommand(
-      "generate", "Goes on where a clip ends: new 3D motion, as BVH, without any track");
+      "generate", "Continues a clip where it ends: new 3D motion, as BVH, without any track");
   add_model_option(*command, options->model);
   command
       ->add_option(
           "--seed-clip", options->seed_clips,
-          "BVH clip to go on from: its last frames and its person; several are gone on from "
+          "BVH clip to continue from its last frames, with its person; several are continued "
           "one after another")
       ->required()
       ->type_name("FILE");
   command
       ->add_option("--seed-every", options->seed_every_s,
-                   "Go on from moments all over a clip, so far apart; from its end alone where "
-                   "nothing is said")
+                   "Continue from moments throughout a clip, this far apart (default: from its end "
+                   "alone)")
       ->check(in_range(within(kLeastSeconds, kMostSeconds)))
       ->type_name("SECONDS");
   mark_output(
@@ -112,10 +112,9 @@ void add_generate_command(CLI::App& app, CommandContext& context) {
       ->check(in_range(within(1, kMostSamples)))
       ->capture_default_str();
   command
-      ->add_option(
-          "--temperature", generation.temperature,
-          "How far hidden units are drawn from their mean: 0 draws nothing, 1 as the model "
-          "has it; 2 keeps walkers going")
+      ->add_option("--temperature", generation.temperature,
+                   "How far hidden units are drawn from their mean: 0: not at all, 1: as the model "
+                   "defines it; 2 keeps walkers walking")
       ->check(in_range(within(0, kHottest)))
       ->capture_default_str();
   command

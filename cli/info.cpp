@@ -145,7 +145,7 @@ void print_value(const std::string& key, const json& value, const std::string& i
   std::cout << fmt::format("{}{:<21} {}\n", indent, key, text);
 }
 
-/// Names line by line, people with what is said of each.
+/// Lists of names line by line; people and cameras each with their values.
 void print_for_people(const json& description) {
   const json roles = description.value("roles", json::object());
   for (const auto& [key, value] : description.items()) {
@@ -166,7 +166,7 @@ void print_for_people(const json& description) {
         continue;
       }
       std::cout << fmt::format("  {}\n", i + 1);
-      for (const auto& [what, said] : value[i].items()) print_value(what, said, "    ");
+      for (const auto& [field, content] : value[i].items()) print_value(field, content, "    ");
     }
   }
 }
@@ -180,8 +180,8 @@ void add_info_command(CLI::App& app, CommandContext& context) {
       "info", "Describes a clip, a 2D track, cameras, a trained model or a machine");
   command
       ->add_option("file", *path,
-                   "BVH, AMC, track (a file or a folder), calibration, model or machine; left "
-                   "out, the model that comes with the program")
+                   "BVH, AMC, track (a file or a folder), calibration, model or machine (default: "
+                   "the model that comes with the program)")
       ->type_name("FILE");
   add_track_options(*command, *options);
   add_json_option(*command, context);

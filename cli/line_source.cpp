@@ -46,7 +46,7 @@ bool LineSource::read_more() {
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return false;
   if (count < 0)
     throw InputError(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno)));
-  if (count == 0 && awaits_writer_) {  // a pipe that nobody writes to yet
+  if (count == 0 && awaits_writer_) {  // a pipe without a writer yet
     ::usleep(kLookEvery_ms * 1000);
     return false;
   }

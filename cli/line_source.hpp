@@ -6,7 +6,7 @@
 
 namespace mcdbn::cli {
 
-/// Lines of a file, a pipe or standard input, as they are written. Who waits for one hears Ctrl-C.
+/// Lines of a file, a pipe or standard input, as they are written. Ctrl-C ends the wait for one.
 class LineSource {
  public:
   /// @param path "-": standard input  @throws InputError if it cannot be opened
@@ -15,7 +15,7 @@ class LineSource {
   LineSource(const LineSource&) = delete;
   LineSource& operator=(const LineSource&) = delete;
 
-  /// Without the line break; none: the input has ended, or somebody asked to stop.
+  /// Without the line break; none: the input has ended, or a stop was requested.
   /// @throws InputError if it cannot be read
   std::optional<std::string> next();
 

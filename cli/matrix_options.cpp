@@ -64,7 +64,7 @@ Cdbn stack_of(const SavedMachine& saved, const std::filesystem::path& file) {
   if (const Cdbn* cdbn = std::get_if<Cdbn>(&saved.machine)) return *cdbn;
   if (std::holds_alternative<Mrbm>(saved.machine))
     throw InputError(
-        fmt::format("{}: an MRBM; its data are said by --modality NAME=FILE", file.string()));
+        fmt::format("{}: an MRBM; its data are given by --modality NAME=FILE", file.string()));
   throw InputError(fmt::format("{}: an MCDBN; this command takes a single machine", file.string()));
 }
 

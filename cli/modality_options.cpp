@@ -31,14 +31,14 @@ void check_rows(const ModalityData& one, const ModalityData& first) {
 
 }  // namespace
 
-void add_modality_option(CLI::App& command, std::vector<std::string>& said, const char* help) {
-  command.add_option("--modality", said, help)->type_name("NAME=FILE")->expected(1, -1);
+void add_modality_option(CLI::App& command, std::vector<std::string>& arguments, const char* help) {
+  command.add_option("--modality", arguments, help)->type_name("NAME=FILE")->expected(1, -1);
 }
 
-std::vector<ModalityData> read_modalities(const std::vector<std::string>& said,
+std::vector<ModalityData> read_modalities(const std::vector<std::string>& arguments,
                                           const std::string& tensor) {
   std::vector<ModalityData> modalities;
-  for (const std::string& one : said) {
+  for (const std::string& one : arguments) {
     const auto equals = one.find('=');
     if (equals == 0 || equals == std::string::npos)
       throw ConfigError(fmt::format("--modality {}: NAME=FILE is wanted", one));

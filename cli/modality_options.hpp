@@ -8,19 +8,20 @@
 
 namespace mcdbn::cli {
 
-/// What --modality NAME=FILE said of one name.
+/// Data of one name of --modality NAME=FILE.
 struct ModalityData {
   std::string name;
   MatrixInput files;
   std::vector<MatrixF> data;
 };
 
-void add_modality_option(CLI::App& command, std::vector<std::string>& said, const char* help);
+void add_modality_option(CLI::App& command, std::vector<std::string>& arguments, const char* help);
 
-/// Reads the files, those of one name together, in the order in which the names come.
+/// Reads the files, those of one name together, in the order of the names.
+/// @param arguments NAME=FILE each
 /// @throws ConfigError for what is no NAME=FILE; InputError unless the files of all names have the
 /// same numbers of rows
-std::vector<ModalityData> read_modalities(const std::vector<std::string>& said,
+std::vector<ModalityData> read_modalities(const std::vector<std::string>& arguments,
                                           const std::string& tensor);
 
 /// An MRBM's modalities as it sees them.
@@ -34,7 +35,7 @@ struct MrbmUnits {
 const Mrbm& mrbm_of(const SavedMachine& saved, const std::filesystem::path& file,
                     const char* option);
 
-/// @param option that said the name  @throws ConfigError for a name that the MRBM has not
+/// @param option that gave the name  @throws ConfigError for a name that the MRBM has not
 std::size_t modality_of(const Mrbm& mrbm, const std::string& name, const char* option);
 
 /// What was read, in the machine's order and by its scales, all rows `copies` times over; so many

@@ -5,7 +5,7 @@
 
 namespace mcdbn::cli {
 
-/// One line on stderr that says how far a long job is: rewritten in place on a terminal, a plain
+/// One line on stderr that shows how far a long job is: rewritten in place on a terminal, a plain
 /// line every few seconds elsewhere, nothing with --quiet.
 class ProgressLine {
  public:
@@ -16,7 +16,7 @@ class ProgressLine {
 
   /// @param fraction done, 0 … 1; adds the time left by the rate so far
   void show(const std::string& what, double fraction);
-  /// Of what comes when all that is counted is done.
+  /// For work after all that the fraction counts.
   void show(const std::string& what);
   double elapsed_s() const;
 

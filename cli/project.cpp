@@ -61,9 +61,10 @@ void add_project_command(CLI::App& app, CommandContext& context) {
       context, OutputKind::file_or_folder)
       ->required()
       ->type_name("FILE");
-  add_format_option(*command, options->format,
-                    "Of the track that is written; those of detectors have room for a detector's "
-                    "joints (--like) alone")
+  add_format_option(
+      *command, options->format,
+      "Format of the track to write; detectors' formats hold a detector's joints (--like) "
+      "alone")
       ->capture_default_str();
   mark_output(command->add_option("--write-camera", options->camera_output,
                                   "Also write the camera that was used, as OpenCV YAML"),
@@ -72,8 +73,8 @@ void add_project_command(CLI::App& app, CommandContext& context) {
   command
       ->add_option("--like", options->like,
                    "Joints, noise and drop-outs of a detector (" + detector_names() +
-                       "), or of a track file that one wrote, by --seed; default: the clip's own "
-                       "joints, exactly")
+                       "), or of a track file that one wrote, drawn by --seed (default: the clip's "
+                       "own joints, exactly)")
       ->type_name("NAME|FILE");
   CLI::Option* random = command->add_flag("--random-camera", options->random_camera,
                                           "A camera drawn at random around the person, by --seed");

@@ -54,30 +54,30 @@ void check_direction(const RegenerateOptions& options) {
     return;
   }
   const AssumedView& view = options.seen_by.view;
-  for (const auto& [said, flag] : {std::pair{!options.skeleton.empty(), "--skeleton"},
-                                   std::pair{!options.joint_map.empty(), "--joint-map"},
-                                   std::pair{options.method != kModel, "--method"},
-                                   std::pair{!options.write_camera.empty(), "--write-camera"},
-                                   std::pair{!options.uncertainty.empty(), "--uncertainty"},
-                                   std::pair{!options.fit.empty(), "--fit"},
-                                   std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
-                                   std::pair{view.roll_deg.has_value(), "--camera-roll"},
-                                   std::pair{view.field_of_view_deg.has_value(), "--camera-fov"}})
-    if (said)
+  for (const auto& [given, flag] : {std::pair{!options.skeleton.empty(), "--skeleton"},
+                                    std::pair{!options.joint_map.empty(), "--joint-map"},
+                                    std::pair{options.method != kModel, "--method"},
+                                    std::pair{!options.write_camera.empty(), "--write-camera"},
+                                    std::pair{!options.uncertainty.empty(), "--uncertainty"},
+                                    std::pair{!options.fit.empty(), "--fit"},
+                                    std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
+                                    std::pair{view.roll_deg.has_value(), "--camera-roll"},
+                                    std::pair{view.field_of_view_deg.has_value(), "--camera-fov"}})
+    if (given)
       throw ConfigError(fmt::format(
           "{} is for --to pose: a regenerated track has no skeleton and is not fitted, and its "
           "camera is the model's or a file's",
           flag));
 }
 
-/// What draws do not tell. @throws ConfigError
+/// Refuses --uncertainty of several samples. @throws ConfigError
 void check_uncertainty(const RegenerateOptions& options) {
   if (options.uncertainty.empty()) return;
   if (options.sampling.samples.value_or(1) > 1)
     throw ConfigError("--uncertainty is that of a single answer: leave out --samples");
 }
 
-/// What a track that is still growing cannot have, and what only it may leave out.
+/// Refuses options that --follow excludes or that need it; only it needs no --input and no -o.
 /// @throws ConfigError naming the first
 void check_follow(const RegenerateOptions& options) {
   const FollowOptions& following = options.following;
@@ -88,7 +88,7 @@ void check_follow(const RegenerateOptions& options) {
       throw ConfigError("--look-ahead and --frames are for --follow");
     return;
   }
-  for (const auto& [said, flag] :
+  for (const auto& [given, flag] :
        {std::pair{options.to == kToTrack, "--to track"},
         std::pair{options.method != kModel, "--method"},
         std::pair{!options.write_camera.empty(), "--write-camera"},
@@ -96,7 +96,7 @@ void check_follow(const RegenerateOptions& options) {
         std::pair{options.sampling.samples.value_or(1) > 1, "--samples"},
         std::pair{options.sampling.temperature.value_or(0) > 0, "--temperature"},
         std::pair{!track_fit(options.fit), "--fit none"}})
-    if (said)
+    if (given)
       throw ConfigError(fmt::format("{} needs the whole track: leave it out, or --follow", flag));
 }
 
@@ -104,21 +104,21 @@ void report(const std::filesystem::path& path, int frames, double fps) {
   spdlog::info("{}: {} at {:.4g} fps", path.string(), counted(frames, "frame"), fps);
 }
 
-/// What is taken for granted of a camera that nobody calibrated, pitch and roll as its clip told
-/// them.
+/// Warns what is assumed of a camera without calibration.
+/// @param found pitch and roll were estimated from the clip
 void report_assumed(const Camera& camera, bool found) {
   const Eigen::Vector3d up = camera.camera_from_world.col(1);
   const auto deg = [](double angle) { return std::round(angle * 1800 / EIGEN_PI) / 10 + 0.0; };
   spdlog::warn(
-      "no --camera: taken to look down by {:g} degrees and to be turned by {:g}{}, and to see "
-      "{:.4g} degrees from the image's top to its bottom; say what is known by --camera-pitch, "
+      "no --camera: assumed to look down by {:g} degrees and to be turned by {:g}{}, with a "
+      "vertical field of view of {:.4g} degrees; set what is known with --camera-pitch, "
       "--camera-roll, --camera-fov",
       deg(std::asin(std::clamp(-up.z(), -1.0, 1.0))), deg(std::atan2(-up.x(), -up.y())),
-      found ? ", as feet on level ground tell" : "",
+      found ? " (from feet on level ground)" : "",
       2 * std::atan(0.5 * camera.height_px / camera.fy_px) * 180 / EIGEN_PI);
 }
 
-/// What was missing in the track and what was wrong with it.
+/// Warns what was missing in the track and what was wrong with it.
 void report(const std::filesystem::path& path, const TrackFindings& findings) {
   const TrackFeatures::FillCount& filled = findings.filled;
   const std::vector<FrameRange>& stretches = findings.stretches.stretches;
@@ -132,7 +132,7 @@ void report(const std::filesystem::path& path, const TrackFindings& findings) {
         "themselves, with one body",
         path.string(), fmt::join(stretches | std::views::transform(frames), ", "));
   if (const auto& strays = findings.stretches.strays; !strays.empty())
-    spdlog::warn("{}: somebody elsewhere in frames {}: left out", path.string(),
+    spdlog::warn("{}: another person in frames {}: left out", path.string(),
                  fmt::join(strays | std::views::transform(frames), ", "));
   if (!findings.swaps.empty())
     spdlog::warn("{}: {}; put right", path.string(), described(findings.swaps));
@@ -164,8 +164,7 @@ void report_uncertainty(const Motion& motion, const MatrixD& deviations) {
       joints.front().first);
 }
 
-/// By the model, or by a simpler method if there is one; what is wrong with the track is said with
-/// its file.
+/// By the model, or by a simpler method if there is one. Errors of the track name its file.
 std::vector<Motion> regenerate_named(const std::filesystem::path& input, const Model& model,
                                      const Baseline* simpler, const Track2d& track,
                                      const ClipPlacement& placement,
@@ -206,7 +205,7 @@ ClipPlacement placement_of(const RegenerateOptions& options, const std::optional
     placement.skeleton_channels = std::move(clip.channels);
   }
   placement.fit = track_fit(options.fit);
-  // The network alone always says how sure it is: that costs less than a fit.
+  // The uncertainty of the network alone is always estimated: that costs less than a fit.
   const bool single = options.sampling.samples.value_or(1) == 1;
   if (!options.uncertainty.empty() || (single && !placement.fit))
     placement.uncertainty_draws = {kUncertaintyDraws, seed};
@@ -250,7 +249,7 @@ void follow(const Model& model, const RegenerateOptions& options,
   TrackReadOptions reading = options.track;
   if (camera && !reading.image_size) reading.image_size = {camera->width_px, camera->height_px};
   if (model.network.sampling.always)
-    spdlog::info("frames are the model's mean answer: what it draws, it draws for whole tracks");
+    spdlog::info("frames are the model's mean answer: it draws samples for whole tracks only");
   follow_track(model, options.input.empty() ? "-" : options.input, options.output, reading,
                placement_of(options, camera, seed), options.following);
 }
@@ -310,37 +309,38 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
   add_seen_by_options(*command, options->seen_by);
   command
       ->add_option("--skeleton", options->skeleton,
-                   "BVH whose skeleton to use; of other joint names it is joined by roles")
+                   "BVH file whose skeleton to use; other joint names are matched by their roles")
       ->type_name("FILE");
   command
       ->add_option("--joint-map", options->joint_map,
                    "TOML with lines such as left_hip = \"LeftUpLeg\": which joint of the skeleton "
-                   "plays which role, where its names and shape do not tell; for tracks of "
+                   "plays which role, where its names and shape do not show it; for tracks of "
                    "detectors")
       ->type_name("FILE");
   std::vector<std::string> methods = all_baselines();
   methods.insert(methods.begin(), kModel);
   command
       ->add_option("--method", options->method,
-                   "What answers: the model, or a simpler method that learns from the model's "
+                   "Method to use: the model, or a simpler one that learns from the model's "
                    "training clips, which must still be where they were")
       ->check(CLI::IsMember(methods))
       ->capture_default_str();
-  mark_output(command->add_option(
-                  "--write-camera", options->write_camera,
-                  "Also write the camera that sees the motion as the track shows it, given or "
-                  "assumed, as OpenCV YAML: for render --over"),
-              context)
+  mark_output(
+      command->add_option(
+          "--write-camera", options->write_camera,
+          "Also write the camera that projects the motion onto the track, given or assumed, "
+          "as OpenCV YAML: for render --over"),
+      context)
       ->type_name("FILE");
   mark_output(command->add_option(
                   "--uncertainty", options->uncertainty,
-                  "Also write how sure the motion is, as CSV: each joint's standard deviation in "
+                  "Also write the motion's uncertainty, as CSV: each joint's standard deviation in "
                   "each frame, along the world's axes, in the BVH file's unit"),
               context)
       ->type_name("FILE");
   add_track_options(*command, options->track);
   add_sampling_options(*command, options->sampling,
-                       "Variations; several are written as out_01.bvh … (default: 1)");
+                       "Number of variations; several are written as out_01.bvh … (default: 1)");
   add_fit_option(*command, options->fit, "default: track");
   add_follow_options(*command, options->following);
   add_seed_option(*command, context);

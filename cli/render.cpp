@@ -30,7 +30,7 @@ void add_render_command(CLI::App& app, CommandContext& context) {
       ->capture_default_str();
   command->add_flag("--overlay", render.overlay, "All clips in one picture");
   command->add_flag("--orbit", render.orbit, "The camera goes round the figure");
-  command->add_option("--orbit-speed", render.orbit_deg_per_s, "Of the camera, degrees a second")
+  command->add_option("--orbit-speed", render.orbit_deg_per_s, "Speed of --orbit, degrees a second")
       ->check(in_range(within(-3600, 3600)))
       ->capture_default_str();
   command->add_flag("!--still-camera", render.follow_root,

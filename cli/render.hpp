@@ -18,8 +18,8 @@ struct RenderCommandOptions {
   RenderOptions render;
 };
 
-/// Draws. mcdbn-cl has a program of its own for it, which it becomes here: what OpenCV needs for
-/// films is two hundred libraries, which would take every command a sixth of a second to load.
+/// Draws. mcdbn-cl replaces itself by a program of its own for it: OpenCV's films need two hundred
+/// libraries, which would take every command a sixth of a second to load.
 void run_render(const RenderCommandOptions& options, const CommandContext& context);
 
 }  // namespace mcdbn::cli

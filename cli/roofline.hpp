@@ -6,10 +6,9 @@
 
 namespace mcdbn::cli {
 
-/// Each kernel of a step, and the time between launches, against what the device could do: it
-/// multiplies no faster than `peak_gflops`, and reads what the kernel touches no faster than so
-/// many bytes can be read again and again, which is measured here. Kernels whose work nobody
-/// counted have their time alone.
+/// Each kernel of a step, and the time between launches, compared with the device's limits:
+/// `peak_gflops`, and the bandwidth of reading as many bytes as the kernel again and again, which
+/// is measured here. Kernels whose work is not counted have their time alone.
 nlohmann::ordered_json roofline(Device& device, const StepTimes& times, double peak_gflops);
 
 /// A line for each kernel.

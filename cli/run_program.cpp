@@ -47,8 +47,8 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 ok, 1 failure, 2 usage or configuration, 3 bad input, 4 no device or one that\n"
     "failed, 130 interrupted.";
 
-/// Lines as the pattern says, with nothing in them that a terminal would obey: names in messages
-/// come out of files.
+/// Lines by the pattern, without control characters for a terminal: names in messages come out of
+/// files.
 class PrintableLines : public spdlog::formatter {
  public:
   void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
@@ -74,7 +74,7 @@ void set_up_messages() {
   spdlog::set_default_logger(spdlog::stderr_logger_st("mcdbn-cl"));
   spdlog::set_formatter(std::make_unique<PrintableLines>());
   spdlog::cfg::load_env_levels();
-  // What OpenCV and FFmpeg say of a damaged film is said in our own words.
+  // Our own messages report a damaged film, in place of those of OpenCV and FFmpeg.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
 }
@@ -114,12 +114,12 @@ std::vector<std::filesystem::path> inputs_of(const CLI::App& command,
   std::vector<std::filesystem::path> inputs;
   for (const CLI::Option* option : command.get_options()) {
     if (std::ranges::count(context.outputs, option, &Output::first) > 0) continue;
-    for (const std::string& said : option->results()) {
-      inputs.emplace_back(said);
-      if (const auto name_end = said.find('='); name_end != std::string::npos)
-        inputs.emplace_back(said.substr(name_end + 1));  // --modality NAME=FILE
-      if (const auto file_end = said.rfind(':'); file_end != std::string::npos)
-        inputs.emplace_back(said.substr(0, file_end));  // --camera FILE:NAME
+    for (const std::string& argument : option->results()) {
+      inputs.emplace_back(argument);
+      if (const auto name_end = argument.find('='); name_end != std::string::npos)
+        inputs.emplace_back(argument.substr(name_end + 1));  // --modality NAME=FILE
+      if (const auto file_end = argument.rfind(':'); file_end != std::string::npos)
+        inputs.emplace_back(argument.substr(0, file_end));  // --camera FILE:NAME
     }
   }
   return inputs;

@@ -53,7 +53,7 @@ MatrixF given_samples(Device& device, const Cdbn& stack, const SavedMachine& sav
 MatrixF mrbm_samples(Device& device, const SavedMachine& saved, const SampleOptions& options) {
   const Mrbm& mrbm = mrbm_of(saved, options.model, "--modality and --infer");
   if (!options.given.files.empty())
-    throw ConfigError("--given: what is given of an MRBM is said by --modality NAME=FILE");
+    throw ConfigError("--given: what is known of an MRBM is given by --modality NAME=FILE");
   if (options.infer.empty()) throw ConfigError("--infer: wanted by an MRBM, the modality to draw");
   const std::size_t wanted = modality_of(mrbm, options.infer, "--infer");
   const MrbmUnits modalities =
@@ -93,16 +93,16 @@ void add_sample_command(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("sample", "Draws from a single machine by Gibbs steps");
   add_machine_option(*command, options->model);
   add_matrix_input(*command, options->given, "--given",
-                   "Matrices of what is given, NaN (an empty cell) where a unit is to be drawn; "
-                   "without them free chains of a machine without history");
+                   "Matrices of given values, NaN (an empty cell) where a unit is to be drawn; "
+                   "without them free chains, of a machine without history");
   add_modality_option(*command, options->modalities,
-                      "What is given of an MRBM's modalities, and stays; the others are drawn");
+                      "Given modalities of an MRBM, which stay fixed; the others are drawn");
   command->add_option("--infer", options->infer, "Modality of an MRBM whose draws are written")
       ->type_name("NAME");
-  add_setting_flag(
-      *command, "--count",
-      {"count", within(1, 1e6), "samples", "Free chains, or draws for all that is given"},
-      options->count);
+  add_setting_flag(*command, "--count",
+                   {"count", within(1, 1e6), "samples",
+                    "Number of free chains, or of draws for all that is given"},
+                   options->count);
   add_setting_flags(*command, options->chains);
   add_matrix_output(*command, context, options->output,
                     "File to write, .npy, .csv or .safetensors: a row a sample, or the rows of "

@@ -5,13 +5,13 @@
 namespace mcdbn::cli {
 namespace {
 
-/// Samples run as one batch and each step of a chain is a launch: more is a slip of the finger.
+/// Samples run as one batch and each step of a chain is a launch: more is a typing error.
 constexpr int kMost = 1000;
-/// Draws ten times as far from their mean as the model draws them say nothing of it any more.
+/// Draws ten times as far from their mean as the model's carry no information any more.
 constexpr double kHottest = 10.0;
-/// Of several samples of a calibrated model, which stray half as far as its answers are off at
-/// temperature 1: as far, then. Of ten on detectors' tracks the best is 18 % better than their mean
-/// at 2, and 10 % at 1 (docs/results.md).
+/// Of several samples of a calibrated model: at temperature 1 they deviate half as far as its
+/// answers are off, at 2 as far. Of ten on detectors' tracks the best is 18 % better than their
+/// mean at 2, and 10 % at 1 (docs/results.md).
 constexpr double kSeveral = 2.0;
 
 double usual_temperature(const Mcdbn& network, const RegenerationOptions& options) {
@@ -27,7 +27,7 @@ RegenerationOptions SamplingOptions::regeneration(const Mcdbn& network, std::uin
   options.seed = seed;
   options.sampling = network.sampling;
   if (gibbs_steps || mrbm_gibbs_steps) {
-    // Algorithm 5 as it stands: drawn anew in every frame, the temperature as it was said.
+    // Algorithm 5 as it stands: drawn anew in every frame, the temperature as it was given.
     options.sampling = {};
     options.sampling.gibbs_steps = gibbs_steps.value_or(mrbm_gibbs_steps ? 0 : 1);
     options.sampling.mrbm_gibbs_steps = mrbm_gibbs_steps.value_or(0);
@@ -41,7 +41,7 @@ void add_sampling_options(CLI::App& command, SamplingOptions& options, const cha
   command
       .add_option(
           "--temperature", options.temperature,
-          "0: the mean-field answer; above, variations that stray further and further from it "
+          "0: the mean-field answer; above, variations further and further from it "
           "(default: 2 with several samples; 1 if they are drawn anew in every frame or the model "
           "was trained to be sampled; else 0)")
       ->check(in_range(within(0, kHottest)));

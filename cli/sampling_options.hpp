@@ -7,7 +7,7 @@
 
 namespace mcdbn::cli {
 
-/// How variations are drawn; what is not said is as the model was trained for.
+/// How variations are drawn; what is not given is as the model was trained for.
 struct SamplingOptions {
   std::optional<std::size_t> samples, gibbs_steps, mrbm_gibbs_steps;
   std::optional<double> temperature;

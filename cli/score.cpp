@@ -104,7 +104,7 @@ Scores mrbm_scores(Device& device, const SavedMachine& saved, const ScoreOptions
   if (options.log_partition)
     throw ConfigError("--log-partition: an MRBM has none that is known; it takes a single RBM");
   if (!options.data.files.empty())
-    throw ConfigError("data: those of an MRBM are said by --modality NAME=FILE");
+    throw ConfigError("data: those of an MRBM are given by --modality NAME=FILE");
   const MrbmUnits data =
       mrbm_units(device, saved, mrbm, read_modalities(options.modalities, options.data.tensor));
   const std::vector<Modality>& modalities = mrbm.shape().modalities;
@@ -162,19 +162,19 @@ void run_score(const CommandContext& context, const ScoreOptions& options) {
 
 void add_score_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<ScoreOptions>();
-  CLI::App* command =
-      app.add_subcommand("score", "Says how well a single machine knows data, means over the rows");
+  CLI::App* command = app.add_subcommand(
+      "score", "Scores how well a single machine models data, means over the rows");
   add_machine_option(*command, options->model);
   add_matrix_input(*command, options->data, "data", "Matrices, each a sequence of its own");
   add_modality_option(*command, options->modalities,
-                      "Data of an MRBM, in place of these: every one of its modalities");
+                      "Data of an MRBM, in place of the files above: all its modalities");
   command->add_flag("--log-partition", options->log_partition,
                     "Estimate log Z of an RBM by annealed importance sampling, and with it the "
                     "log-likelihood");
   add_setting_flags(*command, options->annealing);
   add_matrix_output(*command, context, options->output,
                     "File to write, .npy, .csv or .safetensors: a row for each row that has a "
-                    "history, its columns what is printed, in that order");
+                    "history, a column for each printed score, in that order");
   add_json_option(*command, context);
   add_device_options(*command, context);
   command->footer(
@@ -183,8 +183,9 @@ void add_score_command(CLI::App& app, CommandContext& context) {
       "Free energy (of a stack: its top machine's), mean squared error of the mean-field\n"
       "reconstruction, and of a binary machine the pseudo-log-likelihood of scikit-learn's\n"
       "score_samples; of an MRBM the free energy of all modalities together, and each one's\n"
-      "reconstruction error. Scaled data are scored as the machine sees them, but for the "
-      "log-likelihood.");
+      "reconstruction error. Where `fit --standardize` scaled the data, all but the "
+      "log-likelihood\n"
+      "are of the scaled data.");
   command->callback(
       [&context, options] { context.run = [&context, options] { run_score(context, *options); }; });
 }

@@ -63,7 +63,7 @@ CLI::Option* add_switch_flag(CLI::App& command, const std::string& flag, const S
   const auto take = [set](std::int64_t count) { set(count > 0); };
   return command.add_flag_function(
       flag + ",!--no" + flag.substr(1), take,
-      fmt::format("{} ({} unless told otherwise)", setting.help, usual ? "on" : "off"));
+      fmt::format("{} (default: {})", setting.help, usual ? "on" : "off"));
 }
 
 }  // namespace mcdbn::cli

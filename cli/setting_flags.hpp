@@ -13,7 +13,7 @@ namespace mcdbn::cli {
 /// "--gaussian-rate" of "gaussian.rate".
 std::string flag_of(const std::string& setting);
 
-/// A text of the library for who types flags: `gaussian.rate`, in backquotes, becomes
+/// A message of the library for users of flags: `gaussian.rate`, in backquotes, becomes
 /// --gaussian-rate.
 std::string with_flags(const std::string& text);
 
@@ -21,11 +21,11 @@ std::string with_flags(const std::string& text);
 CLI::Validator in_range(const Range& range);
 
 /// Adds a flag for a number, with the setting's unit, help and range.
-/// @param set gets what was said and throws ConfigError if it will not do
+/// @param set gets the value and throws ConfigError if it is invalid
 CLI::Option* add_number_flag(CLI::App& command, const std::string& flag, const Setting& setting,
                              const std::function<void(const nlohmann::json&)>& set);
 
-/// Adds --flag and --no-flag. @param usual what holds if neither is said
+/// Adds --flag and --no-flag. @param usual the value if neither is given
 CLI::Option* add_switch_flag(CLI::App& command, const std::string& flag, const Setting& setting,
                              bool usual, const std::function<void(const nlohmann::json&)>& set);
 
@@ -40,7 +40,7 @@ CLI::Option* add_setting_flag(CLI::App& command, const std::string& flag, const 
       ->default_str(nlohmann::json(member).dump());
 }
 
-/// The same of one that is left as it is if nobody says it.
+/// The same of a member that keeps its value if the flag is not given.
 template <typename Member>
 CLI::Option* add_setting_flag(CLI::App& command, const std::string& flag, const Setting& setting,
                               std::optional<Member>& member) {

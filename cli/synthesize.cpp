@@ -64,15 +64,15 @@ void add_synthesize_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<SynthesizeOptions>();
   CLI::App* command =
       app.add_subcommand("synthesize", "Writes clips of parametric human motion as BVH");
-  command->add_option("--action", options->action, "What the figure does")
+  command->add_option("--action", options->action, "Action that the figure performs")
       ->required()
       ->check(CLI::IsMember(action_names()));
-  command->add_option("--clips", options->clips, "How many clips")
+  command->add_option("--clips", options->clips, "Number of clips")
       ->check(in_range(within(1, kMostFiles)))
       ->capture_default_str();
   command
       ->add_option("--subjects", options->subjects,
-                   "By how many people; a person's body and style are the same in every action")
+                   "Number of people; a person's body and style are the same in every action")
       ->check(in_range(within(1, kMostFiles)))
       ->capture_default_str();
   command->add_option("--seconds", options->seconds, "Length of a clip")->capture_default_str();

@@ -27,11 +27,11 @@ CLI::Option* add_format_option(CLI::App& command, std::string& format, const std
 }
 
 void add_track_options(CLI::App& command, TrackReadOptions& options) {
-  add_format_option(command, options.format, "Of the track (default: by its content)")
+  add_format_option(command, options.format, "Format of the track (default: by its content)")
       ->group(kTrackGroup);
   command
       .add_option("--person", options.person,
-                  "Which one: largest, all, or a number, 1 the largest (default: largest)")
+                  "Which person: largest, all, or a number, 1 the largest (default: largest)")
       ->type_name("WHO")
       ->group(kTrackGroup);
   command

@@ -43,7 +43,8 @@ ClipStore read_clips(const RunFolder& run) {
   return clips;
 }
 
-/// What stops a training that can go on is said with how; one that never began leaves nothing.
+/// Errors of a training that can be resumed name the command for it; one that never began leaves
+/// no files.
 template <typename Train>
 void resumable(RunFolder& run, const Train& train) {
   const auto advice = [&](const char* what) {
@@ -91,7 +92,8 @@ void train_once(const CommandContext& context, Device& device, const TrainOption
   resumable(run, [&] { train_run(context, device, options, run); });
 }
 
-/// What a training is was said when it was begun. @throws ConfigError naming an option that says it
+/// A training is resumed with the clips and settings that it was begun with.
+/// @throws ConfigError naming an option that would change them
 void check_resume(const CLI::App& command) {
   constexpr std::array kAllowed{"--resume", "--checkpoint-minutes", "--platform", "--device",
                                 "--quiet"};
@@ -159,7 +161,7 @@ void train_sweep(const CommandContext& context, Device& device, const TrainOptio
   for (const nlohmann::ordered_json& record : records) print_record(record);
 }
 
-/// The model file that --from means; empty where nobody said one.
+/// The model file that --from names; empty where it is not given.
 std::filesystem::path start_of(const TrainOptions& options) {
   return options.from == "default" ? model_or_default({}) : options.from;
 }
@@ -230,7 +232,7 @@ void add_train_command(CLI::App& app, CommandContext& context) {
       ->type_name("FILE|default");
   options->settings.add_to(*command);
   command->add_flag("--print-settings", options->print_settings,
-                    "Print every setting as it would be, in a file for --config, and do no more");
+                    "Print the value of every setting, as a file for --config, and do no more");
   command
       ->add_option(
           "--resume", options->resume,

@@ -33,25 +33,24 @@ void TrainingOptions::add_to(CLI::App& command) {
   command
       .add_option(
           "--preset", preset_,
-          "default; paper: the paper's own figures, which diverge; paper-stable: the same at "
-          "rates that do not; generation: the greedy stages alone, so that `generate` goes "
-          "on and on; general: many people, actions and skeletons for a detector's tracks, as the "
-          "model that comes with the program is trained")
+          "default; paper: the paper's own settings, which diverge; paper-stable: the same at "
+          "rates that do not; generation: the greedy stages alone, so that motion of `generate` "
+          "does not come to rest; general: many people, actions and skeletons for a detector's "
+          "tracks, as the model that comes with the program is trained")
       ->check(CLI::IsMember(kPresets))
       ->capture_default_str();
   command
       .add_option(
           "--stages", stages_,
-          "greedy: layer by layer, as the paper does, and with two layers of order 5 and 300 "
-          "units unless told otherwise; fine-tuning: the whole network by back-propagation, from "
-          "random weights; both: some epochs of the one before the other "
-          "(default, but for the other presets)")
+          "greedy: layer by layer, as in the paper, by default with two layers of order 5 and 300 "
+          "units; fine-tuning: the whole network by back-propagation, from random weights; both: "
+          "some greedy epochs, then fine-tuning (default, but for the other presets)")
       ->check(CLI::IsMember({"greedy", "fine-tuning", "joint", "both"}));
   command
       .add_option("--tracks", tracks_,
                   "exact: the clips' own joints; detector: fine-tuning learns from what detectors "
                   "see through cameras all around, in 0.8 of the views unless --augment-detector "
-                  "says another share")
+                  "sets another share")
       ->check(CLI::IsMember({"exact", "detector"}))
       ->capture_default_str();
   command
@@ -64,9 +63,8 @@ void TrainingOptions::add_to(CLI::App& command) {
       .add_option_function<std::filesystem::path>(
           "--joint-map",
           [this](const std::filesystem::path& file) { joint_map_ = read_joint_map(file); },
-          "TOML file of role = \"joint name\", for skeletons whose names tell too little; the "
-          "clips "
-          "are brought onto the canonical humanoid then (docs/joints.md)")
+          "TOML file of role = \"joint name\", for skeletons whose joint names do not show the "
+          "roles; the clips are brought onto the canonical humanoid then (docs/joints.md)")
       ->type_name("FILE");
   command
       .add_option_function<std::filesystem::path>(
@@ -86,7 +84,7 @@ void TrainingOptions::add_setting(CLI::App& command, const Setting& setting,
     const auto set = [this, flag, name = setting.name](const nlohmann::json& value) {
       flags_.push_back({name, value, flag});
       TrainingConfig scratch;
-      assign_settings(scratch, {flags_.back()});  // what will not do is said before anything else
+      assign_settings(scratch, {flags_.back()});  // an invalid value is reported first of all
     };
     if (usual.is_boolean())
       add_switch_flag(command, flag, setting, usual.get<bool>(), set)->group(group);
@@ -98,8 +96,8 @@ void TrainingOptions::add_setting(CLI::App& command, const Setting& setting,
     add(flag_of(former), kHidden);
 }
 
-TrainingConfig TrainingOptions::resolve(const std::vector<SaidSetting>& last,
-                                        const std::vector<SaidSetting>& start) const {
+TrainingConfig TrainingOptions::resolve(const std::vector<GivenSetting>& last,
+                                        const std::vector<GivenSetting>& start) const {
   const auto applied_to = [&](TrainingConfig config) {
     if (!start.empty()) {
       config.fine_tuning.from_greedy = false;

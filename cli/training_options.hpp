@@ -14,12 +14,12 @@ class TrainingOptions {
  public:
   /// --preset, --stages, --tracks, --config and a flag for every setting of TrainingConfig.
   void add_to(CLI::App& command);
-  /// @param last the last word
-  /// @param start what a model to start from says, before files and flags; the greedy stages are
-  ///        left out then, unless --stages names them
+  /// @param last overrides all others
+  /// @param start settings of a model to start from, before files and flags; the greedy stages
+  ///        are left out then, unless --stages names them
   /// @throws ConfigError
-  TrainingConfig resolve(const std::vector<SaidSetting>& last = {},
-                         const std::vector<SaidSetting>& start = {}) const;
+  TrainingConfig resolve(const std::vector<GivenSetting>& last = {},
+                         const std::vector<GivenSetting>& start = {}) const;
 
  private:
   void add_setting(CLI::App& command, const Setting& setting, const nlohmann::json& usual);
@@ -28,7 +28,7 @@ class TrainingOptions {
   void apply_skeleton(TrainingConfig& config) const;
 
   std::string preset_ = "default", stages_, tracks_ = "exact", skeleton_;
-  std::vector<SaidSetting> file_, flags_;
+  std::vector<GivenSetting> file_, flags_;
   JointMap joint_map_;
 };
 

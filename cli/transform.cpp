@@ -45,9 +45,9 @@ void run_transform(const CommandContext& context, const TransformOptions& option
   const SavedMachine saved = load_machine(device, options.model);
   if (!options.infer.empty()) return put_matrix(options.output, inferred(device, saved, options));
   if (!options.modalities.empty())
-    throw ConfigError("--modality: of --infer, which says the modality that is wanted");
+    throw ConfigError("--modality is for --infer, which names the modality that is wanted");
   if (options.data.files.empty()) throw ConfigError("data: no files");
-  if (options.steps && !options.inverse) throw ConfigError("--steps: of --inverse, or of --infer");
+  if (options.steps && !options.inverse) throw ConfigError("--steps is for --inverse or --infer");
   const Cdbn stack = stack_of(saved, options.model);
   const Sequences data = Sequences::from_host(
       device,
@@ -79,7 +79,7 @@ void add_transform_command(CLI::App& app, CommandContext& context) {
       ->add_option("--infer", options->infer,
                    "Modality of an MRBM to infer, by mean field, from those that --modality gives")
       ->type_name("NAME");
-  add_modality_option(*command, options->modalities, "What is given of an MRBM's modalities");
+  add_modality_option(*command, options->modalities, "Given modalities of an MRBM");
   add_matrix_output(*command, context, options->output,
                     "File to write, .npy, .csv or .safetensors: the rows of all data that have a "
                     "history (default: CSV on standard output)");

@@ -15,8 +15,8 @@
 // SAMPLE_VISIBLE=1 draws the visible units of every step, too (eq 6, 10), with phases from
 // VISIBLE_PHASE on. PERSISTENT=1 takes the first step's hidden units from `particles` [blocks · ROWS x
 // H_LD], one row for each of the mini-batch, and leaves those of the last step there; where `fresh`,
-// the chains start from the data. MASKED=1 keeps the units at zero that `seen` [as frames] says were
-// not: 1 what was, 0 what was not, where the data are zero too.
+// the chains start from the data. MASKED=1 keeps the units at zero that were not seen: `seen` [as
+// frames] is 1 for what was, 0 for what was not, where the data are zero too.
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 GAUSSIAN=0,1 GROUP=1,64 SAMPLE=

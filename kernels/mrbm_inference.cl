@@ -10,7 +10,7 @@
 // `absent` likewise, without index. `drive` is scratch, [blocks · ROWS x H_LD]: b and the present
 // modality's products.
 //
-// With a temperature other than 0 units are drawn as SAMPLE says, 1 or 3 (tile.clh), phase
+// With a temperature other than 0 units are drawn as SAMPLE specifies, 1 or 3 (tile.clh), phase
 // 2 · step for the hidden ones and 2 · step + 1 for the absent ones; the last step's absent ones stay
 // probabilities.
 //

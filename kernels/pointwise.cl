@@ -1,5 +1,5 @@
 // Pointwise work on whole matrices, row-major, leading dimensions in floats, padding columns zero.
-// global: (ceil(columns / VEC), rows) unless a kernel says otherwise.
+// global: (ceil(columns / VEC), rows) unless stated otherwise at a kernel.
 //
 // Variants that `scripts/lint kernels` compiles:
 //   BIAS=none,row,matrix ACTIVATION=none,sigmoid,relu,centered_sigmoid,sigmoid_gradient,relu_gradient,centered_sigmoid_gradient SAMPLE=0,1,2,3

@@ -4,8 +4,8 @@
 // A window is `frames` rows, of which those from `lead` on count; there are `count` windows. Rows of
 // `prediction`, `target` and `error` are LD wide. Compile-time: DIMENSION, LD (a row's length).
 // global: (rows)
-// MASKED=1 counts only what `seen` says, 1 or 0, like `target`, and takes the mean over that; how much
-// it is `count_seen` finds out first, a column a work-item.
+// MASKED=1 counts only where `seen`, laid out like `target`, is 1 and not 0, and takes the mean over
+// that; `count_seen` counts it first, a column a work-item.
 //
 // Variants that `scripts/lint kernels` compiles:
 //   DIMENSION=1,97 LD=112 MASKED=0,1

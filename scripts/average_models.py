@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """The mean of a model's parameters and of those that it came to: average_models.py MODEL FURTHER OUT
 
-FURTHER is what `train --from MODEL` made. Each forgot or learnt by heart something else, and between
-them lie parameters that do better than either (docs/corpus.md). All but the numbers is FURTHER's, and
-the metadata say `averaged_with`.
+FURTHER is what `train --from MODEL` made. Each forgot or overfitted something else, and between them lie
+parameters that do better than either (docs/corpus.md). All but the numbers is FURTHER's; the metadata
+name MODEL in `averaged_with`.
 """
 
 import json

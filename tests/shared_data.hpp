@@ -14,7 +14,7 @@ inline std::filesystem::path shared_data() {
   return std::filesystem::path(MCDBN_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
-/// True if the file or folder is there; else says by name which test is skipped.
+/// True if the file or folder is there; else reports by name which test is skipped.
 inline bool have_shared_data(const std::string& relative, const char* test_name) {
   if (std::filesystem::exists(shared_data() / relative)) return true;
   std::cout << "SKIPPED " << test_name << ": no " << relative << " in the shared data folder\n";

@@ -3,10 +3,10 @@
 
 #include "mcdbn/base/column_scale.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/base/given_setting.hpp"
 #include "mcdbn/base/matrices.hpp"
 #include "mcdbn/base/matrix_file.hpp"
 #include "mcdbn/base/random.hpp"
-#include "mcdbn/base/said_setting.hpp"
 #include "mcdbn/base/settings.hpp"
 #include "mcdbn/camera/assumed_view.hpp"
 #include "mcdbn/camera/camera.hpp"

@@ -77,7 +77,7 @@ FolderLock::FolderLock(const fs::path& folder) : path_(folder / "lock") {
   const std::string about = about_this_process();
   if (::ftruncate(file_, 0) != 0 ||
       ::pwrite(file_, about.data(), about.size(), 0) != static_cast<ssize_t>(about.size())) {
-    // On a full disk the lock holds all the same; only the others' message says less.
+    // On a full disk the lock holds all the same; only the others' message is shorter.
   }
 }
 

@@ -45,7 +45,7 @@ void run_interruptibly(std::function<void()> call) {
     } catch (...) {
       failure = std::current_exception();
     }
-    call = nullptr;  // what it holds is given back before anyone hears of its end
+    call = nullptr;  // its captures are freed before its end is reported
     if (failure)
       promise.set_exception(failure);
     else

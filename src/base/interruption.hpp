@@ -4,16 +4,16 @@
 
 namespace mcdbn {
 
-/// Whoever runs the library asks it to stop: work that takes long looks whether somebody did, many
-/// times a second. May be called from a signal handler.
+/// Asks the library to stop: long work checks for this request many times a second. May be called
+/// from a signal handler.
 void request_interruption() noexcept;
 
-/// The request is forgotten.
+/// Withdraws the request.
 void clear_interruption() noexcept;
 
 bool interruption_requested() noexcept;
 
-/// @throws Interrupted if that was asked for, and no InterruptionDeferred lives on this thread
+/// @throws Interrupted if that was requested, and no InterruptionDeferred lives on this thread
 void check_interruption();
 
 /// Runs a call that may block for long on a thread of its own, and waits for its end.
@@ -21,7 +21,7 @@ void check_interruption();
 /// @throws what the call throws; Interrupted as check_interruption()
 void run_interruptibly(std::function<void()> call);
 
-/// For work that asks by itself where it can stop, and must not be stopped in between.
+/// For work that checks by itself where it can stop, and must not be stopped in between.
 class InterruptionDeferred {
  public:
   InterruptionDeferred() noexcept;

@@ -9,8 +9,8 @@
 
 namespace mcdbn {
 
-/// A place in a JSON file, which knows its way there: what is wrong is told as `file: key's path:
-/// what`. It looks at the value and does not own it.
+/// A value in a JSON file, with its path in the file: errors read `file: key's path: what`. It
+/// refers to the value and does not own it.
 class JsonPlace {
  public:
   JsonPlace(const nlohmann::json& value, std::string file)

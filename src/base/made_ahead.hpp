@@ -68,7 +68,7 @@ class MadeAhead {
   };
 
   void work() {
-    // Whoever takes the results decides where to stop.
+    // The caller of next() decides where to stop.
     const InterruptionDeferred deferred;
     std::unique_lock lock(mutex_);
     while (true) {

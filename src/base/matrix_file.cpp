@@ -108,7 +108,7 @@ class CsvReader {
 MatrixF matrix_of(const Safetensors& content, const std::string& file, const std::string& tensor) {
   if (tensor.empty() && content.tensors.size() != 1)
     throw InputError(
-        fmt::format("{}: {} tensors; say the name of one", file, content.tensors.size()));
+        fmt::format("{}: {} tensors; give the name of one", file, content.tensors.size()));
   const auto found = tensor.empty() ? content.tensors.begin() : content.tensors.find(tensor);
   if (found == content.tensors.end())
     throw InputError(fmt::format("{}: no tensor {}", file, tensor));

@@ -14,12 +14,12 @@ struct NpyArray {
   std::vector<double> values;
 };
 
-/// @throws std::runtime_error saying what is wrong with the bytes
+/// @throws std::runtime_error naming what is wrong with the bytes
 NpyArray npy_array(std::string_view bytes);
 /// The bytes of a .npy file, version 1, as floats of 64 bits.
 std::string npy_bytes(const NpyArray& array);
 
-/// The matrix in the bytes of a .npy file. @throws std::runtime_error saying what is wrong with it
+/// The matrix in the bytes of a .npy file. @throws std::runtime_error naming what is wrong with it
 MatrixF npy_matrix(std::string_view bytes);
 /// The bytes of a .npy file, version 1.
 std::string npy_bytes(const MatrixF& values);

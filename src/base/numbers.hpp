@@ -5,7 +5,7 @@
 
 namespace mcdbn {
 
-/// What is not known: a joint out of sight, a mean of nothing.
+/// An unknown value: a hidden joint, a mean of no values.
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 inline constexpr double kRadiansPerDegree = std::numbers::pi / 180;

@@ -14,13 +14,13 @@ namespace mcdbn {
 enum class OutputKind { file, file_or_folder };
 
 /// A file, or a folder of files, that is written under a temporary name beside its place and put
-/// there when it is whole. Whoever reads the place sees what was there before or all of the new.
+/// there when it is whole. A reader of the place sees what was there before or all of the new.
 /// A link is written through.
 class OutputFile {
  public:
   /// Takes nothing from the disk yet.
   /// @throws InputError if the place is taken by a device, a pipe or a folder with files, or by
-  /// what an OutputBatch was told not to replace
+  /// what an OutputBatch must not replace
   explicit OutputFile(const std::filesystem::path& path);
   /// Removes what was not put in place.
   ~OutputFile();
@@ -89,24 +89,24 @@ class OutputsAtOnce {
   OutputBatch* held_back_;
 };
 
-/// The file is read: the OutputBatch of this thread, if there is one, replaces it no more. Whoever
-/// reads a file says so (read_text_file does), also of those that a folder or a list led to.
+/// The file is read: the OutputBatch of this thread, if there is one, replaces it no more. To be
+/// called for every file that is read (read_text_file does), also one found in a folder or a list.
 void note_input(const std::filesystem::path& path);
 
-/// @throws InputError if the place is taken by what is not to be replaced, as OutputFile says
+/// @throws InputError if the place is taken by what is not to be replaced, as for OutputFile
 void check_replaceable(const std::filesystem::path& path);
 
 /// What there is that is no regular file, in words: "a pipe".
 std::string_view kind_of(std::filesystem::file_type type);
 
-/// What can be said of an output before the work is done.
+/// Checks what can be checked of an output before the work is done.
 /// @throws InputError as OutputFile does, for a name that no file can have or that was looked at
 /// before in this OutputBatch, for a folder where only a file can be written, and where the folder
 /// that it goes to does not exist or cannot be written to
 void check_output(const std::filesystem::path& path, OutputKind kind = OutputKind::file);
 
-/// A new folder among temporary files: what stood there under a name that is known beforehand could
-/// be somebody's link. @return its place; empty if none can be made
+/// A new folder among temporary files, of a random name: at a name known beforehand another user
+/// could have put a link. @return its place; empty if none can be made
 std::filesystem::path make_temporary_folder();
 
 /// The folder, and those that it lies in, unless they exist; through a link, where it leads.

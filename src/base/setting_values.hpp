@@ -8,7 +8,7 @@
 
 #include "base/shown.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/base/said_setting.hpp"
+#include "mcdbn/base/given_setting.hpp"
 #include "mcdbn/base/settings.hpp"
 
 namespace mcdbn {
@@ -25,19 +25,19 @@ void assign_value(const std::string& who, const Setting& setting, const nlohmann
 
 enum class RangeCheck { on, off };  ///< off: other versions of the program had other ranges
 
-/// Sets the one that is said.
+/// Sets the given setting.
 /// @throws ConfigError for a setting that does not exist, a value of another kind or out of range
 template <typename Settings>
-void assign_setting(Settings& settings, const SaidSetting& said,
+void assign_setting(Settings& settings, const GivenSetting& given,
                     RangeCheck check = RangeCheck::on) {
   bool found = false;
   visit_settings(settings, [&](Setting setting, auto& member) {
-    if (setting.name != said.name) return;
+    if (setting.name != given.name) return;
     found = true;
     if (check == RangeCheck::off) setting.range = any_number();
-    assign_value(said.who, setting, said.value, member);
+    assign_value(given.who, setting, given.value, member);
   });
-  if (!found) throw ConfigError(fmt::format("{} is no setting", printable_line(said.who)));
+  if (!found) throw ConfigError(fmt::format("{} is no setting", printable_line(given.who)));
 }
 
 /// The number that a text is, the whole of it; a text that is none, as it is.

@@ -19,7 +19,7 @@ std::string read_text_file(const fs::path& path) {
   const fs::file_type type = fs::status(path, error).type();
   if (type == fs::file_type::directory)
     throw InputError(fmt::format("{}: is a folder, name a file in it", path.string()));
-  // A pipe would keep us until somebody writes, and can be read but once.
+  // A pipe would block until another process writes, and can be read only once.
   if (fs::exists(fs::file_status(type)) && type != fs::file_type::regular)
     throw InputError(fmt::format("{}: is {}, name a file", path.string(), kind_of(type)));
   std::ifstream stream(path, std::ios::binary);

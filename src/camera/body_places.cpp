@@ -172,10 +172,10 @@ std::string place_name_of(std::string_view spelling) {
   Side side = Side::middle;
   std::string rest;
   for (const std::string& word : words_of(spelling)) {
-    const std::optional<Side> said = side_of(word);
-    if (said && side != Side::middle) return {};
-    if (said)
-      side = *said;
+    const std::optional<Side> named = side_of(word);
+    if (named && side != Side::middle) return {};
+    if (named)
+      side = *named;
     else if (word != "pose" && word != "landmark" && word != "keypoint" && word != "joint")
       rest += word;  // PoseLandmark.NOSE is a nose
   }

@@ -18,8 +18,7 @@
 namespace mcdbn {
 namespace {
 
-/// Normal numbers of deviation 1 that forget themselves within `time_s` (first-order
-/// autoregression).
+/// Normal numbers of deviation 1 with the correlation time `time_s` (first-order autoregression).
 class Drift {
  public:
   Drift(double time_s, double fps, RandomSequence& random)
@@ -40,8 +39,8 @@ class Drift {
   Eigen::Vector2d now_;
 };
 
-/// Something that holds for a while, again and again. While asked with one share, it holds in that
-/// share of the frames, `time_s` on average.
+/// A state that holds for a while, again and again: at a constant share in that share of the
+/// frames, each time for `time_s` on average.
 class Episodes {
  public:
   Episodes(double time_s, double fps, RandomSequence& random)
@@ -78,7 +77,7 @@ class ColumnNoise {
  public:
   ColumnNoise(const DetectorNoise& noise, const Keypoint& keypoint, double fps, std::uint64_t seed)
       : noise_(noise),
-        stray_in_sight_(is_hand(keypoint) ? noise.stray_hands : noise.stray),
+        stray_visible_(is_hand(keypoint) ? noise.stray_hands : noise.stray),
         random_(seed, random_streams::kDetector),
         bias_(noise.bias_s, fps, random_),
         drift_(noise.drift_s, fps, random_),
@@ -99,7 +98,7 @@ class ColumnNoise {
     const Eigen::Vector2d jitter =
         (noise_.jitter + noise_.jitter_speed * speed) * Eigen::Vector2d(x, random_.normal());
     const bool astray =
-        stray_.next(hidden ? std::max(noise_.stray_hidden, stray_in_sight_) : stray_in_sight_);
+        stray_.next(hidden ? std::max(noise_.stray_hidden, stray_visible_) : stray_visible_);
     if (stray_.began()) stray_to_ = drawn_stray();
     const bool lost = lost_.next(hidden ? noise_.lost_hidden : noise_.lost);
     Seen seen{noise_.bias * bias_.next() + drift + jitter, drawn_confidence(hidden, astray)};
@@ -126,7 +125,7 @@ class ColumnNoise {
   }
 
   const DetectorNoise& noise_;
-  double stray_in_sight_;
+  double stray_visible_;
   RandomSequence random_;
   Drift bias_, drift_, hidden_;
   Episodes stray_, lost_;
@@ -169,9 +168,9 @@ std::vector<bool> close_frames(const Track2d& track, const LimbPairs& limbs,
   std::vector<bool> close(static_cast<std::size_t>(track.frames()), false);
   for (Eigen::Index frame = 0; frame < track.frames(); ++frame) {
     double sum = 0;
-    for (const auto& [left, right] : limbs.telling)
+    for (const auto& [left, right] : limbs.distal)
       sum += (pixel_at(track, frame, left) - pixel_at(track, frame, right)).norm();
-    const double mean = sum / static_cast<double>(limbs.telling.size());
+    const double mean = sum / static_cast<double>(limbs.distal.size());
     close[static_cast<std::size_t>(frame)] = mean < kClose * height_px[frame];
   }
   return close;
@@ -234,12 +233,12 @@ void detect(Track2d& track, const Flags& hidden, const Eigen::VectorXd& height_p
         fmt::format("a track of {}x{} with {} keypoints; what is hidden is {}x{}, heights are {}",
                     track.frames(), joints, track.keypoints.size(), hidden.rows(), hidden.cols(),
                     height_px.size()));
-  // Whether limbs are close is asked of where they are, not of where they seem to be.
+  // Whether limbs are close is judged by their true places, not by the noisy ones.
   const std::array limbs{leg_pairs(track.keypoints), arm_pairs(track.keypoints)};
   const std::array shares{noise.swapped_legs, noise.swapped_arms};
   std::array<std::vector<bool>, 2> close;
   for (std::size_t i = 0; i < limbs.size(); ++i)
-    if (!limbs[i].telling.empty()) close[i] = close_frames(track, limbs[i], height_px);
+    if (!limbs[i].distal.empty()) close[i] = close_frames(track, limbs[i], height_px);
   for (Eigen::Index column = 0; column < joints; ++column)
     add_noise(track, column, hidden, height_px, noise,
               mixed_seed({seed, static_cast<std::uint64_t>(column)}));

@@ -41,30 +41,31 @@ struct DetectorNoise {
     visit(Setting{"jitter-speed", within(0, 100), "", "what speed 1 adds to it"},
           self.jitter_speed);
     visit(Setting{"hidden", within(0, 100), "",
-                  "deviation of a joint out of sight, beside the rest; it comes and goes as drift"},
+                  "additional deviation of a hidden joint; it comes and goes as drift"},
           self.hidden);
     visit(
         Setting{"stray", share_below_one(), "", "share of the frames in which a joint is far off"},
         self.stray);
     visit(Setting{"stray-hands", share_below_one(), "", "the same of wrists and hands"},
           self.stray_hands);
-    visit(Setting{"stray-hidden", share_below_one(), "", "the same out of sight"},
+    visit(Setting{"stray-hidden", share_below_one(), "", "the same of hidden joints"},
           self.stray_hidden);
     visit(Setting{"stray-size", above(0, 100), "", "how far, in the middle"}, self.stray_size);
     visit(Setting{"stray-time", above(0), "seconds", "how long, on average"}, self.stray_s);
     visit(Setting{"lost", share_below_one(), "", "share of the frames in which a joint is missing"},
           self.lost);
-    visit(Setting{"lost-hidden", share_below_one(), "", "the same out of sight"}, self.lost_hidden);
+    visit(Setting{"lost-hidden", share_below_one(), "", "the same of hidden joints"},
+          self.lost_hidden);
     visit(Setting{"lost-time", above(0), "seconds", "how long, on average"}, self.lost_s);
     visit(Setting{"swapped-legs", share_below_one(), "",
                   "share of the frames with the legs close to each other in which left is right"},
           self.swapped_legs);
     visit(Setting{"swapped-arms", share_below_one(), "", "the same of arms"}, self.swapped_arms);
     visit(Setting{"swap-time", above(0), "seconds", "how long, on average"}, self.swap_s);
-    visit(Setting{"confidence", within(0, 1), "", "mean, of a joint in sight"}, self.confidence);
-    visit(Setting{"confidence-spread", within(0, 100), "", "its deviation; twice it out of sight"},
+    visit(Setting{"confidence", within(0, 1), "", "mean, of a visible joint"}, self.confidence);
+    visit(Setting{"confidence-spread", within(0, 100), "", "its deviation; twice it if hidden"},
           self.confidence_spread);
-    visit(Setting{"confidence-hidden", within(0, 1), "", "mean, out of sight"},
+    visit(Setting{"confidence-hidden", within(0, 1), "", "mean, of a hidden joint"},
           self.confidence_hidden);
     visit(Setting{"confidence-stray", within(0, 1), "", "mean, of a joint that is far off"},
           self.confidence_stray);
@@ -81,9 +82,10 @@ struct Detector {
 /// openpose, mediapipe, coco (RTMPose's noise on COCO's 17 joints).
 const std::vector<Detector>& detectors();
 
-/// The noise of whoever made a track, as far as the track itself shows it. Of its jitter all that a
-/// detector adds in sight is estimated, in OpenPose's proportions; of its gaps how much it loses,
-/// of its confidences theirs. What a track without its truth does not show is OpenPose's.
+/// The noise of the detector that made a track, as far as the track itself shows it. All noise of
+/// visible joints is estimated from the jitter, in OpenPose's proportions; the share of lost joints
+/// from the gaps; confidences from the track's. What a track without ground truth does not show is
+/// OpenPose's.
 /// @param height_px of the person  @throws InputError with fewer than 10 frames
 DetectorNoise measured_noise(const Track2d& track, double height_px);
 
@@ -91,10 +93,10 @@ DetectorNoise measured_noise(const Track2d& track, double height_px);
 /// they look longest. NaN without those joints.
 double person_height_px(const Track2d& track);
 
-/// Turns exact places of keypoints into what a detector would say of them. The same seed gives the
-/// same; what happens to one column hangs on no other, but for swaps, which exchange limbs of all
-/// roles at once.
-/// @param track exact, with keypoints  @param hidden [frames x joints] out of the camera's sight
+/// Turns exact places of keypoints into a detector's. The same seed gives the same; the noise of a
+/// column does not depend on other columns, but for swaps, which exchange limbs of all roles at
+/// once.
+/// @param track exact, with keypoints  @param hidden [frames x joints] hidden from the camera
 /// @param height_px [frames] of the body in the image
 /// @throws ShapeError if they do not fit; ConfigError if a setting is out of range
 void detect(Track2d& track, const Flags& hidden, const Eigen::VectorXd& height_px,

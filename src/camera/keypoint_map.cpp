@@ -21,13 +21,14 @@ using enum JointRole;
 constexpr std::size_t kFewestJoints = 3;
 /// Joints that lie between two others, by the left one of them.
 constexpr std::array kBetween{std::pair{pelvis, left_hip}, std::pair{neck, left_shoulder}};
-/// How well a detector hits its place at all, in body heights.
+/// The deviation of a detector from its place, in body heights.
 constexpr double kHit = 0.01;
-/// How far an answer's joints are turned wrong, which takes a place on a lever with them.
+/// The error of the orientations of an answer's joints: it moves a place by its distance times
+/// this.
 constexpr double kTurn_rad = 0.3;
 
-/// The weight of a place that lies off its joint by so much that is not known, in body heights,
-/// beside that of the joint itself.
+/// The weight of a place whose offset from its joint is uncertain by so much, in body heights,
+/// relative to that of the joint itself.
 double sureness(double uncertain) {
   return kHit * kHit / (kHit * kHit + uncertain * uncertain);
 }
@@ -93,8 +94,8 @@ KeypointMap::KeypointMap(const std::vector<Keypoint>& keypoints, const Skeleton&
   for (const auto& [role, left] : kBetween) {
     const int left_column = column_of(keypoints, left),
               right_column = column_of(keypoints, other_side(left));
-    const bool told = std::ranges::find(joints_, roles.joint(role)) != joints_.end();
-    if (!told && left_column >= 0 && right_column >= 0) add(role, {left_column, right_column});
+    const bool observed = std::ranges::find(joints_, roles.joint(role)) != joints_.end();
+    if (!observed && left_column >= 0 && right_column >= 0) add(role, {left_column, right_column});
   }
   const bool has_pelvis = std::ranges::find(joints_, roles.joint(pelvis)) != joints_.end();
   if (joints_.size() < kFewestJoints || !has_pelvis)
@@ -165,10 +166,10 @@ Track2d KeypointMap::without(const Track2d& track, const Displacements& displace
       result.confidence(t, joint) += weight * confidence;
     }
   }
-  const auto told = weights.array() > 0;
-  result.x_px = told.select(result.x_px.array() / weights.array(), kNan);
-  result.y_px = told.select(result.y_px.array() / weights.array(), kNan);
-  result.confidence = told.select(result.confidence.array() / weights.array(), 0.0);
+  const auto observed = weights.array() > 0;
+  result.x_px = observed.select(result.x_px.array() / weights.array(), kNan);
+  result.y_px = observed.select(result.y_px.array() / weights.array(), kNan);
+  result.confidence = observed.select(result.confidence.array() / weights.array(), 0.0);
   return result;
 }
 

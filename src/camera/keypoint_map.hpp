@@ -11,10 +11,10 @@
 namespace mcdbn {
 
 /// Where a detector's keypoints put the joints of a skeleton. A keypoint is a place on the body,
-/// not the joint itself: what lies between them is taken off, first as far as the track alone tells
-/// it, then as a 3D answer to the track has it. A joint that several keypoints tell of is where
-/// they put it together; pelvis and neck are told by both hips and both shoulders where no keypoint
-/// is theirs.
+/// not the joint itself: the offset between them is taken off, first as far as the track alone
+/// gives it, then as a 3D answer to the track has it. A joint of several keypoints lies at their
+/// weighted mean; pelvis and neck follow from both hips and both shoulders where no keypoint is
+/// theirs.
 class KeypointMap {
  public:
   /// @throws InputError, naming what is missing, if the keypoints show less than three of the
@@ -23,27 +23,27 @@ class KeypointMap {
               const SkeletonRoles& roles);
 
   /// The joints from the track alone. Left and up are taken from hips and shoulders on the image;
-  /// how far before its joint a place lies nothing tells yet, and it counts the less for it.
+  /// how far before its joint a place lies is unknown yet, which lowers its weight.
   /// @param track with the keypoints of the map
-  /// @return the joints that are shown, by name, without keypoints; confidence is the mean of what
-  ///         tells of a joint
+  /// @return the joints that are shown, by name, without keypoints; confidence is the mean over a
+  ///         joint's readings
   Track2d joints_of(const Track2d& track) const;
-  /// The joints given an answer: what lies between place and joint, projected, is taken off.
+  /// The joints given an answer: the projected offset of place from joint is taken off.
   /// @param answer of the skeleton, as many frames as the track  @param camera that sees it as the
   /// track shows it  @throws ShapeError
   Track2d joints_of(const Track2d& track, const Motion& answer, const Camera& camera) const;
-  /// What of such joints is evidence: those that are told only by others that are told themselves,
-  /// as the pelvis is by both hips, are unseen, and those that are told by places away from them
-  /// count less. In a fit they would speak for the answer that put them there.
+  /// The evidence in such joints: those that follow only from other joints that are observed
+  /// themselves, as the pelvis from both hips, become unseen, and those observed by places away
+  /// from them count less. In a fit they would support the answer that put them there.
   Track2d evidence(Track2d joints) const;
 
  private:
-  /// What some columns, in their middle, tell of a joint.
+  /// An observation of a joint: the mean of some columns.
   struct Reading {
     std::size_t joint = 0;     ///< index into joints_
     std::vector<int> columns;  ///< one, or those of both sides
     Eigen::Vector3d offset;    ///< of the place from the joint: left, up, forward; body heights
-    bool own = true;           ///< told by a place of its own, not by other joints that are told
+    bool own = true;           ///< by a place of its own, not by other joints that are observed
   };
   /// Pixels from joint to place for each reading in turn, and how far off that may be, in body
   /// heights. [frames x 2·readings]

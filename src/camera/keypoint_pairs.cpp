@@ -13,7 +13,7 @@ bool are_mirrored(const Keypoint& left, const Keypoint& right) {
 }
 
 LimbPairs pairs_of(const std::vector<Keypoint>& keypoints, const std::vector<JointRole>& left_roles,
-                   const std::vector<JointRole>& telling) {
+                   const std::vector<JointRole>& distal) {
   LimbPairs pairs;
   std::vector<bool> taken(keypoints.size(), false);
   for (std::size_t left = 0; left < keypoints.size(); ++left) {
@@ -23,7 +23,7 @@ LimbPairs pairs_of(const std::vector<Keypoint>& keypoints, const std::vector<Joi
       if (taken[right] || !are_mirrored(keypoints[left], keypoints[right])) continue;
       taken[right] = true;
       pairs.columns.emplace_back(static_cast<int>(left), static_cast<int>(right));
-      if (std::ranges::count(telling, *role) > 0) pairs.telling.push_back(pairs.columns.back());
+      if (std::ranges::count(distal, *role) > 0) pairs.distal.push_back(pairs.columns.back());
       break;
     }
   }

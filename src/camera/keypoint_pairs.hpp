@@ -11,12 +11,12 @@ namespace mcdbn {
 /// column in one pair at most.
 struct LimbPairs {
   std::vector<std::pair<int, int>> columns;  ///< all that move when the limbs are exchanged
-  std::vector<std::pair<int, int>> telling;  ///< of them those that are far from the trunk
+  std::vector<std::pair<int, int>> distal;   ///< of them those that are far from the trunk
 };
 
-/// Hips, knees, ankles and what the feet carry; knees and ankles tell.
+/// Hips, knees, ankles and what the feet carry; distal are knees and ankles.
 LimbPairs leg_pairs(const std::vector<Keypoint>& keypoints);
-/// Shoulders, elbows, wrists and hands; elbows and wrists tell.
+/// Shoulders, elbows, wrists and hands; distal are elbows and wrists.
 LimbPairs arm_pairs(const std::vector<Keypoint>& keypoints);
 
 }  // namespace mcdbn

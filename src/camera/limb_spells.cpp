@@ -13,7 +13,7 @@ std::vector<SideSwap> limb_spells(const Track2d& track, const SideSwapSettings& 
     std::vector<SideSwap> spells;
     for (int t = 0; t < track.frames(); ++t) {
       bool seen = false;
-      for (const auto& [left, right] : pairs.telling)
+      for (const auto& [left, right] : pairs.distal)
         seen = seen || track.confidence(t, left) > 0 || track.confidence(t, right) > 0;
       if (!seen) continue;
       if (spells.empty() || t - spells.back().last_frame > longest_gap + 1) {

@@ -6,11 +6,11 @@
 
 namespace mcdbn {
 
-/// Where the arms, or the legs, are seen after nothing of them was for longer than joints are
-/// followed (SideSwapSettings::longest_gap_s): find_side_swaps cannot tell whether a detector came
-/// back to them with the same sides.
-/// @return as swaps of all their places, in the order of frames, legs first; none of limbs that are
-/// never so long out of sight
+/// The spells of frames in which the arms, or the legs, are seen, between gaps longer than joints
+/// are followed (SideSwapSettings::longest_gap_s): after such a gap find_side_swaps cannot detect
+/// whether the detector's sides are the same as before.
+/// @return as swaps of all their places, in the order of frames, legs first; none of limbs without
+/// such a gap
 std::vector<SideSwap> limb_spells(const Track2d& track, const SideSwapSettings& settings = {});
 
 }  // namespace mcdbn

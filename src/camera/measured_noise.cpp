@@ -48,7 +48,7 @@ double expected_difference(const DetectorNoise& noise, double fps, double speed)
   return std::sqrt(jitter * jitter + of_drift * drift * drift);
 }
 
-/// How many times a detector's noise in sight the track's is, by the middle of all its
+/// The ratio of the track's noise to a detector's for visible joints: the median over all
 /// joint-frames. NaN where no joint is seen in five frames in a row.
 double noise_ratio(const Track2d& track, double height_px, const DetectorNoise& usual) {
   constexpr double kMedianLength = 1.1774;  // of normal numbers in two dimensions
@@ -109,7 +109,7 @@ double person_height_px(const Track2d& track) {
 DetectorNoise measured_noise(const Track2d& track, double height_px) {
   constexpr int kLeast = 10;
   if (track.frames() < kLeast)
-    throw InputError(fmt::format("a track of {} says too little of its noise; {} are needed",
+    throw InputError(fmt::format("a track of {} is too short to measure its noise; {} are needed",
                                  counted(track.frames(), "frame"), kLeast));
   DetectorNoise noise;
   if (const double ratio = noise_ratio(track, height_px, noise); std::isfinite(ratio))

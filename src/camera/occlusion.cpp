@@ -25,9 +25,9 @@ constexpr std::array kRods{Rod{pelvis, neck, 0.09},
                            Rod{left_elbow, left_wrist, 0.02},
                            Rod{right_elbow, right_wrist, 0.02}};
 
-/// What a place lies in is not in its way: the rods that end at its joint, and for what hangs from
-/// the trunk, the trunk. A place on the head, as the nose is, is behind it for who looks from
-/// behind.
+/// Whether a rod carries the place, and so does not hide it: a rod that ends at the place's joint,
+/// and the trunk for what hangs from it. A place on the head's surface, as the nose, is hidden by
+/// the head from behind.
 bool carries(const Rod& rod, JointRole role, double off) {
   if (rod.to == head && role == head) return off < rod.radius;
   if (rod.from == role || rod.to == role) return true;
@@ -63,13 +63,13 @@ struct Crossing {
 
 Crossing crossing(const Eigen::Vector3d& eye, const Eigen::Vector3d& place,
                   const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  const Eigen::Vector3d sight = place - eye, rod = to - from, between = eye - from;
-  const double a = sight.squaredNorm(), b = sight.dot(rod), e = rod.squaredNorm(),
-               c = sight.dot(between), f = rod.dot(between), determinant = a * e - b * b;
+  const Eigen::Vector3d ray = place - eye, rod = to - from, between = eye - from;
+  const double a = ray.squaredNorm(), b = ray.dot(rod), e = rod.squaredNorm(), c = ray.dot(between),
+               f = rod.dot(between), determinant = a * e - b * b;
   double share = determinant > 0 ? std::clamp((b * f - c * e) / determinant, 0.0, 1.0) : 0.0;
   double along = e > 0 ? std::clamp((b * share + f) / e, 0.0, 1.0) : 0.0;
   share = std::clamp((b * along - c) / a, 0.0, 1.0);
-  return {(eye + share * sight - from - along * rod).norm(), share};
+  return {(eye + share * ray - from - along * rod).norm(), share};
 }
 
 }  // namespace

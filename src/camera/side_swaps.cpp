@@ -61,7 +61,7 @@ std::vector<PlacePair> pairs_of(const Track2d& track, LimbPair limbs, double hei
   return pairs;
 }
 
-/// The height of the body on the image, told from how far its joints are spread: on the image they
+/// The height of the body on the image, estimated from the spread of its joints: on the image they
 /// reach over most of the body's height while it stands, so the usual frame counts. Noise is
 /// measured by thighs and shanks (person_height_px), which is nearer to the body's height but needs
 /// legs; arms are to be put right where only they are seen.
@@ -86,8 +86,8 @@ double body_height_px(const Track2d& track) {
   return spreads.empty() ? 0 : upper_median(std::move(spreads)) / kSpreadOfHeight;
 }
 
-/// How far both places of a pair are from going on as they went, given which of the three frames up
-/// to `t` are swapped; 0 where one of them is unknown.
+/// The distance of both places of a pair from motion at constant velocity, given which of the three
+/// frames up to `t` are swapped; 0 where one of them is unknown.
 double surprise(const PlacePair& pair, std::size_t t, const std::array<int, 3>& swapped,
                 double most) {
   double sum = 0;
@@ -222,16 +222,16 @@ void exchange_sides(Track2d& track, const std::vector<SideSwap>& swaps) {
 
 std::string described(const std::vector<SideSwap>& swaps) {
   std::string text;
-  std::optional<LimbPair> said;
+  std::optional<LimbPair> previous;
   for (const SideSwap& swap : swaps) {
     const char* limbs = swap.limbs == LimbPair::legs ? "legs" : "arms";
-    if (!said)
+    if (!previous)
       text = fmt::format("{} swapped in frames {}", limbs, frames_of(swap));
-    else if (*said == swap.limbs)
+    else if (*previous == swap.limbs)
       text += fmt::format(", {}", frames_of(swap));
     else
       text += fmt::format("; {} in {}", limbs, frames_of(swap));
-    said = swap.limbs;
+    previous = swap.limbs;
   }
   return text;
 }

@@ -11,7 +11,7 @@ inline Eigen::Vector2d pixel_at(const Track2d& track, Eigen::Index frame, Eigen:
   return {track.x_px(frame, column), track.y_px(frame, column)};
 }
 
-/// Exchanges what one frame says of two columns.
+/// Exchanges the values of two columns in one frame.
 inline void exchange_columns(Track2d& track, Eigen::Index frame, Eigen::Index one,
                              Eigen::Index other) {
   for (MatrixD* values : {&track.x_px, &track.y_px, &track.confidence})

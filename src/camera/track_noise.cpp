@@ -128,7 +128,7 @@ void hide_limbs(Track2d& track, const Skeleton& skeleton, std::uint64_t seed) {
 
 void damage_track(Track2d& track, const Skeleton& skeleton, const TrackDamage& damage,
                   std::uint64_t seed) {
-  // A seed that nothing else uses: whoever sees the track must not draw the same numbers.
+  // A seed that nothing else uses: later work on the track must not draw the same numbers.
   const std::uint64_t own = mixed_seed({seed, 0x74726163});
   add_pixel_noise(track, damage.noise_px, own);
   drop_joints(track, damage.missing_share, own);

@@ -28,7 +28,7 @@ struct TrackDamage {
                   "share of the joints of each frame that go missing, each on its own"},
           self.missing_share);
     visit(Setting{"hide", kHidden_s, "seconds",
-                  "an arm goes out of sight for so long, in the middle of the clip"},
+                  "an arm is hidden for so long, in the middle of the clip"},
           self.hidden_s);
   }
 };
@@ -45,16 +45,16 @@ void add_pixel_noise(Track2d& track, double deviation_px, std::uint64_t seed);
 void drop_joints(Track2d& track, double share, std::uint64_t seed);
 
 /// Hides an arm for `seconds` in the middle of the track: from the shoulder's child down, so that
-/// the shoulder stays. Joint names are not asked: arms are the two longest chains of bones that
+/// the shoulder stays. Joint names are not used: arms are the two longest chains of bones that
 /// hang from the chest, the joint with the longest chains of all below the first at which the body
-/// branches. The seed says which of the two.
+/// branches. The seed decides which of the two.
 /// @return the joints that were hidden; none if the body does not branch
 /// @throws ConfigError likewise
 std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, double seconds,
                                   std::uint64_t seed);
 
-/// Lets limbs go out of sight as behind the body or a table: every two seconds or so a joint with
-/// all that hangs from it, at most a third of the joints, for 0.3 to 1.5 s. The same seed hides the
+/// Hides limbs, as the body or a table would: every two seconds or so a joint with all
+/// that hangs from it, at most a third of the joints, for 0.3 to 1.5 s. The same seed hides the
 /// same.
 void hide_limbs(Track2d& track, const Skeleton& skeleton, std::uint64_t seed);
 

@@ -18,15 +18,15 @@ constexpr double kLookBack_s = 1;
 constexpr std::size_t kFewestJoints = 3;
 
 /// A body on the image.
-struct Sighting {
+struct Observation {
   int frame = 0;
   Eigen::Vector2d middle;
   double size_px = 0;
 };
 
-/// Sightings from `first` to `last` go on from one another.
+/// The observations from `first` to `last` go on from one another.
 struct Run {
-  Sighting first, last;
+  Observation first, last;
 };
 
 std::vector<int> body_columns(const Track2d& track) {
@@ -38,9 +38,9 @@ std::vector<int> body_columns(const Track2d& track) {
   return columns;
 }
 
-std::vector<Sighting> sightings(const Track2d& track) {
+std::vector<Observation> observations(const Track2d& track) {
   const std::vector<int> columns = body_columns(track);
-  std::vector<Sighting> found;
+  std::vector<Observation> found;
   std::vector<double> sizes;
   for (int t = 0; t < track.frames(); ++t) {
     std::vector<double> x, y;
@@ -56,13 +56,13 @@ std::vector<Sighting> sightings(const Track2d& track) {
     sizes.push_back(std::hypot(right - left, bottom - top));
     found.push_back({t, {upper_median(std::move(x)), upper_median(std::move(y))}, sizes.back()});
   }
-  // Of whom a frame shows little, or who crouches, the clip says how large people are in it.
+  // Where a frame shows little of a person, or the person crouches, the clip's median size counts.
   const double usual = sizes.empty() ? 0 : upper_median(std::move(sizes));
-  for (Sighting& one : found) one.size_px = std::max(one.size_px, usual);
+  for (Observation& one : found) one.size_px = std::max(one.size_px, usual);
   return found;
 }
 
-bool goes_on(const Sighting& before, const Sighting& after, double fps) {
+bool goes_on(const Observation& before, const Observation& after, double fps) {
   const double heights =
       (after.middle - before.middle).norm() / std::max({before.size_px, after.size_px, 1e-9});
   return heights <= kMostAtOnce_heights + kFastest_heights_s * (after.frame - before.frame) / fps;
@@ -77,10 +77,10 @@ bool is_stray(const Run& run, double fps) {
 }
 
 /// What goes on from a run behind strays is of that run.
-std::vector<Run> runs_of(const std::vector<Sighting>& sightings, double fps,
+std::vector<Run> runs_of(const std::vector<Observation>& observations, double fps,
                          std::vector<FrameRange>& strays) {
   std::vector<Run> runs;
-  for (const Sighting& one : sightings) {
+  for (const Observation& one : observations) {
     auto from = runs.rbegin();
     while (from != runs.rend() && !goes_on(from->last, one, fps) && is_stray(*from, fps) &&
            one.frame - from->first.frame < kLookBack_s * fps)
@@ -102,7 +102,7 @@ TrackStretches find_stretches(const Track2d& track) {
   TrackStretches result;
   if (track.frames() == 0) return result;
   const auto stray = [&](const Run& run) { return is_stray(run, track.fps); };
-  const std::vector<Run> runs = runs_of(sightings(track), track.fps, result.strays);
+  const std::vector<Run> runs = runs_of(observations(track), track.fps, result.strays);
   std::vector<Run> kept;
   if (std::ranges::all_of(runs, stray)) {
     result.strays.clear();

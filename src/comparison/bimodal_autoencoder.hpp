@@ -66,8 +66,8 @@ struct BimodalAutoencoderSettings {
 /// The bimodal deep autoencoder of Ngiam et al. (2011), the paper's [13]: a window of 2D
 /// (track_window.hpp) and the pose each have a layer of sigmoid units, and those share one; from it
 /// both are decoded. Layers start as RBMs. Back-propagation then sees a third of its examples with
-/// both modalities, a third with each alone (the other is zero, its mean), and wants both back: so
-/// the pose can be told from the track.
+/// both modalities, a third with each alone (the other is zero, its mean), and has to give both
+/// back: so the pose can be inferred from the track.
 class BimodalAutoencoder : public Baseline {
  public:
   explicit BimodalAutoencoder(Device& device, const BimodalAutoencoderSettings& settings = {});
@@ -77,7 +77,7 @@ class BimodalAutoencoder : public Baseline {
   void fit(const std::vector<MatrixF>& tracks, const std::vector<MatrixF>& poses) override;
   MatrixF predict(const MatrixF& track) const override;
 
-  /// bimodal_network.hpp says which is which. Empty before fit().
+  /// In the order of bimodal_network.hpp. Empty before fit().
   std::vector<DenseLayer> layers() const;
 
  private:

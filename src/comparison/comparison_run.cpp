@@ -121,7 +121,7 @@ SeenClip seen_by(const Model& model, const TestRunOptions& options, const Encode
   return see_clip(model.modalities, truth.track, placement_of(truth, options), answer);
 }
 
-/// @param draws of which `deviation_mm` is told
+/// @param draws from which `deviation_mm` is computed
 Regeneration answer(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
                     const SeenClip& seen, const PosePrior& prior,
                     const PosteriorDraws& draws = {}) {
@@ -129,7 +129,7 @@ Regeneration answer(const Model& model, const TestRunOptions& options, const Enc
   placement.found = seen.view;
   FittedClip fitted =
       fit_to_track(prior, model.modalities, seen.joints, placement, options.fit, draws);
-  // Who does not know the camera answers in another's axes: what it saw is the same.
+  // Where the camera is not known the answer is in the axes of another one with the same view.
   const auto in_truths_axes = [&](Motion& motion) {
     if (placement.camera) return;
     motion = turned_motion(std::move(motion), truth.camera.camera_from_world.transpose() *
@@ -318,7 +318,7 @@ std::vector<ClipResult> run_test(const Model& model,
     const bool trained_on = was_trained_on(model, file);
     if (trained_on && !options.include_training)
       throw InputError(
-          fmt::format("{}: the model was trained on this clip; test on others, or say "
+          fmt::format("{}: the model was trained on this clip; test on others, or set "
                       "`include-training`",
                       file.string()));
     ClipResult result;
@@ -329,7 +329,7 @@ std::vector<ClipResult> run_test(const Model& model,
     results.push_back(std::move(result));
   }
   if (options.notices)
-    for (const std::string& notice : found.told()) options.notices(notice);
+    for (const std::string& notice : found.all()) options.notices(notice);
   regenerate_clips(model, options, progress, results);
   regenerate_tracks(model, results);
   if (!options.baselines.empty()) run_baselines(model, options, progress, results);

@@ -34,16 +34,16 @@ struct TestRunOptions {
   std::vector<MatrixF> view_tracks, view_poses;
   std::optional<TrackFitSettings> fit =
       TrackFitSettings{};  ///< of every method's answer; unset: none
-  /// Drawn of each clip, by seeds of its own, to tell how sure the model's single answer is.
+  /// Drawn of each clip, by seeds of its own: the uncertainty of the model's single answer.
   PosteriorDraws uncertainty_draws = {};
-  TrackDamage damage;  ///< done to the test clips' tracks before anyone sees them
+  TrackDamage damage;  ///< done to the test clips' tracks before any method sees them
   /// What a detector would see of the test clips in place of exact projections through `camera`.
-  /// Nobody is told the body then, nor, unless `camera_known`, the camera.
+  /// No method is given the body then, nor, unless `camera_known`, the camera.
   std::optional<DetectorViews> detector;
   bool camera_known = true;
   bool keep_first_frame = false;
   bool include_training = false;  ///< else a clip that was trained on is refused
-  std::vector<std::string> baselines = usual_baselines();  ///< as baselines_of says; may be none
+  std::vector<std::string> baselines = usual_baselines();  ///< from baselines_of; may be none
   /// Called now and then with what is being done and how much of the run is done; may throw to
   /// stop.
   std::function<void(const std::string& what, double fraction)> progress;
@@ -64,14 +64,14 @@ struct ClipResult {
   EncodedClip truth;
   SeenClip seen;  ///< what the model sees of its track
   bool trained_on = false;
-  std::string known_person;  ///< as person_of says, if a training clip shows the same one
+  std::string known_person;  ///< from person_of, if a training clip shows the same one
   std::vector<Regeneration> samples;
   /// The baselines by name, and kMeanField, the model's single answer, if samples were drawn.
   std::map<std::string, Regeneration> others;
   TrackError track;  ///< 2D from the true 3D, by the model's mean field
   /// Of the single answer, if uncertainty was drawn: of its judged joints, mm from the root along
   /// each axis; of the network's own channels, standardized, before any fit, if the camera is known
-  /// and the network says deviations.
+  /// and the network has deviations.
   Coverage joints, channels;
 };
 
@@ -83,7 +83,7 @@ std::vector<ClipResult> run_test(const Model& model,
 ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                      const std::string& root_name);
 
-/// Of an answer with deviations, whoever said them: the share of 90 % intervals of its judged
+/// Of an answer with deviations, wherever they come from: the share of 90 % intervals of its judged
 /// joints that hold the truth (ClipScore::within_90).
 double share_within_90(const EncodedClip& truth, const Regeneration& answer,
                        const std::string& root_name);

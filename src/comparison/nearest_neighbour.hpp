@@ -5,7 +5,7 @@
 namespace mcdbn {
 
 /// The pose of the training frame whose 2D features are nearest (Euclidean); the earliest such
-/// frame wins ties. Exact: single-precision products only preselect, what they cannot tell apart
+/// frame wins ties. Exact: single-precision products only preselect, what they cannot separate
 /// is compared in double.
 class NearestNeighbour : public Baseline {
  public:

@@ -71,7 +71,7 @@ void require_folder(const fs::path& folder) {
 
 std::string name_of(const SweepConfiguration& configuration) {
   std::string name;
-  for (const SaidSetting& setting : configuration)
+  for (const GivenSetting& setting : configuration)
     name += (name.empty() ? "" : ",") + setting.name + "=" + setting.value.dump();
   return name.empty() ? "base" : name;
 }
@@ -115,7 +115,7 @@ Sweep::Sweep(Device& device, const std::vector<fs::path>& test, std::vector<List
 
 ordered_json Sweep::run(const SweepConfiguration& configuration, const Watch& watch) {
   ordered_json record = {{"name", name_of(configuration)}, {"configuration", ordered_json()}};
-  for (const SaidSetting& setting : configuration)
+  for (const GivenSetting& setting : configuration)
     record["configuration"][setting.name] = setting.value;
   try {
     const TrainingConfig config = resolve_(configuration);
@@ -137,20 +137,20 @@ ordered_json Sweep::run(const SweepConfiguration& configuration, const Watch& wa
   return record;
 }
 
-void Sweep::tell(const std::string& notice) {
-  if (notices_ && told_.insert(notice).second) notices_(notice);
+void Sweep::report(const std::string& notice) {
+  if (notices_ && reported_.insert(notice).second) notices_(notice);
 }
 
 void Sweep::score(const TrainingConfig& config, const Watch& watch, ordered_json& record) {
   const fs::path folder = run_ / record["name"].get<std::string>();
   std::vector<std::string> notices;
   build_kernels(device_, clips_, shortest(config), watch, notices);
-  for (const std::string& notice : notices) tell(notice);
+  for (const std::string& notice : notices) report(notice);
   const TrainedRun trained = trained_run(device_, clips_, config, folder, watch);
   TestRunOptions options;
   options.camera = trained.model.modalities.camera;
   options.baselines.clear();
-  options.notices = [this](const std::string& notice) { tell(notice); };
+  options.notices = [this](const std::string& notice) { report(notice); };
   options.fit.reset();  // it is networks that are compared, not what the track makes of them
   const auto results = run_test(trained.model, test_, options);
   std::vector<ClipScore> scores;

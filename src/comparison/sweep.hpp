@@ -16,7 +16,7 @@
 namespace mcdbn {
 
 /// The settings that a sweep varies, as one of its trainings has them.
-using SweepConfiguration = std::vector<SaidSetting>;
+using SweepConfiguration = std::vector<GivenSetting>;
 
 struct SweepFile {
   std::vector<std::filesystem::path> test;  ///< clips, or folders of them, to score on
@@ -40,7 +40,7 @@ class Sweep {
   /// The whole configuration from what is varied. May throw ConfigError
   using Resolve = std::function<TrainingConfig(const SweepConfiguration&)>;
   /// Called as a training begins; before each that counts there is a short one that builds the
-  /// kernels. What it returns hears of its epochs and may throw Interrupted to stop the sweep.
+  /// kernels. What it returns gets its epochs' reports and may throw Interrupted to stop the sweep.
   using Watch = std::function<EpochObserver(bool counts)>;
 
   /// Called with what is odd about the clips, line by line; of several trainings once.
@@ -69,7 +69,7 @@ class Sweep {
   };
 
   void score(const TrainingConfig& config, const Watch& watch, nlohmann::ordered_json& record);
-  void tell(const std::string& notice);
+  void report(const std::string& notice);
 
   Device& device_;
   std::vector<std::filesystem::path> test_;
@@ -77,7 +77,7 @@ class Sweep {
   Resolve resolve_;
   std::filesystem::path run_;
   Notices notices_;
-  std::set<std::string> told_;
+  std::set<std::string> reported_;
   FolderLock lock_;
   Log log_;
 };

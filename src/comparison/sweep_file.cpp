@@ -22,9 +22,9 @@ nlohmann::json setting_of(const fs::path& file, const toml::node& node) {
 
 /// The choices for each setting of a table, `a.b` for nested ones; one choice where there is no
 /// list.
-std::vector<std::vector<SaidSetting>> choices_of(const fs::path& file, const toml::table& table,
-                                                 const std::string& prefix = "") {
-  std::vector<std::vector<SaidSetting>> all;
+std::vector<std::vector<GivenSetting>> choices_of(const fs::path& file, const toml::table& table,
+                                                  const std::string& prefix = "") {
+  std::vector<std::vector<GivenSetting>> all;
   for (const auto& [key, node] : table) {
     const std::string name = prefix + std::string(key.str());
     if (const toml::table* inner = node.as_table()) {
@@ -33,7 +33,7 @@ std::vector<std::vector<SaidSetting>> choices_of(const fs::path& file, const tom
     }
     const std::string who =
         fmt::format("{}: {}", location_of(file, node), printable(name.substr(0, 60)));
-    std::vector<SaidSetting> choices;
+    std::vector<GivenSetting> choices;
     if (const toml::array* list = node.as_array()) {
       for (const toml::node& value : *list) choices.push_back({name, setting_of(file, value), who});
       if (choices.empty()) reject(file, node, fmt::format("{} has no value to try", shown(name)));
@@ -53,8 +53,8 @@ void check_number_of_runs(const fs::path& file, double runs) {
                                   file.string(), runs, kMost));
 }
 
-std::vector<SweepConfiguration> combinations(const fs::path& file,
-                                             const std::vector<std::vector<SaidSetting>>& choices) {
+std::vector<SweepConfiguration> combinations(
+    const fs::path& file, const std::vector<std::vector<GivenSetting>>& choices) {
   double runs = 1;
   for (const auto& values : choices) runs *= static_cast<double>(values.size());
   check_number_of_runs(file, runs);
@@ -62,7 +62,7 @@ std::vector<SweepConfiguration> combinations(const fs::path& file,
   for (const auto& values : choices) {
     std::vector<SweepConfiguration> longer;
     for (const SweepConfiguration& start : all)
-      for (const SaidSetting& value : values) {
+      for (const GivenSetting& value : values) {
         longer.push_back(start);
         longer.back().push_back(value);
       }

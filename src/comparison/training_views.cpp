@@ -19,7 +19,7 @@ void add_training_views(const Model& model, TestRunOptions& run) {
   try {
     for (LoadedClip& clip : clips)
       clip.motion = for_skeleton(std::move(clip.motion), model.modalities.pose_features.skeleton());
-  } catch (const InputError&) {  // a joint map told its roles
+  } catch (const InputError&) {  // its roles came from a joint map
     return;
   }
   const ClipStore store(std::move(clips));

@@ -96,9 +96,9 @@ void see_by_detector(AugmentedView& view, const RandomKey& key) {
       KeypointMap(keypoints, view.motion.skeleton, roles).joints_of(seen, view.motion, view.camera);
 }
 
-/// Where it is taken to be down: what the network is told of the camera and the answer that it is
-/// to give turn by the same about a level axis; the track, the heights and the truth in the image
-/// stay.
+/// An error of the direction taken as down: the camera that the network is given and the answer
+/// that it is to give turn by the same about a level axis; the track, the heights and the truth in
+/// the image stay.
 void misjudge_gravity(AugmentedView& view, double deviation_deg, const RandomKey& key) {
   const double angle = deviation_deg * EIGEN_PI / 180 * random_normal(key, kGravity, 0),
                about = 2 * EIGEN_PI * uniform(key, kGravity, 1);
@@ -119,7 +119,7 @@ void misjudge_gravity(AugmentedView& view, double deviation_deg, const RandomKey
 /// The clip seen otherwise, gravity known.
 AugmentedView seen_view(const Motion& raw, double fps, const CameraPlacement& placement,
                         const AugmentationSettings& settings, const RandomKey& key,
-                        bool all_in_sight, const PosePool* pool) {
+                        bool hide_no_limb, const PosePool* pool) {
   AugmentedView view;
   view.motion = other_timing(raw, fps, settings.speed, key);
   if (settings.mirror && uniform(key, kMirroring) < 0.5)
@@ -146,7 +146,7 @@ AugmentedView seen_view(const Motion& raw, double fps, const CameraPlacement& pl
       view.track,
       2.0 * uniform(key, kNoise) * settings.noise_px * size_px(view.track) / kUsualSize_px,
       mixed_seed({key.seed, key.step}));
-  if (!all_in_sight && uniform(key, kMissing) < settings.missing)
+  if (!hide_no_limb && uniform(key, kMissing) < settings.missing)
     hide_limbs(view.track, view.motion.skeleton, mixed_seed({key.seed, key.step}));
   return view;
 }
@@ -155,8 +155,8 @@ AugmentedView seen_view(const Motion& raw, double fps, const CameraPlacement& pl
 
 AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacement& placement,
                              const AugmentationSettings& settings, const RandomKey& key,
-                             bool all_in_sight, const PosePool* pool) {
-  AugmentedView view = seen_view(raw, fps, placement, settings, key, all_in_sight, pool);
+                             bool hide_no_limb, const PosePool* pool) {
+  AugmentedView view = seen_view(raw, fps, placement, settings, key, hide_no_limb, pool);
   if (settings.gravity_deg > 0) misjudge_gravity(view, settings.gravity_deg, key);
   return view;
 }

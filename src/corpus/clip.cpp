@@ -36,7 +36,7 @@ std::vector<fs::path> clips_below(const fs::path& folder) {
   return clips;
 }
 
-/// What ClipOptions say is done to a clip that was read.
+/// A clip that was read, changed as ClipOptions specify.
 Motion prepared(Motion motion, const fs::path& path, const ClipOptions& options,
                 ClipNotices& notices) {
   if (!options.keep_first_frame && has_leading_calibration_pose(motion)) {
@@ -70,16 +70,16 @@ void ClipNotices::add(const ClipNotices& others) {
   posed_ += others.posed_;
 }
 
-void ClipNotices::tell(std::vector<std::string>& notices) const {
+void ClipNotices::append_to(std::vector<std::string>& notices) const {
   notices.insert(notices.end(), lines.begin(), lines.end());
   if (posed_ == 0) return;
   const std::string whose = posed_ == 1 ? first_posed_.string() : fmt::format("{} clips", posed_);
   notices.push_back(fmt::format("{}: dropped the calibration pose of the first frame", whose));
 }
 
-std::vector<std::string> ClipNotices::told() const {
+std::vector<std::string> ClipNotices::all() const {
   std::vector<std::string> notices;
-  tell(notices);
+  append_to(notices);
   return notices;
 }
 
@@ -92,7 +92,7 @@ Motion load_clip(const fs::path& path, const ClipOptions& options,
                  std::vector<std::string>* notices) {
   ClipNotices found;
   Motion motion = load_clip(path, options, found);
-  if (notices) found.tell(*notices);
+  if (notices) found.append_to(*notices);
   return motion;
 }
 
@@ -111,7 +111,7 @@ std::vector<LoadedClip> load_clips(const std::vector<fs::path>& files, bool keep
     check_interruption();
     clips.push_back(load_clip_as_is(file, keep_first_frame, found));
   }
-  if (notices) found.tell(*notices);
+  if (notices) found.append_to(*notices);
   return clips;
 }
 

@@ -11,10 +11,10 @@
 namespace mcdbn {
 
 /// Writes clips one after another into a file that a store reads: channels as they are, 8 bytes a
-/// number, then who and what they are, as JSON. Nobody sees the file before it is whole.
+/// number, then who and what they are, as JSON. The file does not appear before it is whole.
 class ClipCacheWriter {
  public:
-  /// @param key says of what the clips were made, and how
+  /// @param key identifies what the clips were made of, and how
   ClipCacheWriter(std::filesystem::path path, std::string key);
   /// Removes what was not finished.
   ~ClipCacheWriter();

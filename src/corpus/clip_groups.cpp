@@ -10,7 +10,7 @@
 namespace mcdbn {
 
 ClipGroups::ClipGroups(const ClipStore& clips)
-    : actions_said_(std::ranges::any_of(
+    : actions_given_(std::ranges::any_of(
           clips.records(), [](const ClipRecord& record) { return !record.action.empty(); })) {
   PeopleCount count;
   std::map<std::pair<std::size_t, std::string>, std::size_t> numbers;
@@ -23,7 +23,7 @@ ClipGroups::ClipGroups(const ClipStore& clips)
 
 void ClipGroups::add(std::size_t clip, std::size_t sequences, TrainingSet& set) const {
   set.people.insert(set.people.end(), sequences, people_[clip]);
-  if (actions_said_) set.groups.insert(set.groups.end(), sequences, groups_[clip]);
+  if (actions_given_) set.groups.insert(set.groups.end(), sequences, groups_[clip]);
 }
 
 }  // namespace mcdbn

@@ -7,21 +7,21 @@
 
 namespace mcdbn {
 
-/// Numbers who is seen in clips, and who does what where somebody said actions.
+/// Numbers the people in clips, and person and action where actions are given.
 class ClipGroups {
  public:
   explicit ClipGroups(const ClipStore& clips);
 
   /// Of each clip, counted from 0.
   const std::vector<std::size_t>& people() const { return people_; }
-  /// A number for each person and action, or people() where nobody said actions.
-  const std::vector<std::size_t>& groups() const { return actions_said_ ? groups_ : people_; }
+  /// A number for each person and action, or people() where no action is given.
+  const std::vector<std::size_t>& groups() const { return actions_given_ ? groups_ : people_; }
   /// TrainingSet::people and ::groups of a clip's sequences.
   void add(std::size_t clip, std::size_t sequences, TrainingSet& set) const;
 
  private:
   std::vector<std::size_t> people_, groups_;
-  bool actions_said_;
+  bool actions_given_;
 };
 
 }  // namespace mcdbn

@@ -8,15 +8,15 @@
 
 namespace mcdbn {
 
-/// What is odd about clips that are read: what is the same of many is told once.
+/// What is odd about clips that are read: what is the same of many is reported once.
 class ClipNotices {
  public:
   std::vector<std::string> lines;  ///< of single clips
   /// A leading calibration pose was dropped.
   void add_calibration_pose(const std::filesystem::path& file);
   void add(const ClipNotices& others);
-  void tell(std::vector<std::string>& notices) const;
-  std::vector<std::string> told() const;
+  void append_to(std::vector<std::string>& notices) const;
+  std::vector<std::string> all() const;
 
  private:
   std::size_t posed_ = 0;

@@ -104,7 +104,7 @@ void add_up(const Motion& motion, const SkeletonRoles& roles, const SurveyLimits
   const double deg = std::atan2(std::hypot(sum.x(), sum.z()), sum.y()) * 180 / std::numbers::pi;
   if (deg > limits.lying_deg)
     problems.push_back(
-        {Kind::up, fmt::format("the trunk is {:.0f} degrees from +y: somebody lies, or another "
+        {Kind::up, fmt::format("the trunk is {:.0f} degrees from +y: the person lies, or another "
                                "axis is up",
                                deg)});
 }

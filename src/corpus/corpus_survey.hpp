@@ -19,7 +19,7 @@ std::string_view name_of(ClipProblem::Kind kind);
 
 /// What there is to know of a clip before it is trained on.
 struct SurveyedClip {
-  ListedClip clip;  ///< person and action as said, or as names, folders and bones tell
+  ListedClip clip;  ///< person and action as given, or by names, folders and bones
   int frames = 0;
   double fps = 0;
   std::size_t skeleton = 0;  ///< which of the corpus' skeletons, by joint names, from 1 on
@@ -42,7 +42,7 @@ struct SurveyLimits {
 };
 
 /// Reads every clip; what cannot be read is a problem of that clip.
-/// @param joint_map roles of clips' joints, said by hand
+/// @param joint_map roles of clips' joints, given by hand
 std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips,
                                  const SurveyLimits& limits = {}, const JointMap& joint_map = {});
 

@@ -6,7 +6,7 @@
 namespace mcdbn {
 
 AugmentedView detector_view(const Motion& motion, const DetectorViews& views, std::uint64_t seed) {
-  // A seed that nothing else uses: whoever sees the track must not draw the same numbers.
+  // A seed that nothing else uses: code that gets the track must not draw the same numbers.
   const std::uint64_t own = mixed_seed({seed, 0x64657465});
   AugmentedView view;
   view.motion = with_other_body(motion, views.body, own);

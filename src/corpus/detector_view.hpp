@@ -10,7 +10,7 @@
 
 namespace mcdbn {
 
-/// Clips as a detector would see them in the field: somebody else does the same before a camera
+/// Clips as a detector would see them in the field: another person does the same before a camera
 /// that stands anywhere.
 struct DetectorViews {
   std::vector<Keypoint> keypoints;
@@ -19,7 +19,7 @@ struct DetectorViews {
   OtherBody body;
 };
 
-/// The same seed gives the same view, whoever looks at it.
+/// The same seed gives the same view, whatever model it is for.
 /// @param motion at the rate that the track is to have
 AugmentedView detector_view(const Motion& motion, const DetectorViews& views, std::uint64_t seed);
 

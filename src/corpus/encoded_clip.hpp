@@ -21,7 +21,7 @@ struct EncodedClip {
   MatrixF track_features, pose_features;  ///< [frames x dimension], standardized
 };
 
-/// @param notices what was odd, if anyone wants to know  @throws InputError
+/// @param notices gets what was odd, if not null  @throws InputError
 EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& modalities,
                         const CameraPlacement& placement, bool keep_first_frame = false,
                         ClipNotices* notices = nullptr);

@@ -14,7 +14,7 @@
 namespace mcdbn {
 
 EncodedView encode_view(const Modalities& modalities, const AugmentedView& view, std::size_t clip) {
-  // Limbs out of sight: as Mcdbn::fills_gaps says, and nothing is learnt from them.
+  // Hidden limbs are left at their mean (Mcdbn::fills_gaps), and nothing is learnt from them.
   const MatrixF track = modalities.encode_track(view.track, view.camera);
   return {at_mean_where_unknown(track),
           modalities.encode_pose(view.motion, view.camera.camera_from_world),

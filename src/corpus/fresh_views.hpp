@@ -35,8 +35,8 @@ struct PieceChoice {
   std::optional<std::size_t> without = {}, only = {};
 };
 
-/// As many augmented views of pieces of clips as anybody wants. View n is the same whoever makes it
-/// and when; making it takes as long whatever the corpus.
+/// Any number of augmented views of pieces of clips. View n is the same wherever and whenever it is
+/// made; making it takes as long whatever the corpus.
 class FreshViews {
  public:
   /// @param pool what new poses are made of; none: there are none
@@ -46,7 +46,7 @@ class FreshViews {
 
   /// Several threads may call it at once.
   EncodedView make(std::size_t number) const;
-  /// Views `first` to `first` + `count` − 1, made by several threads. Each says what was seen.
+  /// Views `first` to `first` + `count` − 1, made by several threads. Each has its `tracks_seen`.
   TrainingSet make_set(std::size_t first, std::size_t count) const;
 
  private:

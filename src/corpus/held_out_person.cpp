@@ -29,15 +29,15 @@ struct Amount {
   double duration = 0;
 };
 
-std::optional<std::size_t> missed_least(const std::map<std::size_t, Amount>& people,
-                                        std::size_t fewest_people) {
+std::optional<std::size_t> with_least_data(const std::map<std::size_t, Amount>& people,
+                                           std::size_t fewest_people) {
   if (fewest_people == 0 || people.size() < std::max<std::size_t>(fewest_people, 2)) return {};
-  // Fewest frames first; one with a single clip only where nobody has more.
-  const auto missed_less = [](const auto& x, const auto& y) {
+  // Fewest frames first; one with a single clip only where none has more.
+  const auto less_data = [](const auto& x, const auto& y) {
     const bool x_single = x.second.clips.size() < 2, y_single = y.second.clips.size() < 2;
     return x_single != y_single ? y_single : x.second.duration < y.second.duration;
   };
-  return std::min_element(people.begin(), people.end(), missed_less)->first;
+  return std::min_element(people.begin(), people.end(), less_data)->first;
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ std::optional<std::size_t> person_to_hold_out(const TrainingSet& views, std::siz
     amount.clips.insert(views.clips[i].path);
     amount.duration += static_cast<double>(views.poses[i].rows());
   }
-  return missed_least(people, fewest_people);
+  return with_least_data(people, fewest_people);
 }
 
 std::optional<std::size_t> person_to_hold_out(const ClipStore& clips, std::size_t fewest_people) {
@@ -60,7 +60,7 @@ std::optional<std::size_t> person_to_hold_out(const ClipStore& clips, std::size_
     amount.clips.insert(clips.record(i).clip.path);
     amount.duration += clips.record(i).seconds();
   }
-  return missed_least(people, fewest_people);
+  return with_least_data(people, fewest_people);
 }
 
 TrainingSet views_of(const TrainingSet& views, std::size_t person) {

@@ -8,15 +8,15 @@
 
 namespace mcdbn {
 
-/// The person who is missed least: of those with several clips (of all, if nobody has) the one with
-/// the fewest frames. Nobody of fewer than `fewest_people`, or if that is 0.
+/// The person with the least data: of those with several clips (of all, if there are none) the one
+/// with the fewest frames. None if there are fewer than `fewest_people`, or if that is 0.
 /// @param views with `people` and `clips` for each of `poses`
 std::optional<std::size_t> person_to_hold_out(const TrainingSet& views, std::size_t fewest_people);
 
 /// The same of clips.
 std::optional<std::size_t> person_to_hold_out(const ClipStore& clips, std::size_t fewest_people);
 
-/// The views of that person alone, or of everybody else.
+/// The views of that person alone, or of all others.
 TrainingSet views_of(const TrainingSet& views, std::size_t person);
 TrainingSet views_without(const TrainingSet& views, std::size_t person);
 

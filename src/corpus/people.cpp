@@ -9,8 +9,8 @@ namespace mcdbn {
 namespace {
 
 /// What the first pattern that the whole of a file's name fits has in brackets.
-std::optional<std::string> told_by_name(const std::filesystem::path& file, const std::regex& first,
-                                        const std::regex& second) {
+std::optional<std::string> known_by_name(const std::filesystem::path& file, const std::regex& first,
+                                         const std::regex& second) {
   const std::string name = file.stem().string();
   std::smatch found;
   if (!std::regex_match(name, found, first) && !std::regex_match(name, found, second)) return {};
@@ -19,12 +19,12 @@ std::optional<std::string> told_by_name(const std::filesystem::path& file, const
 
 }  // namespace
 
-std::size_t PeopleCount::number_of(const Skeleton& skeleton, const std::string& said) {
-  Person person{said, {}};
-  if (said.empty())
+std::size_t PeopleCount::number_of(const Skeleton& skeleton, const std::string& given) {
+  Person person{given, {}};
+  if (given.empty())
     for (const Joint& joint : skeleton.joints) person.bones.push_back(joint.offset.norm());
   const auto same = [&](const Person& other) {
-    return other.said == said &&
+    return other.given == given &&
            std::equal(person.bones.begin(), person.bones.end(), other.bones.begin(),
                       other.bones.end(),
                       [](double x, double y) { return std::abs(x - y) <= 1e-3 * std::abs(x); });
@@ -37,12 +37,12 @@ std::size_t PeopleCount::number_of(const Skeleton& skeleton, const std::string& 
 
 std::string person_of(const std::filesystem::path& file) {
   static const std::regex cmu("(\\d+)_\\d+.*"), synthesized(".*_(s\\d+)_\\d+");
-  return told_by_name(file, cmu, synthesized).value_or("");
+  return known_by_name(file, cmu, synthesized).value_or("");
 }
 
 std::string action_of(const std::filesystem::path& file) {
   static const std::regex bandai("dataset-\\d+_(.+)_[^_]+_\\d+"), synthesized("(.+)_s\\d+_\\d+");
-  return told_by_name(file, bandai, synthesized)
+  return known_by_name(file, bandai, synthesized)
       .value_or(std::filesystem::absolute(file).parent_path().filename().string());
 }
 

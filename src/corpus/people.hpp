@@ -9,28 +9,28 @@
 
 namespace mcdbn {
 
-// Who a clip shows. Its bones tell where the clip itself is at hand; of the clips that a model was
-// trained on only the files' names are, so there the name has to tell.
+// The person in a clip: by its bones where the clip itself is at hand; by the file's name of clips
+// that a model was trained on, as only the names of those are known.
 
-/// Numbers people in the order in which they come, told by what is said of them or else by the
+/// Numbers people in the order in which they come, distinguished by the person given or else by the
 /// bones of their skeletons: files of one capture session share them.
 class PeopleCount {
  public:
-  std::size_t number_of(const Skeleton& skeleton, const std::string& said = {});
+  std::size_t number_of(const Skeleton& skeleton, const std::string& given = {});
 
  private:
   struct Person {
-    std::string said;
+    std::string given;
     std::vector<double> bones;
   };
   std::vector<Person> people_;
 };
 
-/// Who a clip shows, where its name tells: `08` of CMU's 08_01.bvh, `s02` of walk_s02_01.bvh as
-/// `synthesize` names them. Empty where it does not.
+/// The person in a clip by its name: `08` of CMU's 08_01.bvh, `s02` of walk_s02_01.bvh as
+/// `synthesize` names them. Empty where the name has none.
 std::string person_of(const std::filesystem::path& file);
 
-/// What a clip shows, where its name tells: `walk` of walk_s02_01.bvh as `synthesize` names them,
+/// The action in a clip by its name: `walk` of walk_s02_01.bvh as `synthesize` names them,
 /// `bow` of Bandai's dataset-1_bow_active_001.bvh. Else the name of its folder.
 std::string action_of(const std::filesystem::path& file);
 

@@ -31,7 +31,7 @@ class PosePool {
   std::array<JointLimits, kJointRoleCount> limits_;
 };
 
-/// What views of those clips need for new poses; null where the settings ask for none.
+/// What views of those clips need for new poses; null where the settings have none.
 std::shared_ptr<const PosePool> pose_pool_for(const ClipStore& clips,
                                               const CorpusSettings& settings);
 

@@ -72,7 +72,7 @@ void check_names(const LoadedClip& clip) {
     require_utf8(joint.name, fmt::format("{}: the joint name {}", clip.clip.path, joint.name));
 }
 
-/// A clip on its way, and what there is to say of it.
+/// A clip that is being read, and the notices about it.
 struct Brought {
   LoadedClip clip;
   ClipNotices notices;
@@ -109,8 +109,8 @@ void for_each_clip(std::size_t count, const Make& make, const Take& take) {
   for (std::size_t i = 0; i < count; ++i) take(made.next());
 }
 
-/// Who is who by the skeletons' own bones: on the humanoid those of one person may differ by a
-/// hair.
+/// Distinguishes people by the skeletons' own bones: on the humanoid those of one person may differ
+/// slightly.
 class HumanoidClips {
  public:
   LoadedClip taken(Brought brought) {
@@ -160,7 +160,7 @@ ClipStore read_clips(const std::vector<ListedClip>& files, const CorpusSettings&
         "`augment.leaning`, `augment.turning-round` and joint maps are of the canonical humanoid; "
         "leave the skeletons' own out");
   const bool humanoid = settings.skeleton == SkeletonUse::humanoid || any_humanoid;
-  const auto tell = [&](const std::string& text) {
+  const auto add_notice = [&](const std::string& text) {
     if (notices) notices->push_back(text);
   };
   HumanoidClips on_humanoid;
@@ -181,11 +181,11 @@ ClipStore read_clips(const std::vector<ListedClip>& files, const CorpusSettings&
         odd.add(brought.clip.clip.path, humanoid ? brought.was : brought.clip.motion.skeleton);
         into(sink, std::move(brought), humanoid);
       });
-  if (notices) of_files.tell(*notices);
+  if (notices) of_files.append_to(*notices);
   if (settings.skeleton == SkeletonUse::own && odd.text())
     throw InputError(*odd.text() + "; or train on the canonical humanoid");
   if (odd.text())
-    tell(fmt::format("skeletons differ, so the humanoid's is learnt: {}", *odd.text()));
+    add_notice(fmt::format("skeletons differ, so the humanoid's is learnt: {}", *odd.text()));
   ClipStore clips = sink.finish();
   if (!humanoid && odd.text()) {
     ClipSink second = make_sink();
@@ -197,11 +197,11 @@ ClipStore read_clips(const std::vector<ListedClip>& files, const CorpusSettings&
         [&](Brought brought) { into(second, std::move(brought), true); });
     clips = second.finish();
   }
-  if (humanoid || odd.text()) tell(on_humanoid.text());
+  if (humanoid || odd.text()) add_notice(on_humanoid.text());
   return clips;
 }
 
-/// What a cache hangs on beside what is in the files.
+/// What a cache depends on beside what is in the files.
 std::string cache_key(const std::vector<ListedClip>& files, const CorpusSettings& settings) {
   nlohmann::json key = {{"version", 1},
                         {"keep_first_frame", settings.keep_first_frame},

@@ -41,7 +41,7 @@ std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair
 }
 
 /// Views as fine-tuning will see them, for the scaling: what hardly moves in the clips may move
-/// in their views (the left arm of somebody who waves with the right one, seen in a mirror), and
+/// in their views (the left arm of a person who waves with the right one, seen in a mirror), and
 /// what counts for fifty deviations there hides everything else. So do a detector's errors in what
 /// never moves: a spine that the skeleton puts on the pelvis.
 template <typename Use>
@@ -126,8 +126,8 @@ std::vector<Skeleton> people_in(const ClipStore& clips) {
   return people;
 }
 
-/// The model's skeleton is nobody's in particular: who is not known is most like the mean of those
-/// who are.
+/// The model's skeleton is no single person's: an unknown person is most like the mean of the known
+/// ones.
 PoseFeatures fitted_features(const std::vector<const Motion*>& motions, const ClipStore& clips) {
   const PoseFeatures features = PoseFeatures::fit(motions);
   Skeleton skeleton =

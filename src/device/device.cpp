@@ -96,7 +96,7 @@ std::vector<DeviceInfo> list_devices() {
         list.push_back(
             describe(all_platforms[p], static_cast<int>(p), devices[d], static_cast<int>(d)));
       } catch (const cl::Error&) {
-        // one that does not say what it is cannot be worked with
+        // one that cannot be queried cannot be worked with
       }
     }
   }

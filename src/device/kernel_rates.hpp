@@ -19,7 +19,7 @@ struct KernelWork {
 
 /// How a kernel did.
 struct KernelRate {
-  KernelWork work;           ///< zeros where nobody counted it
+  KernelWork work;           ///< zeros where it was not counted
   std::size_t launches = 0;  ///< of one run
   double seconds = 0;        ///< of one run, all its launches together
 };

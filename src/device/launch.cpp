@@ -59,7 +59,7 @@ DeviceError launch_error(const Device& device, const cl::Kernel& kernel, const c
   try {
     name = "kernel " + kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
   } catch (const cl::Error&) {
-    // a device that is lost may not even tell that
+    // a lost device may not even give the name
   }
   return device_error(device.info().name, name, error);
 }

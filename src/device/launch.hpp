@@ -22,8 +22,8 @@ std::array<std::size_t, 2> local_size_for(const std::array<std::size_t, 2>& glob
                                           const DeviceInfo& info);
 
 /// Keeps a host that only enqueues from running far ahead of its device: now and then, some ten
-/// times a second, it waits for the queue. Otherwise nobody would hear for minutes that the work is
-/// to stop. A wait costs some 50 µs.
+/// times a second, it waits for the queue. Otherwise a request to stop would go unnoticed for
+/// minutes. A wait costs some 50 µs.
 /// @throws Interrupted if that was asked for, DeviceError
 void keep_pace(Device& device);
 

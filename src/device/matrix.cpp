@@ -15,7 +15,7 @@ bool is_lack_of_memory(cl_int code) {
          code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE;
 }
 
-/// @throws DeviceError saying how much was wanted where the device has no room for it
+/// @throws DeviceError with the size wanted where the device has no room for it
 cl::Buffer allocate(const Device& device, std::size_t bytes) {
   constexpr double kMegabyte = 1e6;
   try {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kLost =
     "the device is lost: it was reset or taken away, or its driver gave up; the system's log may "
-    "say why";
+    "give the reason";
 constexpr const char* kNoMemory =
     "out of memory; smaller layers, mini-batches or fewer clips need less, and so does a device "
     "that nothing else uses";
@@ -69,7 +69,7 @@ std::string opencl_failure(cl_int code) {
 
 DeviceError device_error(const std::string& device, const std::string& what,
                          const cl::Error& error) {
-  return DeviceError(fmt::format("{}: {}: {}, said by {}", device, what,
+  return DeviceError(fmt::format("{}: {}: {}, reported by {}", device, what,
                                  opencl_failure(error.err()), error.what()));
 }
 

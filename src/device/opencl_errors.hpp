@@ -17,7 +17,7 @@ DeviceError device_error(const std::string& device, const std::string& what,
                          const cl::Error& error);
 
 /// Makes an OpenCL call; every call of the library's goes through here.
-/// @throws DeviceError as device_error says it
+/// @throws DeviceError as device_error makes it
 template <typename Call>
 auto checked(const std::string& device, const char* what, Call&& call) {
   try {

@@ -11,8 +11,8 @@ double measure_peak_gflops(Device& device);
 /// The same with vectors of so many floats: 1, 4, 8 or 16.
 double measure_peak_gflops(Device& device, int vector_width);
 
-/// Whether a core multiplies and adds 16 floats in one pass. Registers of 512 bits do not tell:
-/// some cores take them in two.
+/// Whether a core multiplies and adds 16 floats in one pass. Registers of 512 bits do not show
+/// it: some cores take them in two.
 bool has_units_of_16_floats(Device& device);
 
 /// GB/s at which all compute units together read `bytes` again and again: those of the memory where

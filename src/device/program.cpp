@@ -43,8 +43,8 @@ std::string options_of(const Defines& defines) {
   return options;
 }
 
-/// What tells a kernel from others. It is asked for at every launch: building the options there
-/// would take longer than many a launch does.
+/// What distinguishes a kernel from others. It is needed at every launch: building the options
+/// there would take longer than many a launch does.
 std::string key_of(const std::string& file, const std::string& name, const Defines& defines) {
   std::string key;
   key.reserve(256);
@@ -82,13 +82,13 @@ bool names_error(const std::string& line) {
   return line.find("error") != std::string::npos;
 }
 
-/// What went wrong in a line: the first of the log that speaks of an error.
+/// What went wrong in a line: the first of the log that names an error.
 std::string build_failure(const std::string& log, const std::string& options) {
   constexpr const char* kIsThereRoom =
       "is there room where it keeps what it builds (PoCL: $POCL_CACHE_DIR, else ~/.cache/pocl)?";
   if (is_blank(log))
-    return fmt::format("building kernels with {}: the OpenCL driver says nothing of why; {}",
-                       options, kIsThereRoom);
+    return fmt::format("building kernels with {}: the OpenCL driver gives no reason; {}", options,
+                       kIsThereRoom);
   std::istringstream lines(log);
   std::string line, first;
   while (std::getline(lines, line) && !names_error(line))
@@ -96,7 +96,7 @@ std::string build_failure(const std::string& log, const std::string& options) {
   const std::string path = kept_log(log),
                     what = names_error(line)
                                ? line
-                               : fmt::format("the OpenCL driver says no more than '{}'; {}", first,
+                               : fmt::format("the OpenCL driver reports only '{}'; {}", first,
                                              kIsThereRoom);
   return fmt::format("building kernels with {}: {}{}", options, what,
                      path.empty() ? "" : fmt::format(" (the whole log: {})", path));
@@ -193,7 +193,7 @@ std::optional<std::string> ProgramCache::log_of_failed_build(const cl::Program& 
   try {
     return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_);
   } catch (const cl::Error&) {
-    return std::string();  // as a driver that says nothing
+    return std::string();  // as from a driver that gives no reason
   }
 }
 

@@ -106,7 +106,7 @@ double FilmReader::fps() const {
   constexpr double kUsual = 30;
   const double fps = capture_.get(cv::CAP_PROP_FPS);
   if (fps > 0 && !kFrameRate_hz.contains(fps))
-    throw InputError(fmt::format("{}: says {:g} frames a second, which must be {}", path_.string(),
+    throw InputError(fmt::format("{}: gives {:g} frames a second, which must be {}", path_.string(),
                                  fps, kFrameRate_hz.text()));
   return fps > 0 ? fps : kUsual;
 }

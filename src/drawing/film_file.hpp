@@ -14,7 +14,7 @@ class FilmWriter {
   /// @param image of the first one's size  @throws InputError if no film can be written there
   void write(const cv::Mat& image);
   int frames() const { return frames_; }
-  /// Puts the film in place. @throws InputError if it is not whole: OpenCV says nothing of a full
+  /// Puts the film in place. @throws InputError if it is not whole: OpenCV does not report a full
   /// disk
   void finish();
 
@@ -32,7 +32,7 @@ class FilmReader {
   /// @throws InputError if it cannot be read, has fewer frames, or is no film by its first bytes:
   /// lists of films, which OpenCV takes too, name files and addresses of their own
   FilmReader(const std::filesystem::path& path, int from);
-  /// @throws InputError if it says a rate that no film has
+  /// @throws InputError if it gives a rate that no film has
   double fps() const;
   /// An empty image where the film ends.
   cv::Mat next();
@@ -43,8 +43,8 @@ class FilmReader {
   cv::VideoCapture capture_;
 };
 
-/// How many frames so many seconds have: one at least. @throws InputError if nobody could watch
-/// them
+/// How many frames so many seconds have: one at least. @throws InputError if there are too
+/// many for a film
 int film_frames(double duration_s, double fps, const std::filesystem::path& path);
 
 }  // namespace mcdbn::rendering

@@ -268,7 +268,7 @@ void render(const std::vector<RenderClip>& clips, const fs::path& path,
   const bool video = path.extension() == ".mp4";
   if (!video && path.extension() != ".png") {
     throw InputError(
-        fmt::format("{}: cannot tell what to write; end the name in .mp4 or .png", path.string()));
+        fmt::format("{}: unknown kind of file; end the name in .mp4 or .png", path.string()));
   }
   std::vector<Figure> figures;
   figures.reserve(clips.size());

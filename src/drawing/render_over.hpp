@@ -8,7 +8,7 @@
 
 namespace mcdbn::rendering {
 
-/// Figures drawn over the frames of a film (options.over), to .mp4 or .png, as render() says.
+/// Figures drawn over the frames of a film (options.over), to .mp4 or .png, as render() does.
 void render_over(const std::vector<Figure>& figures, const std::filesystem::path& path,
                  const RenderOptions& options);
 

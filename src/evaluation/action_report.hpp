@@ -31,7 +31,7 @@ struct MethodReport {
   ClipScore mean;
 };
 
-/// Everything that a report says of one action (docs/paper.md, "Tables and figures").
+/// Everything in a report about one action (docs/paper.md, "Tables and figures").
 struct ActionReport {
   std::string name;
   int clips = 0, frames = 0, trained_clips = 0;

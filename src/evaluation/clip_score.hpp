@@ -20,7 +20,7 @@ struct ClipScore {
   FootSlide foot_slide;
   double bone_length_spread_mm = 0;
   /// Share of 90 % intervals that hold the truth (share_within_90), each joint but the root along
-  /// each axis of the world, from the root; NaN where nobody said how sure the answer is.
+  /// each axis of the world, from the root; NaN where the answer has no uncertainty.
   double within_90 = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -42,8 +42,9 @@ std::vector<MethodReport> overall_methods(const EvaluationReport& report);
 /// 2D from 3D: mean over the clips.
 TrackError overall_track_error(const EvaluationReport& report);
 
-/// What the figures say, in words: whether a baseline beats the model, whether the flattened
-/// correlation says anything, how alike the regenerations are, whether training clips flatter.
+/// What the figures show, in words: whether a baseline beats the model, whether the flattened
+/// correlation carries information, how alike the regenerations are, whether training clips make
+/// the figures better.
 std::vector<Verdict> verdicts(const EvaluationReport& report);
 
 /// {"clips", "frames", "model": {pcc_flat, …}, "baselines": {name: {…}},

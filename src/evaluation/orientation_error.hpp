@@ -5,7 +5,7 @@
 namespace mcdbn {
 
 /// Mean angle between the true orientation of a joint in the world and the regenerated one, over
-/// frames and all joints that turn (MPJAE). It tells what no joint's place does: how a limb is
+/// frames and all joints that turn (MPJAE). It shows what no joint's place does: how a limb is
 /// turned about its own length, and which way a trunk faces.
 /// @param truth, regenerated as many frames; joints are matched by name
 /// @return degrees, 0 to 180; NaN without a joint that turns

@@ -14,12 +14,12 @@ namespace mcdbn {
 struct ReportMotion {
   MatrixD points_mm;  ///< [frames x 3·points], as ReportClip::truth_mm
   ClipScore score;
-  /// How sure each joint is, from the root along the world's axes [frames x 3·joints], the root's
-  /// own 0; 0 x 0 where nobody said it.
+  /// Of each joint, from the root along the world's axes [frames x 3·joints], the root's own 0;
+  /// 0 x 0 where the answer has none.
   MatrixD deviation_mm = {};
 };
 
-/// What a report knows of one test clip. Points are joints first (the root, then those that are
+/// What a report has of one test clip. Points are joints first (the root, then those that are
 /// judged), then the ends of limbs, which are only drawn.
 struct ReportClip {
   std::string name;    ///< unique in the report

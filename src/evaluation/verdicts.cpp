@@ -146,10 +146,10 @@ void add_foot_slide(std::vector<Verdict>& list, const ClipScore& answer) {
                               slide.regenerated_mm_s, slide.truth_mm_s, ratio)});
 }
 
-/// Asked of an answer that says how sure it is: between these.
+/// The share of the truth that 90 % intervals ought to hold: between these.
 constexpr double kFewestWithin90 = 0.85, kMostWithin90 = 0.95;
 
-void add_sureness(std::vector<Verdict>& list, const ClipScore& answer) {
+void add_uncertainty(std::vector<Verdict>& list, const ClipScore& answer) {
   if (!std::isfinite(answer.within_90)) return;
   const bool right = answer.within_90 >= kFewestWithin90 && answer.within_90 <= kMostWithin90;
   list.push_back({right ? Kind::good : Kind::bad,
@@ -211,7 +211,7 @@ void add_treatment(std::vector<Verdict>& list, const EvaluationReport& report) {
     list.push_back(
         {Kind::note,
          fmt::format("Every method's answer, the simpler ones' too, was fitted to the 2D "
-                     "track: a report without the fit shows what each says by itself.")});
+                     "track: a report without the fit shows the methods' own answers.")});
 }
 
 }  // namespace
@@ -230,7 +230,7 @@ std::vector<Verdict> verdicts(const EvaluationReport& report) {
   if (report.actions.size() > 1)
     for (const ActionReport& action : report.actions) add_action_losses(list, action);
   add_foot_slide(list, answer);
-  add_sureness(list, answer);
+  add_uncertainty(list, answer);
   for (const ActionReport& action : report.actions) {
     add_samples(list, action);
     add_likeness(list, action);

@@ -6,7 +6,7 @@
 
 namespace mcdbn {
 
-/// A joint's position as the 6D features say it: that of the joint it hangs on plus a lever that
+/// A joint's position as the 6D features give it: that of the joint it hangs on plus a lever that
 /// turns with one block. As the blocks are orientations in the camera's frame and not those against
 /// the parent, positions are sums of turned levers.
 struct PoseBone {

@@ -10,7 +10,7 @@ namespace mcdbn {
 
 namespace {
 
-/// One joint of the output skeleton and what the model says of it.
+/// One joint of the output skeleton and what the model has for it.
 struct DecodedJoint {
   const Joint* joint = nullptr;
   int channel = 0;                    ///< first column of its channels
@@ -21,8 +21,8 @@ struct DecodedJoint {
 };
 
 /// The rotation whose leading column is along that of the block, and the other of its first two as
-/// near as can be (Gram-Schmidt); `otherwise` where they say nothing (zero, parallel or not
-/// finite).
+/// near as can be (Gram-Schmidt); `otherwise` where they determine none (zero, parallel or
+/// not finite).
 Eigen::Matrix3d orthonormal(const double* block, int leading_axis,
                             const Eigen::Matrix3d& otherwise) {
   const Eigen::Map<const Eigen::Matrix<double, 3, 2>> axes(block);
@@ -37,7 +37,7 @@ Eigen::Matrix3d orthonormal(const double* block, int leading_axis,
   return rotation;
 }
 
-/// The joint's channels where no feature speaks: the training constants, put in this joint's own
+/// The joint's channels without a feature: the training constants, put in this joint's own
 /// channel order and shifted to its own OFFSET; at rest where the model has no such joint.
 RowVectorD constant_channels(const DecodedJoint& decoded) {
   const Joint& joint = *decoded.joint;

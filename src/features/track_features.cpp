@@ -22,7 +22,7 @@ struct Pixels {
   MatrixD x, y;
 };
 
-constexpr int kFewestJoints = 3;  ///< the root among them: with two nobody knows how a body stands
+constexpr int kFewestJoints = 3;  ///< the root among them: two do not determine a body's pose
 
 std::vector<int> columns_of(const Track2d& track, const std::vector<std::string>& joint_names,
                             const std::string& root_name) {

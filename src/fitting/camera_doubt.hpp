@@ -23,7 +23,7 @@ struct CameraDoubt {
 };
 
 /// What is not known of the camera, where the network sees and answers in a level view: nothing
-/// tells pitch and roll where it does not.
+/// determines pitch and roll where it does not.
 std::optional<CameraDoubt> doubt_of(const KnownOfClip& known, const Modalities& modalities,
                                     const Track2d& track, const TrackFitSettings& settings);
 

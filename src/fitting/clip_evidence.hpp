@@ -6,7 +6,7 @@
 
 namespace mcdbn {
 
-/// An answer beside the track that it is to meet, as what the posterior is made of.
+/// A network's answer and the track that it is fitted to, as the posterior takes them.
 class ClipEvidence {
  public:
   /// @param answer the prior's mean, where the camera sees it  @param travelled [frames x 3] world
@@ -15,7 +15,7 @@ class ClipEvidence {
   ClipEvidence(const PoseFeatures& features, const Motion& answer, const MatrixD& travelled,
                const TrackRays& track, const Camera& camera);
 
-  PosteriorClip clip;  ///< deviations and planted feet still to be told
+  PosteriorClip clip;  ///< deviations and planted feet still to be set
 
   /// Which feet stand in a motion of the same skeleton's joints, into `clip`: by how low and slow
   /// they are (kPlantedInAnswer), the ground being the lowest foot of the frame.

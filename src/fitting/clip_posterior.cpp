@@ -24,9 +24,9 @@ void join(PosteriorPoint& whole, Eigen::Index known, const PosteriorPoint& part,
   }
 }
 
-/// The other frames take what a window has found of what all frames share. One camera does not tell
-/// a large body from a near one, nor a long lens from a short way: they start where that body is
-/// seen through that lens as theirs was.
+/// The other frames take what a window has found of what all frames share. One camera does not
+/// distinguish a large body from a near one, nor a long lens from a short distance: they start
+/// where that body is seen through that lens as theirs was.
 void start_as_seen(PosteriorPoint& from, const PosteriorClip& clip, const ClipWindow& window,
                    const PosteriorPoint& found) {
   if (clip.body_unknown || clip.camera) {

@@ -20,8 +20,7 @@ struct SeenJoint {
   double confidence = 0;  ///< the ray's variance is the track's over this; 0: not seen
 };
 
-/// What is likely of a clip before its track is looked at, and its track. Metres of a 1.7 m body,
-/// camera axes.
+/// The prior of a clip's motion, and its track. Metres of a 1.7 m body, camera axes.
 struct PosteriorClip {
   std::vector<int> parents;                  ///< by orientation, an earlier one, or −1
   std::vector<int> lengths;                  ///< by orientation, which length its bones have
@@ -49,9 +48,9 @@ struct PosteriorClip {
 /// How far off rays are, x/z and y/z each: a part that is new in every frame and one that lasts.
 struct RayNoise {
   double white = 0, lasting = 0;
-  bool exact = false;     ///< there is next to none beside a usual detector's
-  bool measured = false;  ///< there is some, and it is no detector's: the track and a solution told
-                          ///< all of it
+  bool exact = false;     ///< there is next to none compared with a usual detector's
+  bool measured = false;  ///< there is some, and it is no detector's: all of it is estimated from
+                          ///< the track and a solution
   bool steady = false;    ///< next to none of it is new in every frame, and it is no detector's
 };
 

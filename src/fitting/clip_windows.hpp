@@ -17,8 +17,8 @@ struct WindowSizes {
   /// Of its own, at most: memory and time of a window's equations grow with them, so that those of
   /// a clip do.
   Eigen::Index frames;
-  /// Of its neighbours' on either side, over several times what an error lasts: further away
-  /// nothing is heard.
+  /// Of its neighbours' on either side, over several times what an error lasts: frames further
+  /// away have no influence.
   Eigen::Index overlap;
 };
 inline constexpr WindowSizes kAllFrames{300, 30};
@@ -27,7 +27,7 @@ inline constexpr WindowSizes kAllFrames{300, 30};
 inline constexpr WindowSizes kFewFrames{150, 10};
 
 /// Every frame is in one window at least; neighbours share twice the overlap. All have as many of
-/// their own, so that the one which tells what all share is not a short rest.
+/// their own, so that the one which determines what all share is not a short rest.
 std::vector<ClipWindow> windows_of(Eigen::Index frames, const WindowSizes& sizes = kAllFrames);
 
 /// How much of a window counts in its frame `t`, beside the windows before it: it comes in over the

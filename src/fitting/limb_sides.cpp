@@ -135,23 +135,23 @@ class LimbInTime {
     const SeenJoint& joint = clip_.seen[static_cast<std::size_t>(t)][bone.joint];
     const Eigen::Vector3d now = vector_of(t, bone);
     if (!(joint.confidence > 0)) {
-      const Eigen::Vector3d sight = place_of(clip_, point_, t, bone.joint).normalized();
-      return other ? Eigen::Vector3d(now - 2 * now.dot(sight) * sight) : now;
+      const Eigen::Vector3d ray = place_of(clip_, point_, t, bone.joint).normalized();
+      return other ? Eigen::Vector3d(now - 2 * now.dot(ray) * ray) : now;
     }
-    const Eigen::Vector3d sight = joint.ray.homogeneous().normalized();
-    const double along = sight.dot(upper), length = now.norm();
+    const Eigen::Vector3d ray = joint.ray.homogeneous().normalized();
+    const double along = ray.dot(upper), length = now.norm();
     const double half =
         std::sqrt(std::max(0.0, length * length - (upper.squaredNorm() - along * along)));
-    const bool away = (now.dot(sight) > 0) != other;
-    return length * ((along + (away ? half : -half)) * sight - upper).normalized();
+    const bool away = (now.dot(ray) > 0) != other;
+    return length * ((along + (away ? half : -half)) * ray - upper).normalized();
   }
 
   /// How far a bone may turn while the ray's noise hides it.
   /// @param place of its lower end
   double open_rad(const Eigen::Vector3d& place, const Eigen::Vector3d& vector) const {
     const double noise = noise_ * place.z() / vector.norm();
-    const double along_sight = std::abs(place.normalized().dot(vector.normalized()));
-    return std::min(noise / std::max(along_sight, noise), std::sqrt(2 * noise));
+    const double along_ray = std::abs(place.normalized().dot(vector.normalized()));
+    return std::min(noise / std::max(along_ray, noise), std::sqrt(2 * noise));
   }
 
   double value(Eigen::Index t, std::size_t set) const {

@@ -17,22 +17,23 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// Deviation of what no residual tells of, so that every unknown has one: radians, metres.
-constexpr double kUntold = 10;
+/// Deviation of a weak prior of all unknowns, as some have no residual: radians, metres.
+constexpr double kUnknownDeviation = 10;
 
 /// The normal distribution of one window: x = L⁻ᵀ z − C λ, where λ are the lengths of the body.
 class WindowPosterior {
  public:
   WindowPosterior(const Sparse& derivatives, Eigen::Index lengths) {
     const Eigen::Index moving = derivatives.cols() - lengths;
-    Sparse untold(derivatives.cols(), derivatives.cols());
-    untold.setIdentity();
-    const Sparse all = Sparse(derivatives.transpose() * derivatives) + untold / (kUntold * kUntold);
+    Sparse identity(derivatives.cols(), derivatives.cols());
+    identity.setIdentity();
+    const Sparse all = Sparse(derivatives.transpose() * derivatives) +
+                       identity / (kUnknownDeviation * kUnknownDeviation);
     const Sparse own = all.topLeftCorner(moving, moving);
     factor_.compute(own);
     if (factor_.info() != Eigen::Success)
       throw InputError(
-          "the fit to the track does not tell how sure it is; does the track show a "
+          "the uncertainty of the fit to the track cannot be computed; does the track show a "
           "person?");
     if (lengths == 0) return;
     const Eigen::MatrixXd with_lengths = Sparse(all.topRightCorner(moving, lengths));
@@ -106,7 +107,7 @@ std::vector<PosteriorPoint> posterior_draws(const PosteriorClip& clip, const Ray
     return WindowPosterior(derivatives,
                            derivatives.cols() - window.frames * (likeliest.turns.cols() + 3));
   };
-  // The body is told by the middle window, as in most_likely.
+  // The middle window determines the body, as in most_likely.
   std::vector<Eigen::VectorXd> bodies(count, Eigen::VectorXd::Zero(likeliest.log_lengths.size()));
   if (lengths > 0) {
     const WindowPosterior middle = posterior_of(windows[windows.size() / 2]);

@@ -7,14 +7,14 @@ namespace mcdbn {
 
 /// How far a prior's orientations may be off about each axis, from the deviations of their six
 /// numbers: two unit vectors that a turn of deviation s about every axis moves by 2 s² each, summed
-/// over their coordinates. Less than a tenth of a degree is never believed; what a prior does not
-/// say is as the settings have it.
+/// over their coordinates. At least a tenth of a degree; the settings' deviation if the prior has
+/// none.
 /// @return [frames x orientations] radians
 MatrixD turn_deviations_rad(const PosePrior& prior, const Modalities& features,
                             const TrackFitSettings& settings);
 
-/// The same as the fit takes them: no smaller than the settings' typical ones. A prior that is
-/// surer than that is wrong by more than it says on people whom it does not know.
+/// The same as the fit takes them: no smaller than the settings' typical ones. A prior with smaller
+/// deviations has larger errors than these on people that it was not trained on.
 MatrixD fitted_turn_deviations_rad(const PosePrior& prior, const Modalities& features,
                                    const TrackFitSettings& settings);
 

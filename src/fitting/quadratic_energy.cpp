@@ -61,7 +61,7 @@ MarginalPrior QuadraticEnergy::without_first(Eigen::Index numbers) const {
       hessian_.bottomRightCorner(rest, rest) - hessian_.bottomLeftCorner(rest, numbers) * across;
   const Eigen::VectorXd gradient =
       gradient_.tail(rest) - across.transpose() * gradient_.head(numbers);
-  // H = Pᵀ L D Lᵀ P, where what nothing tells of has 0 in D, or a little less.
+  // H = Pᵀ L D Lᵀ P, where what no term determines has 0 in D, or a little less.
   const Eigen::LDLT<Eigen::MatrixXd> factors((hessian + hessian.transpose()) / 2);
   const Eigen::VectorXd root = factors.vectorD().cwiseMax(0).cwiseSqrt();
   MarginalPrior left;

@@ -22,7 +22,7 @@ namespace {
 constexpr double kRmsOfBody_m = 0.5;
 /// The root's acceleration on that body where no velocity is known: a walking pelvis.
 constexpr double kFreeAcceleration_m_s2 = 4.0;
-/// Nobody is that fast; only keeps frames that nothing else determines from running away.
+/// Faster than any person; only keeps frames that nothing else determines from diverging.
 constexpr double kFastest_m_s = 50.0;
 constexpr int kRounds = 12;
 constexpr int kFewestJoints = 3;
@@ -34,7 +34,7 @@ struct RootObservation {
   double confidence = 0;
 };
 
-/// What one frame alone says of the root.
+/// The root as one frame alone determines it.
 struct Fix {
   bool known = false;
   Eigen::Vector3d root{0, 0, 0};  ///< its position, camera axes
@@ -46,7 +46,7 @@ struct Fix {
 /// Gauss-Newton on the distance between where a joint is seen and where it should be. The first
 /// round puts (relative + root) onto the seen ray, which is linear: [1 0 -u; 0 1 -v]·root =
 /// (u·z - x, v·z - y). To stay with those equations would draw the body nearer, as u and v are
-/// noisy; the later rounds take u and v from the position found. Cauchy's weights let go of a joint
+/// noisy; the later rounds take u and v from the position found. Cauchy's weights discount a joint
 /// that the tracker swapped.
 Fix locate(const std::vector<RootObservation>& observations) {
   Fix fix;
@@ -70,8 +70,8 @@ Fix locate(const std::vector<RootObservation>& observations) {
     }
     const double scale = kCauchy * robust_deviation({residual.begin(), residual.end()}) + 1e-12;
     for (Eigen::Index k = 0; k < joints; ++k) {
-      const double miss = round == 0 ? 0 : residual.segment<2>(2 * k).norm() / scale;
-      weight.segment<2>(2 * k).setConstant(observations[k].confidence / (1 + miss * miss));
+      const double scaled = round == 0 ? 0 : residual.segment<2>(2 * k).norm() / scale;
+      weight.segment<2>(2 * k).setConstant(observations[k].confidence / (1 + scaled * scaled));
     }
     fix.information = jacobian.transpose() * weight.asDiagonal() * jacobian;
     const Eigen::LDLT<Eigen::Matrix3d> solver(fix.information);
@@ -192,7 +192,7 @@ MatrixD root_trajectory(const MatrixD& relative_positions, const TrackRays& trac
   if (std::none_of(fixes.begin(), fixes.end(), [](const Fix& fix) { return fix.known; })) {
     throw InputError(fmt::format(
         "the 2D track never shows {} joints of the model at once before the camera; the root's "
-        "position cannot be told",
+        "position cannot be determined",
         kFewestJoints));
   }
   const double metre =

@@ -5,12 +5,12 @@
 
 namespace mcdbn {
 
-/// Where the root is in the world, from what the pose says of the joints around it and from where
-/// the 2D track sees them: least squares per frame over all joints (linear in the translation, as
-/// rotation is known), depth and travel then fused with the model's own root velocity so that
+/// The root's position in the world, from the pose's positions of the joints around it and their
+/// positions in the 2D track: least squares per frame over all joints (linear in the translation,
+/// as rotation is known), depth and travel then fused with the model's own root velocity so that
 /// depth noise does not become jitter.
 /// @param relative_positions [frames x 3·joints] world axes, file units, relative to the root; of
-///        the joints that `track` was asked for
+///        the joints that `track` was made for
 /// @param velocity [frames x 3] root velocity, world axes, file units per second (may have 0 rows)
 /// @param velocity_error_m_s2 how much its changes are off, on a 1.7 m body
 /// @return [frames x 3] world, file units

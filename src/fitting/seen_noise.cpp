@@ -9,15 +9,15 @@ namespace mcdbn {
 namespace {
 
 constexpr double kHeight_m = 1.7;  ///< of the body that lengths are of
-/// What a solution leaves of the noise that it was told, as seen on detector-like tracks of CMU
-/// walkers.
+/// A solution's residual as a share of the noise that it was given, measured on detector-like
+/// tracks of CMU walkers.
 constexpr double kResidualOfNoise = 0.88;
-/// What is not a detector any more, as a share of a detector's noise.
+/// The most noise that is taken for a detector's, as a multiple of the usual.
 constexpr double kMost = 3;
-/// What is exact, as a share of a detector's noise.
+/// The most noise that counts as exact, as a share of a detector's.
 constexpr double kExact = 0.5;
-/// The same of what is new in every frame. A solution may be as far off an exact track as off a
-/// noisy one, but the track tells them apart.
+/// The same of the part that is new in every frame. A solution may be as far off an exact track as
+/// off a noisy one, but the track itself distinguishes them.
 constexpr double kExactOfTrack = 0.25;
 /// A noise that changes by less is not worth another solution.
 constexpr double kSmallChange = 0.1;
@@ -42,8 +42,8 @@ SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m
 
 bool SeenNoise::learn(double residual) {
   const double before = std::hypot(rays_.white, rays_.lasting);
-  const double told = residual * residual / (kResidualOfNoise * kResidualOfNoise * before);
-  const double both = std::clamp(told, least_, std::max({least_, of_track_, kMost * usual_}));
+  const double estimated = residual * residual / (kResidualOfNoise * kResidualOfNoise * before);
+  const double both = std::clamp(estimated, least_, std::max({least_, of_track_, kMost * usual_}));
   set_lasting(std::sqrt(std::max(0.0, both * both - of_track_ * of_track_)));
   const double after = std::hypot(rays_.white, rays_.lasting);
   return std::abs(after - before) > kSmallChange * before;

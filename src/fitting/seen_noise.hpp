@@ -5,18 +5,18 @@
 
 namespace mcdbn {
 
-/// What is known of how far off a track's rays are. The part that is new in every frame is told by
-/// the track itself. The part that lasts is at first a usual detector's, then what the solutions
-/// tell: one that comes nearer to the rays than their noise lets expect shows that there is less of
-/// it, the more so the nearer it comes. So an exact projection of a known body is found out in two
-/// solutions. A body that is fitted itself comes near to any rays, which shows nothing: there the
-/// part that lasts only grows, and so it does of a detector's keypoints.
+/// The estimated noise of a track's rays. The part that is new in every frame is estimated from the
+/// track itself. The part that lasts is at first a usual detector's, then estimated from the
+/// residuals of solutions: smaller ones than the noise lets expect show that there is less of it,
+/// the smaller, the less. So an exact projection of a known body is recognized in two solutions. A
+/// body that is fitted itself comes near to any rays, which carries no information: there the part
+/// that lasts only grows, and so it does of a detector's keypoints.
 class SeenNoise {
  public:
   /// @param track_noise_px new in every frame, of x and y each
   /// @param depth_m of the person, on a 1.7 m body
   /// @param may_be_exact the body is known, and a detector need not have seen it
-  /// @param share of a usual detector's lasting part, as it was told before
+  /// @param share of a usual detector's lasting part, as it was estimated before
   SeenNoise(double track_noise_px, const Camera& camera, double depth_m, bool may_be_exact,
             const TrackFitSettings& settings, double share = 1);
 
@@ -24,11 +24,12 @@ class SeenNoise {
   /// @param residual how far from the rays a solution's joints are, x/z and y/z each
   /// @return whether that makes another solution worth while
   bool learn(double residual);
-  /// Once solutions tell nothing new: noise that the track tells of, and no detector's, was
-  /// measured, and is taken for less new in each frame (`TrackFitSettings::measured_caution`).
+  /// Once solutions no longer change the estimate: noise that shows in the track, and is no
+  /// detector's, was measured, and less of it is taken as new in each frame
+  /// (`TrackFitSettings::measured_caution`).
   /// @return whether that makes another solution worth while
   bool measure();
-  /// What is told by now of a usual detector's lasting part.
+  /// The lasting part as estimated so far, as a share of a usual detector's.
   double share() const { return rays_.lasting / usual_; }
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 constexpr int kReweightings = 3;
-/// A variance that says nothing of any number of pixels or of rays.
+/// The variance of an unknown number, in pixels or on rays.
 constexpr double kAnything = 1e8;
 
 /// A number and its rate of change.
@@ -51,13 +51,13 @@ std::vector<State> posterior(const std::vector<Measured>& series, const SeriesDy
   return states;
 }
 
-/// How much a measurement counts by what its neighbours say of it, 0 to 1.
+/// How much a measurement counts, 0 to 1, by its residual from the estimate of the others.
 double weight_of(const Measured& measured, const Measured& used, const State& state) {
   const Measured others = without(state.number(), used);
   if (std::isinf(others.variance)) return 1;
-  const double miss =
+  const double residual =
       (measured.value - others.value) / (kCauchy * std::sqrt(measured.variance + others.variance));
-  return 1 / (1 + miss * miss);
+  return 1 / (1 + residual * residual);
 }
 
 }  // namespace

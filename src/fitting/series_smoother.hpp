@@ -24,12 +24,12 @@ struct SeriesDynamics {
   static SeriesDynamics with_velocity(double density, double frame_time_s);
 };
 
-/// What the whole series says of each of its numbers: a Kalman filter, and the Rauch-Tung-Striebel
-/// smoother back. Measurements that their neighbours think impossible are let go of (Cauchy).
+/// Each number of a series estimated from the whole of it: a Kalman filter, and the
+/// Rauch-Tung-Striebel smoother back. Outliers count little (Cauchy's weights).
 std::vector<Measured> smooth_series(const std::vector<Measured>& series,
                                     const SeriesDynamics& dynamics);
 
-/// What is left of a belief when a part that went into it is taken out again.
+/// An estimate without one of the measurements that went into it.
 Measured without(const Measured& whole, const Measured& part);
 
 }  // namespace mcdbn

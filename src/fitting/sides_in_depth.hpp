@@ -4,20 +4,20 @@
 
 namespace mcdbn {
 
-/// The likelier of what one camera hardly tells apart: whether a bone points towards it or away.
+/// The likelier of what one camera hardly distinguishes: a bone that points towards it or away.
 /// Where a limb's other sides are likelier by themselves (`likelier_sides`) a window about them is
-/// solved from there. All that is likelier then stays, all frames are solved anew, and what meets
-/// it is tried again. Worth while where rays are exact: elsewhere a solution gets from one side to
-/// the other by itself, and the prior tells which is likelier.
+/// solved from there. All that is likelier then stays, all frames are solved anew, and windows that
+/// overlap its own are tried again. Worth while where rays are exact: elsewhere a solution gets
+/// from one side to the other by itself, and the prior determines which is likelier.
 /// @param point a solution of a clip of one frame at least
 /// @return what all frames come to from there; `point` where no other sides are likelier
 PosteriorPoint likeliest_in_depth(const PosteriorClip& clip, const RayNoise& noise,
                                   const TrackFitSettings& settings, PosteriorPoint point);
 
 /// The same for a track that seems to be exact, with rays of less noise, again and again: where
-/// there is none of that noise they cost next to no energy and tell sides better; where there is
-/// some a solution follows it, which costs more than `TrackFitSettings::exact_cost`.
-/// @param noise in: as the track tells it; out: as it was lowered to
+/// there is none of that noise they cost next to no energy and distinguish sides better; where
+/// there is some a solution follows it, which costs more than `TrackFitSettings::exact_cost`.
+/// @param noise in: as estimated from the track; out: as it was lowered to
 /// @param least not lowered below, as the rays
 PosteriorPoint likeliest_of_exact(const PosteriorClip& clip, RayNoise& noise,
                                   const TrackFitSettings& settings, double least,

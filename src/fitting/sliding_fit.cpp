@@ -22,18 +22,19 @@ namespace {
 constexpr int kIterations = 2;
 /// A step that lowers the energy by less than this share is the last one.
 constexpr double kSmallGain = 1e-3;
-/// Solutions of so long a time tell what lasts of the track's noise.
+/// Solutions of so long a time give an estimate of the track's lasting noise.
 constexpr double kLearned_s = 0.2;
-/// So much of the past is looked at again: the middle window of fit_to_track, which finds body and
+/// So much of the past is solved again: the middle window of fit_to_track, which finds body and
 /// camera, is as long. With 8 s the answer is 0.6 mm further from that of the whole clip.
 constexpr double kLookedAt_s = 15;
-/// It is, so often; while the clip is short, after half as many frames again.
+/// How often it is; while the clip is short, after half as many frames again.
 constexpr double kLookEvery_s = 0.5;
 constexpr long long kLookAfter = 4;
-/// What is found is taken when it is looked again, so that frames need not wait for it. So short a
-/// past they do wait for: it takes no longer than a frame or two, and is worth two millimetres.
+/// The result is taken when the next solution of the past begins, so that frames need not wait for
+/// it. Up to so long a past they do wait: it takes no longer than a frame or two, and is worth two
+/// millimetres.
 constexpr double kWaitedFor_s = 3;
-/// Settled frames that tell of those that are held, once the body is another.
+/// Settled frames that the held ones' prior is computed from, once the body has changed.
 constexpr Eigen::Index kBeforeHeld = 8;
 
 /// The last rows are others; there may be more of them than before.
@@ -103,14 +104,14 @@ MatrixD SlidingFit::placed_root(const MatrixD& velocity_m_s) const {
          units_per_m_;
 }
 
-/// A new frame goes on as the prior says, from where the solution before ended. At first, and of
-/// somebody who was out of sight, the track shows where.
+/// A new frame goes on with the prior's velocity from where the solution before ended. At first,
+/// and after the person was hidden, the track gives the place.
 void SlidingFit::place_root() {
   const Track2d& track = rows_.track;
   const MatrixD velocity_m_s = modalities_.pose_features.root_features(rows_.mean).rightCols(3);
   const Eigen::Index before = rows_.root_m.rows();
-  const bool somebody = before > 0 && (track.confidence.topRows(before).array() > 0).any();
-  if (!somebody && (before == 0 || (track.confidence.array() > 0).any())) {
+  const bool seen_before = before > 0 && (track.confidence.topRows(before).array() > 0).any();
+  if (!seen_before && (before == 0 || (track.confidence.array() > 0).any())) {
     try {
       rows_.root_m = placed_root(velocity_m_s);
     } catch (const InputError&) {  // not enough of a body
@@ -118,7 +119,7 @@ void SlidingFit::place_root() {
     }
   }
   go_on(rows_.root_m, rows_.frames(), 3);
-  for (Eigen::Index t = std::max<Eigen::Index>(1, before); t < rows_.frames() && somebody; ++t)
+  for (Eigen::Index t = std::max<Eigen::Index>(1, before); t < rows_.frames() && seen_before; ++t)
     rows_.root_m.row(t) = rows_.root_m.row(t - 1) + velocity_m_s.row(t) / modalities_.fps;
 }
 
@@ -145,7 +146,7 @@ ClipEvidence SlidingFit::evidence_of(const ClipRows& rows, const Motion& answer)
   return evidence;
 }
 
-/// @param evidence of a camera that nobody knows, else it stays as it is
+/// @param evidence of an unknown camera, else it stays as it is
 void SlidingFit::expect_balance(ClipEvidence& evidence) const {
   if (evidence.clip.camera)
     evidence.clip.camera->balanced =
@@ -165,7 +166,7 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
   take(point_);
   evidence_->find_planted(motion_);
   expect_balance(*evidence_);
-  // From where the solution before ended it would not leave a valley that few frames had led into.
+  // From the solution before it would not leave a local minimum that few frames had led into.
   point_.turns.setZero();
   if (!past_) point_.ground_m = evidence_->ground(point_);
   clip.past = past_;
@@ -216,8 +217,8 @@ void SlidingFit::look_back() {
   });
 }
 
-/// Waits for what was looked for. The held frames go on from what those before them tell of such a
-/// body.
+/// Waits for look_back's result. The held frames' prior is computed anew from those before them,
+/// with that body.
 void SlidingFit::take_look() {
   if (!look_.valid()) return;
   point_.take_shared(look_.get());
@@ -253,7 +254,7 @@ void SlidingFit::fade() {
 
 /// As often as in a whole clip, each time from other solutions. Of the held frames: open ones, with
 /// few or none behind them, come nearer to the rays than a whole clip's do.
-/// @return whether the next solution is told other noise
+/// @return whether the next solution is given other noise
 bool SlidingFit::learn(SeenNoise& noise) {
   if (!past_ || learned_ + 1 >= settings_.solutions) return false;
   if (const double residual = evidence_->usual_residual(point_, held_); residual > 0)

@@ -15,16 +15,16 @@
 namespace mcdbn {
 
 /// The fit of a clip that is still growing: fit_to_track's problem for its last frames, solved anew
-/// with every frame, from the prior's mean. Its newest frames are open; of those
-/// before, which have settled, the last are held: they are solved, too, but nobody asks for them
-/// again. What still earlier frames tell of these is kept as a normal distribution (MarginalPrior).
+/// with every frame, from the prior's mean. Its newest frames are open; of those before, which have
+/// settled, the last are held: they are solved, too, but not given out again. The information that
+/// still earlier frames carry on these is kept as a normal distribution (MarginalPrior).
 /// Body, ground and camera are found by looking back: the last seconds are solved again as
-/// fit_to_track first solves a clip, beside the frames that come, on a thread of its own. Frame
-/// numbers alone say when what it found is taken.
+/// fit_to_track first solves a clip, beside the frames that come, on a thread of its own. When the
+/// result is taken depends on frame numbers alone.
 class SlidingFit {
  public:
   /// Settled frames that the problem holds at most. They are at least those that a dropped frame
-  /// says something of.
+  /// has terms in common with.
   static constexpr Eigen::Index kHeld = 4;
 
   /// @param modalities has to outlive this  @param known as for fit_to_track
@@ -36,10 +36,10 @@ class SlidingFit {
   /// @param prior of the open frames, as fit_to_track takes it, seen by camera()
   /// @param track of the held and the open frames: those of the solution before that were not
   ///        dropped, and new ones behind them  @param track_noise_px new in every frame
-  /// @throws InputError if nobody is seen well enough to be placed, until somebody was
+  /// @throws InputError if no person is seen well enough to be placed, until one was
   void solve(const PosePrior& prior, const Track2d& track, double track_noise_px);
 
-  /// The first of the open frames are not asked for any more.
+  /// The first of the open frames settle.
   /// @return how many frames are not held any more: the next solution is not of them
   Eigen::Index settle(Eigen::Index frames);
   /// Frames of the last solution that are settled and held.
@@ -48,8 +48,7 @@ class SlidingFit {
   const Motion& motion() const { return motion_; }
   /// Its joints as the camera sees them.
   const Track2d& shown() const { return shown_; }
-  /// In the skeleton's file units. One that nobody knows is as it was found by now, above the first
-  /// frame's root.
+  /// In the skeleton's file units. An unknown one is as found by now, above the first frame's root.
   const Camera& camera() const { return camera_; }
   const Skeleton& body() const { return body_; }
 
@@ -95,7 +94,7 @@ class SlidingFit {
   std::optional<MarginalPrior> past_;
   ClipRows past_rows_;                ///< of the last seconds
   long long next_look_ = 0;           ///< when so many frames have settled
-  std::future<PosteriorPoint> look_;  ///< what is asked of it is what all frames share
+  std::future<PosteriorPoint> look_;  ///< only what all frames share is taken from it
   MatrixD fading_;  ///< channels of frames that were open when it began, as they were
   Eigen::Index fading_frames_ = 0;  ///< as many as they were
   // Of all frames that have settled, along the camera's axes, file units:

@@ -27,10 +27,10 @@
 namespace mcdbn {
 namespace {
 
-/// What is wrong with the root's velocity where the prior says no deviation and no fit follows.
+/// The error of the root's velocity where the prior has no deviation and no fit follows.
 constexpr double kVelocityError_m_s2 = 1.0;
 
-/// What the posterior's width is told by.
+/// Those that the posterior's width is computed with.
 TrackFitSettings settings_of_draws(TrackFitSettings settings) {
   settings.noise_lasts_s = settings.draws_noise_lasts_s;
   return settings;
@@ -52,7 +52,7 @@ void check(const PosePrior& prior, const Modalities& features, const Track2d& tr
   }
 }
 
-/// One clip on its way to its track.
+/// The fit of one clip to its track.
 class ClipFit {
  public:
   ClipFit(const PosePrior& prior, const Modalities& modalities, const Track2d& track,
@@ -96,8 +96,8 @@ class ClipFit {
     rays_ = noise.rays();
     rays_.steady = false;  // a rough solution is as far off as a detector's
     take(point_ = roughly_likely(clip, rays_, settings, std::move(point_)));
-    // Of a detector's track more frames a second tell no more of what all frames share, and a rough
-    // solution's window spans more seconds.
+    // With a detector's track more frames a second carry no more information on what all frames
+    // share, and a rough solution's window spans more seconds.
     const auto shared = may_be_exact ? SharedUnknowns::to_be_found : SharedUnknowns::as_found;
     const double small_gain = known.detected ? kSmallGainOfDetector : kSmallGainOfAll;
     for (std::size_t solution = 0; solution < settings.solutions; ++solution) {
@@ -184,7 +184,7 @@ class ClipFit {
   }
 
  private:
-  /// What the motion tells of standing feet, their ground and how the camera stands.
+  /// Finds standing feet, their ground and how the camera stands from the motion.
   void look_again(const TrackFitSettings& settings) {
     PosteriorClip& clip = evidence_->clip;
     evidence_->find_planted(motion());
@@ -195,8 +195,8 @@ class ClipFit {
   }
 
   /// Pose, root and, if it is unknown, body are what the point makes of the prior's mean. A single
-  /// camera does not tell how large things are: body and distance are scaled so that the body is
-  /// one of 1.7 m, as the camera's metres are meant, and it looks the same.
+  /// camera does not determine the scale: body and distance are scaled so that the body is one of
+  /// 1.7 m, as the camera's metres are meant, and it looks the same.
   void take(const PosteriorPoint& point) {
     features_ = evidence_->turned(mean_, point);
     double scale = 1;

@@ -8,8 +8,8 @@ namespace mcdbn {
 /// made by projection is exact; smooth_track itself leaves it as it is, by a smaller bound.)
 inline constexpr double kLeastNoise_px = 0.25;
 
-/// The track's noise, told from the track itself: the bulk of the third differences over time, in
-/// which motion is small and independent noise counts 20-fold. Over all joints.
+/// The track's noise, estimated from the track itself: the bulk of the third differences over time,
+/// in which motion is small and independent noise counts 20-fold. Over all joints.
 /// @return standard deviation in pixels of each coordinate; 0 where no joint is ever seen in four
 ///         frames in a row
 double track_noise_px(const Track2d& track);

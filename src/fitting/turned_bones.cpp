@@ -24,7 +24,7 @@ TurnedBones::TurnedBones(const PoseFeatures& features, const Skeleton& skeleton,
   for (std::size_t turn = 0; turn < features.joints().size(); ++turn) {
     const int joint = match[features.joints()[turn]];
     const int parent = turn_at_or_above(skeleton.joints[joint].parent);
-    // Another skeleton may hang its joints otherwise; who comes later is nobody's parent.
+    // Another skeleton may have another tree; an orientation that comes later is no parent.
     parents_.push_back(parent < static_cast<int>(turn) ? parent : -1);
   }
   for (const Joint& joint : skeleton.joints) turn_above_.push_back(turn_at_or_above(joint.parent));

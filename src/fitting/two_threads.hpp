@@ -7,7 +7,7 @@
 namespace mcdbn {
 
 /// Calls work(i) for every i below `count`, two at a time: here and in one thread more. Which
-/// thread has which is not said.
+/// thread runs which is unspecified.
 template <typename Work>
 void on_two_threads(std::size_t count, const Work& work) {
   std::atomic<std::size_t> next = 0;

@@ -112,7 +112,7 @@ Eigen::SparseMatrix<double> WindowProblem::derivatives() {
   return result;
 }
 
-/// @param first of the frames that it is about; whether a foot stands is told from the one before
+/// @param first frame that it depends on; whether a foot stands depends on the frame before, too
 void WindowProblem::add(Eigen::Index first, ceres::CostFunction* cost, ceres::LossFunction* loss,
                         const std::vector<double*>& blocks) {
   terms_.emplace_back(problem_.AddResidualBlock(cost, loss, blocks), first);
@@ -154,7 +154,7 @@ std::vector<double*> WindowProblem::length_blocks(std::size_t joint) {
   return blocks;
 }
 
-/// Noise that lasts says the same in frame after frame, so that its energy is a rate over time.
+/// Noise that lasts is the same in frame after frame, so that its energy is a rate over time.
 void WindowProblem::add_rays() {
   const double same_frames = std::max(1.0, 2 * settings_.noise_lasts_s / clip_.frame_time_s);
   const double lasting = noise_.lasting * noise_.lasting, white = noise_.white * noise_.white;
@@ -240,7 +240,7 @@ void WindowProblem::add_feet() {
   }
 }
 
-/// Heights of standing feet, over a step or so, are one witness.
+/// Heights of standing feet within about a step count as one observation.
 void WindowProblem::add_ground() {
   const double weight = std::min(1.0, clip_.frame_time_s / settings_.step_s);
   for (std::size_t f = 0; f < clip_.feet.size(); ++f) {

@@ -15,9 +15,9 @@
 
 namespace mcdbn {
 
-/// What a problem asks for: the orientations and lengths that move a joint which is seen in its
-/// frames, one that the track has, whether or not these frames see it, or also those of which only
-/// the prior tells.
+/// The unknowns of a problem: the orientations and lengths that move a joint which is seen in its
+/// frames, one that the track has, whether or not these frames see it, or also those that only the
+/// prior determines.
 enum class Unknowns { seen, tracked, all };
 
 /// The posterior of some frames of a clip as a problem for Ceres. Unknown are, by frame, a turn of
@@ -49,9 +49,9 @@ class WindowProblem {
   ///         shift, then the lengths; 0 in the column of what nothing depends on
   Eigen::SparseMatrix<double> derivatives();
 
-  /// What the first so many frames, and those before them, tell of those behind, near the point
-  /// where the problem is, body, ground and camera as they are there. It has to be one of tracked
-  /// or all unknowns, and of kReach frames more.
+  /// The first frames, and those before them, as a prior of those after them, near the problem's
+  /// current point, with body, ground and camera as they are there. The problem has to have tracked
+  /// or all unknowns, and kReach frames more.
   MarginalPrior without_first(Eigen::Index frames);
 
   /// Of these frames. What moves no seen joint turns as its parent makes likely.
@@ -94,7 +94,7 @@ class WindowProblem {
   std::vector<bool> used_;
   PosteriorPoint x_;
   ceres::Problem problem_;
-  /// What is said of some frames, and the first of them.
+  /// The residual terms, each with the first frame that it depends on.
   std::vector<std::pair<ceres::ResidualBlockId, Eigen::Index>> terms_;
 };
 

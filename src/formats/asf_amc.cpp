@@ -15,7 +15,7 @@ namespace {
 
 using bvh::Cursor, bvh::same_word;
 
-/// What CMU captured with; an AMC does not say.
+/// The rate of CMU's captures; an AMC does not give its rate.
 constexpr double kRate_hz = 120;
 
 Skeleton skeleton_of(const AsfSkeleton& asf) {
@@ -138,7 +138,7 @@ Motion parse_asf_amc(std::string_view asf, const std::string& asf_name, std::str
   if (warnings)
     warnings->push_back(
         fmt::format("{}: on the skeleton {}, in centimetres, at {:g} Hz: an AMC "
-                    "does not say its rate",
+                    "does not give its rate",
                     amc_name, asf_name, kRate_hz));
   return motion;
 }

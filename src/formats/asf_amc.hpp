@@ -13,7 +13,7 @@ namespace mcdbn {
 ///
 /// A bone becomes the joint at its nearer end, with three rotation channels: its turn C·M·C⁻¹, C
 /// its axes and M its angles. At rest all are zero. Lengths become centimetres: a unit is 2.54 cm
-/// over the ASF's `length`. Limits and masses are not asked.
+/// over the ASF's `length`. Limits and masses are ignored.
 /// @param asf, amc the texts; the names stand for them in messages
 /// @param warnings if given, collects what was taken for granted
 /// @throws InputError `file:line: what`

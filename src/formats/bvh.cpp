@@ -59,7 +59,7 @@ class FrameReader {
     }
     if (values_.size() < wanted_ && odd_line_ == 0) {
       cursor_.fail(
-          fmt::format("only {} of the {} frames that Frames: says, correct it or restore the rest",
+          fmt::format("only {} of the {} frames that Frames: gives, correct it or restore the rest",
                       values_.size() / channels_, frames_));
     }
     if (odd_line_ > 0 && (values_.size() != wanted_ || !cursor_.at_end())) {
@@ -72,7 +72,7 @@ class FrameReader {
     }
     if (!cursor_.at_end()) {
       cursor_.warn(fmt::format(
-          "more lines than the {} frames that Frames: says, left out from here", frames_));
+          "more lines than the {} frames that Frames: gives, left out from here", frames_));
     }
     return Eigen::Map<const MatrixD>(values_.data(), frames_, static_cast<Eigen::Index>(channels_));
   }

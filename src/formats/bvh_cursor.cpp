@@ -98,7 +98,7 @@ double Cursor::number(std::string_view what) {
   if (error == std::errc::invalid_argument || end != digits.data() + digits.size()) {
     fail(fmt::format("{} is not a number, {} should stand here", shown(word), what));
   }
-  // Out of range with a negative exponent is too small to tell from zero.
+  // Out of range with a negative exponent is too small to differ from zero.
   if (error == std::errc::result_out_of_range && digits.find("e-") == std::string_view::npos &&
       digits.find("E-") == std::string_view::npos) {
     value = HUGE_VAL;

@@ -1,6 +1,6 @@
 // Anipose (aniposelib, CameraGroup.dump) and FreeMoCap, which uses it: rotation vectors; the units
-// are those of the board that was shown, millimetres as a rule; nothing in the file says what is
-// up.
+// are those of the board that was shown, millimetres as a rule; the file does not give the up
+// axis.
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ bool recognises(const CameraSource& source) {
   return is_toml(source) && !camera_sections(parse_toml(source)).empty();
 }
 
-/// Whether the world is that of a camera, as it is where nobody has laid a board on the floor.
+/// Whether the world is that of a camera, as it is without a board on the floor.
 bool is_world(const TomlCamera& camera) {
   constexpr double kSame = 1e-6;
   return camera.translation.norm() < kSame &&
@@ -28,7 +28,7 @@ CameraRig read(const CameraSource& source) {
   const auto own = std::ranges::find_if(cameras, is_world);
   const bool of_camera = own != cameras.end();
   CameraRig rig = rig_of(cameras, of_camera ? WorldUp::minus_y : WorldUp::z, metres ? 1.0 : 0.001);
-  rig.assumed = {std::string("the file does not say what is up: ") +
+  rig.assumed = {std::string("the file does not give the up axis: ") +
                      (of_camera ? "taken to be upwards in the image of " + own->name +
                                       ", whose axes are the world's"
                                 : std::string("taken to be z")),

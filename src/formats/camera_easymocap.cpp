@@ -1,6 +1,6 @@
 // EasyMocap: two OpenCV files, intri.yml with K_NAME and dist_NAME, extri.yml with Rot_NAME (R_NAME
 // is its rotation vector) and T_NAME; x_camera = Rot·x_world + T, metres, world z up. Newer ones
-// say H_NAME and W_NAME. There may be more cameras in the one than in the other.
+// have H_NAME and W_NAME. There may be more cameras in the one than in the other.
 
 #include <fmt/format.h>
 

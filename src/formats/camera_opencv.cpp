@@ -1,5 +1,5 @@
 // OpenCV's own: camera_matrix, distortion_coefficients, image_width, image_height, and the pose as
-// rvec or R with tvec. Ours says unit_m, too, where the units of tvec are known.
+// rvec or R with tvec. Ours has unit_m, too, where the units of tvec are known.
 
 #include <fmt/format.h>
 

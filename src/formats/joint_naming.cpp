@@ -115,7 +115,8 @@ void name_joints_by_count(SeenPeople& people, const std::string& file,
                           const std::vector<std::string>& names) {
   const std::size_t count = joint_count(people, file);
   if (count == 0)
-    throw NobodySeen(fmt::format("{}: nobody in any frame, so its joints are not known", file));
+    throw NoPersonSeen(
+        fmt::format("{}: no person in any frame, so its joints are not known", file));
   const auto counted = std::ranges::find(counted_sets(), count, &CountedSets::joints);
   const bool more_than_body = counted != counted_sets().end() && counted->whole_body;
   if (names.size() == count && !more_than_body) {

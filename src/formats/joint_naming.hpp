@@ -10,18 +10,18 @@
 
 namespace mcdbn {
 
-/// Nobody stands in the content, which is all that tells what its joints are.
-class NobodySeen : public InputError {
+/// The content holds no person, and its joints are known only from people.
+class NoPersonSeen : public InputError {
  public:
   using InputError::InputError;
 };
 
-/// Says what the joints are. Where the file gives as many names as joints, those; else the joint
+/// Names the joints. Where the file gives as many names as joints, those; else the joint
 /// set of that count, of several the one that makes the shortest limbs (BODY_25 and BODY_25B have
 /// the same count). Faces and hands behind a body's joints (133, 135, 136) are left out, with a
 /// notice, also where the file names them. Other counts become joint_0, joint_1 … without roles,
 /// with a notice.
-/// @throws InputError if the counts differ; NobodySeen
+/// @throws InputError if the counts differ; NoPersonSeen
 void name_joints_by_count(SeenPeople& people, const std::string& file,
                           const std::vector<std::string>& names = {});
 

@@ -130,10 +130,10 @@ class ColumnsReader {
     mark_missing(person);
     auto number = static_cast<long long>(people_.frames.size());
     if (frame_) {
-      const double said = table_.number_in(line, *frame_);
-      if (!(std::abs(said) < 1e15) || said != std::floor(said))
+      const double given = table_.number_in(line, *frame_);
+      if (!(std::abs(given) < 1e15) || given != std::floor(given))
         table_.fail(line, fmt::format("{} is no number of a frame", shown(line.cells[*frame_])));
-      number = static_cast<long long>(said);
+      number = static_cast<long long>(given);
     }
     people_.frames[number].push_back(std::move(person));
   }

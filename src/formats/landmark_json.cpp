@@ -75,13 +75,13 @@ class LandmarkReader {
   }
 
  private:
-  /// What an object says beside its frames.
+  /// An object's values beside its frames.
   void read_film(const JsonPlace& content) {
     const auto number = [&](const auto& keys, const Range& range) -> std::optional<double> {
-      const auto said = any_of_keys(content, keys);
-      if (!said || !said->value().is_number()) return {};
-      if (!range.contains(said->number())) said->fail("must be " + range.text());
-      return said->number();
+      const auto found = any_of_keys(content, keys);
+      if (!found || !found->value().is_number()) return {};
+      if (!range.contains(found->number())) found->fail("must be " + range.text());
+      return found->number();
     };
     people_.fps = number(std::array{"fps", "frame_rate", "frameRate"}, kFrameRate_hz);
     const auto width = number(std::array{"width", "image_width", "imageWidth"}, Camera::kImage_px);
@@ -101,8 +101,8 @@ class LandmarkReader {
     if (content.is_list()) {
       long long next = 0;
       for (const JsonPlace& frame : content.list()) {
-        const auto said = any_of_keys(frame, kFrameKeys);
-        const long long number = said && said->value().is_number() ? said->whole_number() : next;
+        const auto found = any_of_keys(frame, kFrameKeys);
+        const long long number = found && found->value().is_number() ? found->whole_number() : next;
         add_frame(frame, number);
         next = number + 1;
       }
@@ -121,7 +121,7 @@ class LandmarkReader {
     add_bodies(frame, people_.frames[number]);
   }
 
-  /// A body, or a list of them, or an object around either. Nothing: nobody was found.
+  /// A body, or a list of them, or an object around either. Nothing: no person was found.
   void add_bodies(const JsonPlace& place, std::vector<SeenPerson>& people, int depth = 0) {
     if (depth > kDepth) place.fail("no landmarks down to here");
     if (place.value().is_null() || place.size() == 0) return;
@@ -196,7 +196,7 @@ bool holds_body(const JsonPlace& place, int depth = 0) {
   if (is_body(place)) return true;
   if (depth > kDepth || place.size() == 0) return false;
   if (place.is_list()) {
-    // The first frames may be of nobody.
+    // The first frames may be without a person.
     for (std::size_t i = 0; i < std::min<std::size_t>(place.size(), 1000); ++i)
       if (holds_body(place.at(i), depth + 1)) return true;
     return false;

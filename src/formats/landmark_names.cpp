@@ -9,7 +9,7 @@
 namespace mcdbn {
 namespace {
 
-/// Names that are only numbers ("L0", "landmark_12") say no more than their count.
+/// Names that are only numbers ("L0", "landmark_12") carry no information beyond their count.
 bool are_only_numbered(const std::vector<std::string>& names) {
   return std::ranges::all_of(names, [](const std::string& name) {
     const auto digit = name.find_first_of("0123456789");

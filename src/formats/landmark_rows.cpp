@@ -1,5 +1,5 @@
-// CSV with a row for each landmark of each frame: Frame, LandmarkID, X, Y. Rows of frames in which
-// nobody was found are missing.
+// CSV with a row for each landmark of each frame: Frame, LandmarkID, X, Y. A frame in which no
+// person was found has no rows.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -19,7 +19,7 @@ bool are_landmarks(const JsonPlace& content);
 /// @throws InputError `file: key's path: what`
 SeenPeople read_landmarks(const JsonPlace& content, const std::string& file);
 
-/// Says what the landmarks are: by their count where the names are only numbers ("L0",
+/// Names the landmarks: by their count where the names are only numbers ("L0",
 /// "landmark_12") or there are none; as a joint set, in its order, where the names are its joints'
 /// in any order and spelling (an object's keys have no order); else as they are called.
 /// @throws InputError if the people's counts differ

@@ -10,8 +10,8 @@
 namespace mcdbn {
 namespace {
 
-/// How many numbers an opencv-matrix says that it has, whatever their channels.
-double said_numbers(const cv::FileNode& matrix) {
+/// The count of numbers that an opencv-matrix declares, whatever their channels.
+double stated_numbers(const cv::FileNode& matrix) {
   if (!matrix["rows"].empty())
     return static_cast<double>(matrix["rows"]) * static_cast<double>(matrix["cols"]);
   double numbers = 1;
@@ -74,8 +74,9 @@ OpencvStorage::Values OpencvStorage::matrix(const std::string& name) const {
       std::vector<double> list;
       found >> list;
       values = cv::Mat(list, true);
-    } else if (!found.isMap() || said_numbers(found) <= static_cast<double>(found["data"].size())) {
-      // Else OpenCV would make room for as many as the file says before it counts them.
+    } else if (!found.isMap() ||
+               stated_numbers(found) <= static_cast<double>(found["data"].size())) {
+      // Else OpenCV would make room for as many as the file declares before it counts them.
       found >> values;
     }
   } catch (const std::exception&) {

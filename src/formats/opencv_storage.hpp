@@ -27,7 +27,7 @@ class OpencvStorage {
   std::vector<std::string> strings(const std::string& name) const;
   /// Of the keys at the top.
   std::vector<std::string> keys() const;
-  /// "file:line: name", the line where the file speaks of it.
+  /// "file:line: name", the line of the file where the name stands.
   std::string where(const std::string& name) const;
 
  private:

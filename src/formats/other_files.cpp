@@ -10,8 +10,8 @@ namespace {
 using namespace std::string_view_literals;
 
 struct Kind {
-  std::size_t at;               ///< where its mark stands
-  std::string_view mark, what;  ///< what is said
+  std::size_t at;               ///< the byte where its mark begins
+  std::string_view mark, what;  ///< what: the message
 };
 
 constexpr auto kFilm = "a film, not a track: let a pose detector find the joints in it first";

@@ -15,9 +15,9 @@ namespace {
 using Point = Eigen::Vector2d;
 using Frames = std::vector<std::vector<SeenPerson>>;
 
-/// How far a body may be from where it is awaited, as a share of its box's diagonal.
+/// How far a body may be from where it is expected, as a share of its box's diagonal.
 constexpr double kReach = 0.5;
-constexpr double kReachGrowth = 0.05;  // with every frame out of sight
+constexpr double kReachGrowth = 0.05;  // with every frame unseen
 constexpr double kFarthestReach = 1.0;
 constexpr double kForbidden = 1e6;
 constexpr double kSpeedMemory = 0.7;
@@ -143,7 +143,7 @@ class Follower {
   std::vector<Path> paths_;
 };
 
-/// Whether the file's own numbers tell people apart.
+/// Whether the file's own numbers distinguish people.
 bool numbered(const Frames& frames) {
   bool any = false;
   std::size_t most = 0;
@@ -157,7 +157,7 @@ bool numbered(const Frames& frames) {
       any = true;
     }
   }
-  // One number for all may be the tool's word for "no number": harmless where there is one person.
+  // One number for all may stand for "no number" in the tool: harmless where there is one person.
   return any && all.size() >= most;
 }
 

@@ -9,13 +9,14 @@ namespace mcdbn {
 /// One person over the frames: for each frame which of those seen in it, -1: none.
 using Followed = std::vector<int>;
 
-/// Says who of a frame is who of the frames before. Where the file numbers its people, each number
-/// once a frame, its numbers hold. Else those of a frame are assigned to those followed so far by
-/// the smallest sum of costs (cheapest_assignment); the cost of a pair is the mean distance of the
-/// joints that both show, as a share of the body's box, and half of what their boxes and their
-/// joints do not share. A body that detectors find in parts, or not whole, stays the one it was. A
-/// person is awaited where the path so far leads, for so many frames, over which the reach grows.
-/// @param patience frames that somebody may be out of sight
+/// Matches the people of each frame to those of the frames before. Where the file numbers its
+/// people, each number once a frame, its numbers count. Else those of a frame are assigned to those
+/// followed so far by the smallest sum of costs (cheapest_assignment); the cost of a pair is the
+/// mean distance of the joints that both show, as a share of the body's box, and half of what their
+/// boxes and their joints do not share. A body that detectors find in parts, or not whole, stays
+/// the one it was. An unseen person is expected where the path so far leads, for `patience` frames,
+/// over which the reach grows.
+/// @param patience frames for which a person may be unseen
 /// @return the people, the largest first: by the sum of their boxes over all frames
 std::vector<Followed> follow_people(const std::vector<std::vector<SeenPerson>>& frames,
                                     int patience);

@@ -13,7 +13,7 @@
 namespace mcdbn {
 namespace {
 
-/// How far somebody may be from where they were last, as a share of the body's box's diagonal;
+/// How far a person may be from where they were last, as a share of the body's box's diagonal;
 /// three times as far at the end of the patience.
 constexpr double kReachOfChosen = 0.5, kChosenReachGrows = 2;
 
@@ -46,7 +46,7 @@ PersonChoice::PersonChoice(const std::string& person) {
   const auto [rest, error] = std::from_chars(person.data(), end, number_);
   if (error != std::errc() || rest != end || number_ == 0)
     throw ConfigError(fmt::format(
-        "`person` {}: of a track that is followed as it grows say largest, or a number from 1 on",
+        "`person` {}: for a track that is followed as it grows give largest, or a number from 1 on",
         person));
 }
 
@@ -63,14 +63,16 @@ std::optional<std::size_t> PersonChoice::choose(const std::vector<SeenPerson>& p
     if (order.size() >= number_) chosen = order[number_ - 1];
   } else {
     double nearest = kReachOfChosen * size_px_ * (1 + kChosenReachGrows * away_ / patience);
+    bool by_number = false;
     for (std::size_t i = 0; i < people.size(); ++i) {
       if (!is_seen(people[i])) continue;
       const long long number = people[i].id.value_or(-1), wanted = last_->id.value_or(-1);
       const bool numbered = number >= 0 && wanted >= 0;
-      if (numbered && number != wanted) continue;
+      if (numbered ? number != wanted : by_number) continue;
       const double away = distance_px(*last_, people[i]);
-      // By the number somebody is found however far away.
-      if (!(away < nearest) && !(numbered && !chosen)) continue;
+      // The number finds a person at any distance, and before anyone without a number.
+      if (!(away < nearest) && by_number == numbered) continue;
+      by_number = numbered;
       nearest = away;
       chosen = i;
     }

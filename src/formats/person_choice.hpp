@@ -9,16 +9,16 @@
 namespace mcdbn {
 
 /// Follows one person from frame to frame, without knowing those that come: by the file's number of
-/// the person, else whoever is nearest to where the person was seen last, within half a body, more
-/// the longer ago that is. Someone who is out of sight for longer than 1.5 s is given up, and the
-/// choice is made anew.
+/// the person, else as the one nearest to where the person was seen last, within half a body, more
+/// the longer ago that is. A person unseen for longer than 1.5 s is given up, and the choice is
+/// made anew.
 class PersonChoice {
  public:
   /// @param person largest, or a number: 1 is the largest of the first frame that shows so many
   /// @throws ConfigError if it is neither
   explicit PersonChoice(const std::string& person);
 
-  /// @param patience frames that somebody may be out of sight  @return none: not in this frame
+  /// @param patience frames for which the person may be unseen  @return none: not in this frame
   std::optional<std::size_t> choose(const std::vector<SeenPerson>& people, double patience);
 
  private:

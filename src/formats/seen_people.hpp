@@ -17,7 +17,7 @@ struct SeenPerson {
   std::optional<long long> id;  ///< the file's own number of the person
 };
 
-/// What a track file says, before the people are followed over the frames.
+/// The content of a track file, before the people are followed over the frames.
 struct SeenPeople {
   std::vector<std::string> joint_names;
   std::vector<Keypoint> keypoints;  ///< as in Track2d
@@ -25,8 +25,8 @@ struct SeenPeople {
   std::map<long long, std::vector<SeenPerson>> frames;
   std::optional<double> fps;
   std::optional<ImageSize> image_size;
-  bool image_size_is_said = true;  ///< else it is what its format takes where it is not
-  bool in_pixels = false;          ///< else coordinates that are all small are shares of the image
+  bool image_size_is_given = true;  ///< else image_size is the format's default
+  bool in_pixels = false;           ///< else coordinates that are all small are shares of the image
   std::vector<std::string> notices;
 };
 
@@ -37,7 +37,7 @@ SeenPeople people_of_set(std::string_view set);
 /// @param stride numbers a joint: 2 (all confidences 1) or 3 and more (the third one is taken)
 SeenPerson person_of(const std::vector<double>& numbers, std::size_t joints, std::size_t stride);
 
-/// Sets x, y and confidence to missing where one of them says so.
+/// Sets x, y and confidence to missing where one of them is.
 void mark_missing(SeenPerson& person);
 
 /// The joints of a track that a format writes, as rows: x, y, confidence of each joint, 0 0 0 where

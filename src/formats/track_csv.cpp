@@ -56,8 +56,8 @@ class TrackReader {
     return std::move(track_);
   }
 
-  bool says_fps() const { return says_fps_; }
-  bool says_size() const { return says_width_ && says_height_; }
+  bool gives_fps() const { return gives_fps_; }
+  bool gives_size() const { return gives_width_ && gives_height_; }
   const std::vector<std::string>& notices() const { return notices_; }
 
  private:
@@ -78,7 +78,7 @@ class TrackReader {
         fail(
             fmt::format("{} has no usable value; write a number of {}", shown(word), range.text()));
       }
-      (key == "fps" ? says_fps_ : key == "width_px" ? says_width_ : says_height_) = true;
+      (key == "fps" ? gives_fps_ : key == "width_px" ? gives_width_ : gives_height_) = true;
       if (key == "fps") track_.fps = value;
       if (key == "width_px") track_.width_px = static_cast<int>(value);
       if (key == "height_px") track_.height_px = static_cast<int>(value);
@@ -204,7 +204,7 @@ class TrackReader {
     if (!kFrameRate_hz.contains(track_.fps))
       fail(fmt::format("time_s makes {:g} frames a second, which must be {}; write seconds",
                        track_.fps, kFrameRate_hz.text()));
-    says_fps_ = true;
+    gives_fps_ = true;
     double shortest_s = time_s(1) - time_s(0), longest_s = shortest_s;
     for (std::size_t row = 1; row < rows_.size(); ++row) {
       shortest_s = std::min(shortest_s, time_s(row) - time_s(row - 1));
@@ -220,7 +220,7 @@ class TrackReader {
 
   std::string name_;
   int line_;
-  bool says_fps_ = false, says_width_ = false, says_height_ = false;
+  bool gives_fps_ = false, gives_width_ = false, gives_height_ = false;
   Track2d track_;
   std::vector<Column> columns_;
   std::vector<RowVectorD> rows_;
@@ -271,9 +271,9 @@ SeenPeople read(const TrackSource& source) {
     people.frames[frame] = {{row_of(track.x_px), row_of(track.y_px), row_of(track.confidence), 1}};
   }
   people.notices = reader.notices();
-  if (reader.says_fps()) people.fps = track.fps;
+  if (reader.gives_fps()) people.fps = track.fps;
   people.image_size = ImageSize{track.width_px, track.height_px};
-  people.image_size_is_said = reader.says_size();
+  people.image_size_is_given = reader.gives_size();
   return people;
 }
 

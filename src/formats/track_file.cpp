@@ -30,7 +30,7 @@ const TrackFormat& format_to_read(const TrackSource& source, const std::string& 
   if (const TrackFormat* recognised = format_of(source)) return *recognised;
   if (source.is_folder() && source.json_files().empty())
     throw InputError(fmt::format("{}: no .json files in this folder", source.name()));
-  // JSON that cannot be parsed says where.
+  // For JSON that cannot be parsed the error names the line.
   if (source.is_folder()) source.json_of(source.json_files().front());
   if (const char first = source.first_letter(); first == '{' || first == '[') source.json();
   if (const std::string what = what_else_it_is(source); !what.empty())

@@ -51,7 +51,7 @@ class TrackLines::Reader {
     if (!is_known_ && header_.find_first_not_of('\n') == std::string::npos) json_ = is_json(line);
     if (json_) return frame_of(people_of_json(line));
     if (line.front() == '#' || !has_header_) {
-      // Comments are asked as long as no frame was read.
+      // Comments count as long as no frame was read.
       if (!is_known_) header_ += fmt::format("{}\n", line);
       has_header_ = has_header_ || line.front() != '#';
       return {};
@@ -71,7 +71,7 @@ class TrackLines::Reader {
   /// A JSON line is an entry of a list of frames, as in a file of such lines.
   SeenPeople people_of_json(std::string_view line) {
     const TrackSource source(fmt::format("[{}]", line), fmt::format("{}:{}", name_, line_));
-    source.json();  // says what is wrong with it
+    source.json();  // throws where it is no JSON
     if (!format_) {
       if (!options_.format.empty()) format_ = &track_format(options_.format);
       for (const TrackFormat& format : track_formats())
@@ -82,7 +82,7 @@ class TrackLines::Reader {
       SeenPeople people = format_->read(source);
       if (people.frames.size() > 1) fail("more than one frame in a line");
       return people;
-    } catch (const NobodySeen&) {
+    } catch (const NoPersonSeen&) {
       return {};
     }
   }
@@ -98,9 +98,9 @@ class TrackLines::Reader {
     if (!seen.frames.empty()) people = std::move(seen.frames.begin()->second);
     const double far = farthest(people);
     if (far > kFarthest_px) fail(fmt::format("a coordinate of {:.3g}, which is no pixel", far));
-    const bool somebody = far > 0;
-    // A CSV's header says the joints, a JSON frame that shows somebody.
-    if (!is_known_ && (!json_ || somebody)) learn(seen, people);
+    const bool has_person = far > 0;
+    // A CSV gives the joints in its header, JSON in a frame with a person.
+    if (!is_known_ && (!json_ || has_person)) learn(seen, people);
     if (!is_known_) return TrackFrame::unseen(0);
     TrackFrame frame = TrackFrame::unseen(like_.joint_count());
     // Rows are of one person.
@@ -123,14 +123,15 @@ class TrackLines::Reader {
   void learn(const SeenPeople& seen, const std::vector<SeenPerson>& people) {
     const std::optional<ImageSize> size =
         options_.image_size ? options_.image_size : seen.image_size;
-    if (!size) fail("a frame does not say how large the image is: say it by `image-size`");
-    if (!options_.image_size && !seen.image_size_is_said)
-      notices_.push_back(fmt::format(
-          "the track does not say the image's size: {} x {} px are taken; say it by `image-size`",
-          size->width_px, size->height_px));
+    if (!size) fail("a frame does not give the image's size: set it with `image-size`");
+    if (!options_.image_size && !seen.image_size_is_given)
+      notices_.push_back(
+          fmt::format("the track does not give the image's size: {} x {} px are taken; set it with "
+                      "`image-size`",
+                      size->width_px, size->height_px));
     if (!options_.fps && !seen.fps)
       notices_.push_back(fmt::format(
-          "the track does not say its rate: {} frames a second are taken; say it by `fps`",
+          "the track does not give its rate: {} frames a second are taken; set it with `fps`",
           kUsualFps));
     shares_ = !seen.in_pixels && farthest(people) <= kLargestShare;
     if (shares_)

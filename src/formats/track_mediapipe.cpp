@@ -30,7 +30,7 @@ SeenPeople read(const TrackSource& source) {
   return read_landmark_columns(source.text(), source.name());
 }
 
-/// By columns, as shares of the image; a frame in which nobody was seen has visibility 0.
+/// By columns, as shares of the image; a frame without a person has visibility 0.
 void write(const std::filesystem::path& path, const Track2d& track) {
   set_to_write(track, kSets, kName);
   std::string text = "frame";

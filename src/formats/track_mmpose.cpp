@@ -104,8 +104,8 @@ void add_list(SeenPeople& people, const JsonPlace& list) {
   }
   long long next = 0;
   for (const JsonPlace& frame : list.list()) {
-    const char* said = frame_key(frame);
-    const long long number = said == nullptr ? next : frame[said].whole_number();
+    const char* key = frame_key(frame);
+    const long long number = key == nullptr ? next : frame[key].whole_number();
     next = number + 1;
     if (is_instance(frame)) {
       auto& seen = people.frames[number];
@@ -130,7 +130,7 @@ void add_film(SeenPeople& people, const JsonPlace& keypoints, const JsonPlace& s
   }
 }
 
-/// What the dataset calls its joints; none: the file does not say.
+/// The dataset's names for its joints; none: the file does not give them.
 std::vector<std::string> names_in(const JsonPlace& content) {
   std::vector<std::string> names;
   if (!content.has("meta_info") || !content["meta_info"].has("keypoint_id2name")) return names;

@@ -27,7 +27,7 @@ bool recognises(const TrackSource& source) {
   return first->has("people") && (*first)["people"].is_list();
 }
 
-/// -1, [-1] and nothing say nothing.
+/// None for -1, [-1] and no value.
 std::optional<long long> person_id(const JsonPlace& person) {
   if (!person.has("person_id")) return {};
   JsonPlace id = person["person_id"];
@@ -52,7 +52,7 @@ std::vector<SeenPerson> people_of(const JsonPlace& frame) {
   return people;
 }
 
-/// @param number none: the names say nothing, so their order does
+/// @param number of the frame
 void add_file(SeenPeople& people, const TrackSource& source, const fs::path& file,
               long long number) {
   const json content = source.json_of(file);

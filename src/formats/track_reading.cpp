@@ -108,9 +108,9 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
                         const std::string& file, std::vector<std::string>& notices) {
   const Extent extent = extent_of(frames);
   const std::optional<ImageSize> known = options.image_size ? options.image_size : seen.image_size;
-  if (!options.image_size && seen.image_size && !seen.image_size_is_said)
+  if (!options.image_size && seen.image_size && !seen.image_size_is_given)
     notices.push_back(fmt::format(
-        "the file does not say the image's size: {} x {} px are taken; say it by `image-size`",
+        "the file does not give the image's size: {} x {} px are taken; set it with `image-size`",
         known->width_px, known->height_px));
   if (extent.most_x < extent.least_x) return known.value_or(kUsualImage);  // nothing was seen
   const double farthest =
@@ -122,8 +122,8 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
     if (known) return *known;
     const ImageSize guess = guessed_image(extent);
     notices.push_back(fmt::format(
-        "the file does not say the image's size: taken as {} x {} px, which holds all that was "
-        "seen (x to {:.0f}, y to {:.0f}); say it by `image-size`",
+        "the file does not give the image's size: taken as {} x {} px, which holds all that was "
+        "seen (x to {:.0f}, y to {:.0f}); set it with `image-size`",
         guess.width_px, guess.height_px, extent.most_x, extent.most_y));
     return guess;
   }
@@ -135,7 +135,7 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
   const ImageSize size = known.value_or(kUsualImage);
   notices.push_back(fmt::format(
       "coordinates are shares of the image, taken as {} x {} px{}", size.width_px, size.height_px,
-      known ? "" : ", for the file does not say its size; say it by `image-size`"));
+      known ? "" : ", for the file does not give its size; set it with `image-size`"));
   for_each_joint(frames, [&](double& x, double& y, double) {
     x *= size.width_px;
     y *= size.height_px;
@@ -212,7 +212,7 @@ std::vector<std::size_t> chosen(const std::string& person, std::size_t people,
   if (person == "largest") {
     if (people > 1)
       notices.push_back(
-          fmt::format("{} people: the largest is taken; say another by `person`", people));
+          fmt::format("{} people: the largest is taken; choose another with `person`", people));
     return {0};
   }
   if (person == "all") {
@@ -224,7 +224,7 @@ std::vector<std::size_t> chosen(const std::string& person, std::size_t people,
   const char* end = person.data() + person.size();
   const auto [rest, error] = std::from_chars(person.data(), end, number);
   if (error != std::errc() || rest != end || number == 0)
-    throw ConfigError(fmt::format("`person` {}: say largest, all, or a number from 1 on", person));
+    throw ConfigError(fmt::format("`person` {}: give largest, all, or a number from 1 on", person));
   if (number > people)
     throw InputError(fmt::format("{}: no person {}: {} seen", file, number,
                                  people == 1 ? "one was" : fmt::format("{} were", people)));
@@ -247,20 +247,20 @@ TrackReading tracks_of(SeenPeople seen, const TrackReadOptions& options, const s
   const ImageSize size = put_in_pixels(frames, seen, options, file, reading.notices);
   limit_confidences(frames, reading.notices);
   if (!options.fps && !seen.fps)
-    reading.notices.push_back(
-        fmt::format("the file does not say its rate: {} frames a second are taken; say it by `fps`",
-                    kUsualFps));
+    reading.notices.push_back(fmt::format(
+        "the file does not give its rate: {} frames a second are taken; set it with `fps`",
+        kUsualFps));
   if (options.fps) check_range("`fps`", kFrameRate_hz, *options.fps);
   if (!options.fps && seen.fps && !kUsualFrameRate_hz.contains(*seen.fps))
     reading.notices.push_back(fmt::format(
-        "the file says {:.4g} frames a second; say another rate by `fps` if that is not so",
+        "the file gives {:.4g} frames a second; set another rate with `fps` if that is wrong",
         *seen.fps));
   const double fps = options.fps ? *options.fps : seen.fps.value_or(kUsualFps);
   std::vector<Followed> people =
       follow_people(frames, static_cast<int>(std::clamp(kPatience_s * fps, 1.0, 1000.0)));
   drop_fleeting(people, fps, reading.notices);
   reading.people_seen = static_cast<int>(people.size());
-  // A track in which nobody was seen is one, of missing joints.
+  // Without any person there is one track, of missing joints.
   if (people.empty()) people.emplace_back(frames.size(), -1);
   for (const std::size_t person : chosen(options.person, people.size(), file, reading.notices)) {
     Track2d track = track_of(seen, frames, people[person]);

@@ -149,7 +149,7 @@ void ContrastiveDivergence::pull_to_target(std::size_t count, const CdRule& rule
   if (is_first) activity_ = Matrix(crbm_.device(), 1, crbm_.shape().hidden);
   Device& device = crbm_.device();
   const int width = vector_width(device);
-  // Composed, nobody needs what the chain's biases were any more.
+  // The fused chain leaves its change in hidden_bias_; the composed one needs it no more.
   launch(device, device.programs().kernel("unit_statistics.cl", "pull_to_target", {{"VEC", width}}),
          {{hidden_data_.stride() / static_cast<std::size_t>(width), 1}}, hidden_data_.buffer(),
          hidden_bias_.buffer(), to_int(hidden_data_.stride()), to_int(count),

@@ -18,7 +18,7 @@ struct CdRule {
   float fast_rate = 0.0F;       ///< persistent chains only
   float deviation_rate = 0.0F;  ///< of log σ
 };
-/// What the settings say for an epoch, counted from 1. @param progress 0 … 1, of all mini-batches
+/// The settings' rule for an epoch, counted from 1. @param progress 0 … 1, of all mini-batches
 CdRule cd_rule_for(const CdSettings& settings, std::size_t epoch, double progress = 0.0);
 
 /// The tile for CD-k, and for multi-prediction with the larger modality's units: a block's local
@@ -42,7 +42,7 @@ std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& 
 class ContrastiveDivergence : public LearningRule {
  public:
   /// @param crbm whose deviation is learnt only if it is a Gaussian RBM
-  /// @param optimizer unset: what the settings say
+  /// @param optimizer unset: as the settings specify
   /// @throws ConfigError for a machine with a deviation that is no Gaussian RBM
   ContrastiveDivergence(Crbm& crbm, std::size_t largest_batch, const CdSettings& settings = {},
                         std::optional<OptimizerKind> optimizer = {});
@@ -52,7 +52,7 @@ class ContrastiveDivergence : public LearningRule {
                         std::optional<OptimizerKind> optimizer = {});
 
   std::size_t loss_count() const override { return 1; }
-  /// step() by the rule that the settings say. @param visible one
+  /// step() by the rule that the settings specify. @param visible one
   void learn(std::span<const Rows> visible, const LearningStep& step,
              LossAccumulator& losses) override;
   void visit_state(TrainingState& state) override;

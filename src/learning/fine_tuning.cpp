@@ -50,9 +50,9 @@ class HeldOutWindows {
   std::vector<DeviceWindows> batches_;
 };
 
-/// The last parameters that did about as well as any on the clips held out. About, as nobody is
-/// like everybody: stopping at the very best for one CMU walker, 250 of 1500 mini-batches at a loss
-/// 2 % below the later ones, cost other strangers 3 mm.
+/// The last parameters that did about as well as any on the clips held out. About, as people
+/// differ: stopping at the very best for one CMU walker, 250 of 1500 mini-batches at a loss 2 %
+/// below the later ones, cost other people held out 3 mm.
 class HeldOutRecord {
  public:
   /// @return whether they last did as well so long ago that going on is not worth while

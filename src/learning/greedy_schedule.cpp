@@ -217,7 +217,7 @@ MinibatchSchedule minibatches(const Sequences& sequences, const std::vector<std:
           sequences.weights(rows)};
 }
 
-/// Sequences of a modality; people weigh as the settings say.
+/// Sequences of a modality; people weigh as the settings specify.
 Sequences weighted(Device& device, const SynchronizedClips& clips, const ModalityClips& modality,
                    const LearningSettings& learning) {
   Sequences sequences = Sequences::from_host(device, modality.clips, modality.seen);

@@ -14,7 +14,7 @@ namespace mcdbn {
 /// in one product after another; both draw the same numbers.
 class JointLikelihood : public MrbmChains {
  public:
-  /// @param optimizer unset: what the settings say
+  /// @param optimizer unset: as the settings specify
   JointLikelihood(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
                   std::optional<OptimizerKind> optimizer = {});
   /// With a tile of the caller's, or without the fused kernels.

@@ -22,7 +22,7 @@ MinibatchSchedule::MinibatchSchedule(Device& device, std::vector<std::int32_t> r
   index_ = IndexBuffer(device, rows_);
 }
 
-/// Systematically: a row comes as often as its share says, but for what makes it a whole number.
+/// Systematic sampling: a row comes as often as its share of them all, rounded up or down.
 void MinibatchSchedule::draw(float uniform) {
   const double step = ends_.back() / static_cast<double>(rows_.size());
   std::size_t choice = 0;

@@ -20,7 +20,7 @@ class MinibatchSchedule {
   MinibatchSchedule(Device& device, std::vector<std::int32_t> rows, std::size_t batch,
                     std::size_t least_batches = 1, const std::vector<double>& weights = {});
 
-  /// Shuffles anew, as the key says, and uploads. By weights it draws anew which rows come.
+  /// Shuffles anew, by the key, and uploads. With weights it draws anew which rows come.
   void shuffle(const RandomKey& key);
   std::size_t batch() const { return batch_; }
   std::size_t batch_count() const { return rows_.size() / batch_; }

@@ -17,8 +17,8 @@ namespace mcdbn {
 class MrbmChains : public LearningRule {
  public:
   std::size_t loss_count() const override { return mrbm_.modality_count(); }
-  /// One mini-batch by the rule that the settings say. Adds to `losses` the mean squared error of a
-  /// unit between the data and the chain's end, in slot m that of the modality m.
+  /// One mini-batch by the rule that the settings specify. Adds to `losses` the mean squared error
+  /// of a unit between the data and the chain's end, in slot m that of the modality m.
   /// @param visible the codes of each modality, indexed  @throws ShapeError
   void learn(std::span<const Rows> visible, const LearningStep& step,
              LossAccumulator& losses) override;

@@ -9,7 +9,7 @@
 
 namespace mcdbn {
 
-/// The rule that the settings say: JointLikelihood, else PerceptronLoss, else MultiPrediction.
+/// The rule that the settings specify: JointLikelihood, else PerceptronLoss, else MultiPrediction.
 std::unique_ptr<LearningRule> make_mrbm_rule(Mrbm& mrbm, std::size_t batch,
                                              const MrbmSettings& settings);
 

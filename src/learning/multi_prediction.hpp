@@ -26,7 +26,7 @@ class MultiPrediction : public LearningRule {
                   std::optional<RowTile> tile, OptimizerKind optimizer = OptimizerKind::adam);
 
   std::size_t loss_count() const override { return mrbm_.modality_count(); }
-  /// step() by the rule that the settings say. @param visible the codes of each modality
+  /// step() by the rule that the settings specify. @param visible the codes of each modality
   void learn(std::span<const Rows> visible, const LearningStep& step,
              LossAccumulator& losses) override;
   void visit_state(TrainingState& state) override { optimizer_.visit_state(state); }

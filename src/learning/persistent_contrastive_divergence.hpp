@@ -15,8 +15,7 @@ namespace mcdbn {
 ///
 /// Fast weights (Tieleman and Hinton 2009), with a fast-rate: the chains move under parameters that
 /// also learn at that rate and lose a twentieth of it in every mini-batch, so that they leave where
-/// they have just been. W, a and b have fast parts; A and B, which say what a history does, have
-/// none.
+/// they have just been. W, a and b have fast parts; A and B, the weights of the history, have none.
 ///
 /// Two launches a mini-batch, as for ContrastiveDivergence; with fast weights one product after the
 /// other. The draws are those of ContrastiveDivergence, and one more, phase k: where the chains

@@ -14,11 +14,11 @@ constexpr std::uint16_t kStream = random_streams::kFirstWeights;
 
 Mcdbn random_start(Device& device, const std::vector<Modality>& modalities,
                    const LearningSettings& learning) {
-  // Units about zero have a slope of a quarter: with this weight a unit says again what the one
-  // beneath it says. So a deep stack starts as a shallow one that its upper layers merely pass on:
+  // Units about zero have a slope of a quarter: with this weight a unit has the value of the one
+  // beneath it. So a deep stack starts as a shallow one that its upper layers merely pass on:
   // after 250 mini-batches the loss is a tenth smaller than with all of it drawn at full size.
   constexpr float kPassOn = 4.0F;
-  // The mean field hears this modality again in every step.
+  // The mean field uses this modality's code again in every step.
   constexpr float kPassOnAgain = 2.0F;
   // Sizes of weights, whatever their inputs' number: of a unit's input, of variance one, more comes
   // from the frame itself than from its history. On CMU walkers (02, 32, 35, 39; one held out),

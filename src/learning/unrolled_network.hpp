@@ -8,8 +8,8 @@
 
 namespace mcdbn {
 
-/// The same layer over units about zero: binary units are probabilities less one half, so that what
-/// weights do is told apart from what biases do, by Adam and by weight decay (Montavon and Müller
+/// The same layer over units about zero: binary units are probabilities less one half, so that Adam
+/// and weight decay treat the effect of weights apart from that of biases (Montavon and Müller
 /// 2012). Nothing that the layer computes changes but the half.
 /// @param below what the visible units are: a code is moved, data stay as they are
 enum class Below { data, code };

@@ -14,7 +14,7 @@ using nlohmann::json;
 constexpr int kFormatVersion = 1;
 constexpr const char* kKey = "mcdbn_machine";
 
-/// What a machine says of itself beside its tensors.
+/// Puts a machine's tensors into the file and returns its description.
 struct Put {
   Safetensors& file;
   json operator()(const Crbm& crbm) const {

@@ -9,8 +9,8 @@
 #include "mcdbn/machines/cdbn.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 
-// Machines among the tensors of a file: `PREFIXW`, `PREFIXA` … for each. What is put says in JSON
-// what it needs to be got again; what is got throws InputError naming the file and the tensor.
+// Machines among the tensors of a file: `PREFIXW`, `PREFIXA` … for each. Each put_… returns in
+// JSON what get_… needs; get_… throws InputError naming the file and the tensor.
 namespace mcdbn {
 
 /// A file that is being read.

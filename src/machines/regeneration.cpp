@@ -72,10 +72,10 @@ Frames frames_of(const Mcdbn& network, const std::vector<std::vector<MatrixF>>& 
 struct Codes {
   std::vector<std::optional<Sequences>> present;  ///< all of one length
   Matrix wanted;                                  ///< [sequences·samples·frames x dimension]
-  std::vector<Matrix> others;  ///< what is inferred of modalities that nobody asked for
+  std::vector<Matrix> others;  ///< inferred, of modalities neither present nor wanted
 };
 
-/// What the MRBM is told: rows of each modality's code.
+/// Whether each modality's code is given to the MRBM.
 std::vector<bool> present_flags(const Codes& codes) {
   std::vector<bool> flags;
   for (const auto& code : codes.present) flags.push_back(code.has_value());

@@ -7,7 +7,7 @@
 namespace mcdbn {
 
 /// The mean-field answer to a sequence of the first modality that is still growing: what
-/// coded_answers says of the second, at a cost for each frame that does not grow. Settled frames
+/// coded_answers gives of the second, at a cost for each frame that does not grow. Settled frames
 /// are history: of the first modality as many rows as its CDBN sees, of the second the visible
 /// units of every layer. The newest frames are open: they may be shown otherwise each time, and are
 /// inferred and decoded anew on that history.

@@ -144,7 +144,7 @@ HumanoidRig::HumanoidRig(const Motion& motion, const SkeletonRoles& roles)
     : skeleton_(motion.skeleton), body_(canonical_humanoid()) {
   if (!roles.has(pelvis))
     throw InputError(
-        "a skeleton whose pelvis nothing tells cannot take another one's motion; name its joints "
+        "a skeleton without a known pelvis cannot take another one's motion; name its joints "
         "in a joint map");
   roles_ = with_lowest_spine(skeleton_, roles);
   const RigAxes axes = rig_axes(motion, roles_);
@@ -313,7 +313,7 @@ std::vector<int> HumanoidRig::kept_joints() const {
 
 HumanoidRig rig_of_person(const Motion& motion, const JointMap& joint_map) {
   JointMap own = joint_map;
-  std::erase_if(own, [&](const auto& said) { return motion.skeleton.find(said.second) < 0; });
+  std::erase_if(own, [&](const auto& given) { return motion.skeleton.find(given.second) < 0; });
   HumanoidRig rig(motion, skeleton_roles(motion.skeleton, own));
   std::vector<std::string_view> lacking;
   for (const JointRole left :

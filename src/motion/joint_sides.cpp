@@ -8,7 +8,7 @@
 namespace mcdbn {
 namespace {
 
-/// What in a name tells the side.
+/// What in a name marks the side.
 struct Mark {
   std::size_t at = 0, length = 0;
   Side side = Side::middle;

@@ -13,7 +13,7 @@ enum class Side { left, middle, right };
 Side side_of(const std::string& joint_name);
 
 /// The name with the mark of its side exchanged for the other side's, case kept; empty if it has
-/// none. RHIP becomes LHIP, so ROOT becomes LOOT: ask whether there is such a joint.
+/// none. RHIP becomes LHIP, so ROOT becomes LOOT: check that there is such a joint.
 std::string other_side(const std::string& joint_name);
 
 }  // namespace mcdbn

@@ -114,7 +114,7 @@ std::size_t common_start(const std::vector<std::string>& texts) {
   return separator == std::string::npos ? 0 : separator + 1;
 }
 
-/// The sided word left when `length` letters from `at` say the side.
+/// The sided word left when the `length` letters from `at` that mark the side are taken out.
 std::optional<NamedJoint> sided(const std::string& text, std::size_t at, std::size_t length,
                                 Side side) {
   std::string rest = text;

@@ -37,7 +37,7 @@ struct NamedJoint {
   Side side = Side::middle;
 };
 
-/// What the names say, one entry a joint; none where a name says nothing. What stands before a
+/// Words and sides of the names, one entry a joint; none without a known word. What stands before a
 /// colon, what all names begin with (`Bip01_`) and digits at the end do not count.
 std::vector<std::optional<NamedJoint>> named_joints(const std::vector<std::string>& names);
 

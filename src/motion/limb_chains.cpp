@@ -81,7 +81,7 @@ std::optional<std::pair<Chain, Chain>> limb_pair(const Tree& tree, int joint) {
 }
 
 /// The limb in a chain. Its longest bone is the upper of two unless what follows is no longer than
-/// a hand or a foot; the bone that leads to the chain's first joint is not asked.
+/// a hand or a foot; the bone that leads to the chain's first joint does not count.
 LimbChain limb_of(const Tree& tree, const Chain& chain) {
   constexpr double kHandOfForearm = 0.6;  // 0.5 to 0.58 by anthropometry; forearms are 0.69 or more
   const auto longest = std::ranges::max_element(chain.begin() + 1, chain.end(), {},

@@ -17,7 +17,7 @@ struct LimbChain {
   int tip = -1;     ///< toes or hand
 };
 
-/// A body as its tree of bones shows it, names not asked.
+/// A body as its tree of bones shows it, without names.
 struct BodyChains {
   int pelvis = -1, chest = -1, neck = -1, head = -1;
   /// Left and right; none where no pair of like chains is there.

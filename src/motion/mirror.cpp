@@ -17,24 +17,25 @@ const Axes kWorldMirror(-1, 1, 1);
 
 struct Reflection {
   Axes axes = kWorldMirror;
-  double miss = 0;  ///< how far the reflected bones end from those of the other side
+  double distance = 0;  ///< how far the reflected bones end from those of the other side
 };
 
 /// The reflection of a joint's own axes that brings its bones onto the other side's; `otherwise`
-/// where the bones do not clearly say something else: a neck that leans by a hair must not end up
-/// turned half round its length.
+/// unless another one is clearly nearer: a neck that leans slightly must not end up turned half
+/// round its length.
 Reflection joint_reflection(const Skeleton& skeleton, const std::vector<int>& opposite, int joint,
                             const Axes& otherwise) {
   Reflection best{otherwise, std::numeric_limits<double>::infinity()};
   for (const Axes& axes : {otherwise, Axes(-1, 1, 1), Axes(1, -1, 1), Axes(1, 1, -1)}) {
-    double miss = 0, length = 0;
+    double distance = 0, length = 0;
     for (int child = 0; child < skeleton.joint_count(); ++child) {
       const Eigen::Vector3d& bone = skeleton.joints[child].offset;
       if (skeleton.joints[child].parent != joint) continue;
-      miss += (axes.cwiseProduct(bone) - skeleton.joints[opposite[child]].offset).norm();
+      distance += (axes.cwiseProduct(bone) - skeleton.joints[opposite[child]].offset).norm();
       length += bone.norm();
     }
-    if (miss <= best.miss - kMostOfBone * length && miss < best.miss) best = {axes, miss};
+    if (distance <= best.distance - kMostOfBone * length && distance < best.distance)
+      best = {axes, distance};
   }
   return best;
 }
@@ -42,16 +43,16 @@ Reflection joint_reflection(const Skeleton& skeleton, const std::vector<int>& op
 /// Empty if the sides are built too differently.
 std::vector<Axes> reflections(const Skeleton& skeleton, const std::vector<int>& opposite) {
   std::vector<Axes> axes;
-  double miss = 0, length = 0;
+  double distance = 0, length = 0;
   for (int j = 0; j < skeleton.joint_count(); ++j) {
     const int parent = skeleton.joints[j].parent;
     const Reflection own =
         joint_reflection(skeleton, opposite, j, parent < 0 ? kWorldMirror : axes[parent]);
     axes.push_back(own.axes);
-    miss += own.miss;
+    distance += own.distance;
     if (parent >= 0) length += skeleton.joints[j].offset.norm();
   }
-  if (miss > kMostOfBone * length) return {};
+  if (distance > kMostOfBone * length) return {};
   return axes;
 }
 

@@ -10,7 +10,7 @@ namespace mcdbn {
 
 /// Bones longer or shorter, alike on both sides where the skeleton has sides. Longer legs stand
 /// higher and take longer steps.
-/// @param factor of the bone that ends at this joint; of a pair only the first is asked
+/// @param factor of the bone that ends at this joint; of a pair only the first's counts
 void scale_bones(Motion& motion, const std::function<double(int joint)>& factor);
 
 /// How much people differ from the one who was captured.
@@ -28,7 +28,7 @@ struct OtherBody {
   }
 };
 
-/// The same motion by somebody else. The same seed makes the same person.
+/// The same motion by another person. The same seed makes the same person.
 Motion with_other_body(Motion motion, const OtherBody& deviations, std::uint64_t seed);
 
 }  // namespace mcdbn

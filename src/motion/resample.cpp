@@ -125,7 +125,7 @@ void sample(const Skeleton& skeleton, const MatrixD& signals, double source_fram
 }
 
 /// Gives channels that never change in `source` their exact value back, where only rounding moved
-/// them; what is constant must be seen as constant by whoever drops such channels.
+/// them: code that drops constant channels has to recognize them.
 void restore_constants(const MatrixD& source, MatrixD& resampled) {
   constexpr double kRounding = 1e-6;
   for (Eigen::Index column = 0; column < source.cols(); ++column) {

@@ -7,7 +7,7 @@
 
 namespace mcdbn {
 
-/// Whether frame 0 is a calibration pose that somebody put before the motion: an authored pose,
+/// Whether frame 0 is a calibration pose that was put before the motion: an authored pose,
 /// that is whole degrees in every rotation channel and nearly all of them zero (a T-pose; the CMU
 /// files have 7 of 93 that are not zero), from which frame 1 jumps away by more than motion can.
 bool has_leading_calibration_pose(const Motion& motion);
@@ -17,8 +17,7 @@ Motion without_first_frame(const Motion& motion);
 /// How many frames a clip or a track has at another rate: those that fit into its duration from
 /// `phase` new frames on, at least one. A rounded frame time may put the last a little past the
 /// end: `slack` new frames are given.
-/// @throws ConfigError if one is no frame rate, InputError if memory would be asked for more than
-///         kMostFrames
+/// @throws ConfigError if one is no frame rate, InputError for more than kMostFrames
 int frames_at_rate(int frames, double rate_hz, double target_hz, double phase, double slack);
 inline constexpr double kMostFrames = 1e7;
 

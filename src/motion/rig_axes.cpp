@@ -49,7 +49,7 @@ JointRole role_at(std::size_t joint) {
   return *humanoid_roles().role_of(static_cast<int>(joint));
 }
 
-/// Whether the joint's bone follows one that tells how it is turned: a shank the thigh, but no
+/// Whether the joint's bone follows one that determines how it is turned: a shank the thigh, but no
 /// thigh the pelvis.
 bool follows_a_bone(JointRole role) {
   switch (role) {
@@ -152,8 +152,8 @@ RigAxes axes_from_rest(const Places& rest, const SkeletonRoles& roles, const Mat
   return axes;
 }
 
-/// How a body's joints are turned in one frame as far as its places tell: world_from_humanoid, by
-/// role, and how surely.
+/// How a body's joints are turned in one frame as far as their positions determine it:
+/// world_from_humanoid, by role, and a weight.
 class TurnsOfPlaces {
  public:
   explicit TurnsOfPlaces(const Places& places) : places_(places) {
@@ -305,7 +305,7 @@ RigAxes axes_from_motion(const Motion& motion, const SkeletonRoles& roles) {
     const JointRole role = role_at(j);
     const auto r = static_cast<std::size_t>(role);
     axes.by_role[r] = roles.has(role) ? nearest_rotation(sums[r]) : axes.of(above(role));
-    // Hips and shoulders tell of the trunk all there is.
+    // Hips and shoulders determine the trunk's turn.
     if (!roles.has(role) || role == pelvis || role == chest) continue;
     const auto aim = aim_of(role);
     const Vector3d bone = aim ? humanoid_bone(role, *aim) : humanoid_bone(above(role), role);

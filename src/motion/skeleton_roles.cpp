@@ -25,7 +25,7 @@ bool is_ancestor(const Skeleton& skeleton, int ancestor, int joint) {
   return joint == ancestor && ancestor >= 0;
 }
 
-/// What the names of a skeleton say.
+/// A skeleton's joints by the words and sides in their names.
 class Names {
  public:
   explicit Names(const Skeleton& skeleton) : skeleton_(skeleton) {
@@ -129,7 +129,7 @@ bool any(const SkeletonRoles& roles, std::initializer_list<JointRole> asked) {
       asked, [&](JointRole role) { return roles.has(role) || roles.has(other_side(role)); });
 }
 
-/// Limbs that no name tells, by the tree.
+/// Limbs that no name identifies, by the tree.
 void add_chains(const Skeleton& skeleton, SkeletonRoles& roles) {
   const bool legs = any(roles, {left_hip, left_knee, left_ankle, left_toe});
   const bool arms = any(roles, {left_clavicle, left_shoulder, left_elbow, left_wrist, left_hand});
@@ -173,7 +173,7 @@ void add_trunk(const Skeleton& skeleton, SkeletonRoles& roles) {
     roles.set(spine, *first);
 }
 
-/// What was said by hand holds; a joint that it names loses the role it had.
+/// What was given by hand holds; a joint that it names loses the role it had.
 void set_given(const Skeleton& skeleton, const JointMap& given, SkeletonRoles& roles) {
   std::map<int, JointRole> taken;
   for (const auto& [role, name] : given) {

@@ -62,7 +62,7 @@ class OtherSkeleton {
   SkeletonRoles roles_;
 };
 
-/// What other parts of a track are told: the body and the camera that one has found.
+/// The body and the camera found in one part of a track, which its other parts use.
 struct FoundBody {
   Camera camera;
   Skeleton skeleton;
@@ -78,7 +78,7 @@ struct RegeneratedPart {
   std::vector<SideSwap> swaps;
 };
 
-/// The longest stretch tells of which body and camera the others are, if nobody says it.
+/// The body and the camera, where not given, are found in the longest stretch, for all others.
 class PartRegeneration {
  public:
   /// @param placement of the skeleton that is regenerated, which `other` moves to the wanted one
@@ -125,13 +125,13 @@ class PartRegeneration {
     for (SideSwap swap : found) swaps.push_back(moved(std::move(swap), stretch.first));
   }
 
-  RegeneratedPart regenerated(const TrackPart& part, const RegeneratedPart* told) const {
+  RegeneratedPart regenerated(const TrackPart& part, const RegeneratedPart* reference) const {
     RegeneratedPart done{part, {}, {}, {}, {}, {}};
     const FrameRange& range = part.range;
     SeenClip seen =
         see_clip(modalities_,
                  resample_track(some_frames(track_, range.first, range.frames), modalities_.fps),
-                 placement_of(0, told), single_);
+                 placement_of(0, reference), single_);
     for (SideSwap& swap : seen.swaps) {
       for (int* frame : {&swap.first_frame, &swap.last_frame})
         *frame = std::min(range.frames - 1,
@@ -142,7 +142,7 @@ class PartRegeneration {
     done.filled = std::move(seen.filled);
     for (const PosePrior& prior : all_(seen.features)) {
       const std::size_t answer = done.motions.size();
-      ClipPlacement placement = placement_of(answer, told);
+      ClipPlacement placement = placement_of(answer, reference);
       placement.found = seen.view;
       const FittedClip clip =
           fit_to_track(prior, modalities_, seen.joints, placement, placement.fit,
@@ -157,12 +157,12 @@ class PartRegeneration {
     return done;
   }
 
-  ClipPlacement placement_of(std::size_t answer, const RegeneratedPart* told) const {
+  ClipPlacement placement_of(std::size_t answer, const RegeneratedPart* reference) const {
     ClipPlacement placement = placement_;
-    if (told == nullptr) return placement;
-    placement.camera = told->bodies[answer].camera;
+    if (reference == nullptr) return placement;
+    placement.camera = reference->bodies[answer].camera;
     if (!placement.skeleton) placement.detected = true;  // a body that was found is not exact
-    placement.skeleton = told->bodies[answer].skeleton;
+    placement.skeleton = reference->bodies[answer].skeleton;
     return placement;
   }
 

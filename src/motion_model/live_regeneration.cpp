@@ -100,7 +100,7 @@ class LiveRegeneration::Frames {
   std::vector<LiveFrame> finish() {
     std::vector<LiveFrame> finished = take_frames(true);
     add(finished, settle(open_));
-    while (waiting_ > 0) add(finished, nobody());
+    while (waiting_ > 0) add(finished, mean_pose());
     add(finished, output_.finish(pushed_));
     return finished;
   }
@@ -143,13 +143,13 @@ class LiveRegeneration::Frames {
     if (!placed_) {
       try {
         solve();
-      } catch (const InputError&) {  // nobody yet
+      } catch (const InputError&) {  // no person yet
         forget();
-        if (++waiting_ > open_at_most_) add(finished, nobody());
+        if (++waiting_ > open_at_most_) add(finished, mean_pose());
         return finished;
       }
       placed_ = true;
-      while (waiting_ > 0) add(finished, nobody());
+      while (waiting_ > 0) add(finished, mean_pose());
     } else {
       solve();
     }
@@ -208,8 +208,8 @@ class LiveRegeneration::Frames {
     replace_frames(joints_, first, joints);
   }
 
-  /// What the network says of the open frames. Features that the track does not show are what the
-  /// solution before shows.
+  /// The network's answer for the open frames. Features that the track does not show are taken from
+  /// the solution before.
   PosePrior answered() {
     const Camera camera = fit_.camera();
     MatrixF features = modalities_.encode_track(smooth_track(joints_), camera).bottomRows(open_);
@@ -245,8 +245,8 @@ class LiveRegeneration::Frames {
     return finished;
   }
 
-  /// A frame before anybody was seen.
-  std::vector<LiveFrame> nobody() {
+  /// For a frame before the first person was seen.
+  std::vector<LiveFrame> mean_pose() {
     --waiting_;
     const MatrixF mean = MatrixF::Zero(1, modalities_.pose_scale.output_dimension());
     const Camera camera = fit_.camera();

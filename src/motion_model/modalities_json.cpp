@@ -101,7 +101,7 @@ Modalities modalities_from(const JsonPlace& entry) {
                         Standardizer::from_json(track_scale.value(), track_scale.where()),
                         entry["fps"].number(kFrameRate_hz),
                         camera_from(entry["camera"])};
-  // Models from before there were these do not say them.
+  // Models from before there were these do not have them.
   if (entry.has("directions"))
     modalities.directions = entry["directions"].count(Modalities::kDirections);
   if (entry.has("level_view")) modalities.level_view = entry["level_view"].truth();

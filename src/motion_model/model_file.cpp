@@ -28,7 +28,7 @@ json sampling_json(const SamplingRule& rule) {
           {"always", rule.always}};
 }
 
-/// Algorithm 5's rule for models that say none.
+/// Algorithm 5's rule for models without one.
 SamplingRule sampling_from(const JsonPlace& about) {
   if (!about.has("sampling")) return {};
   const JsonPlace entry = about["sampling"];
@@ -45,13 +45,13 @@ void check_config(const JsonPlace& config) {
     using Value = std::decay_t<decltype(value)>;
     const json::json_pointer pointer = record_pointer(setting.name);
     if (!config.value().contains(pointer)) return;
-    const JsonPlace said(config.value().at(pointer), config.where() + "." + setting.name);
+    const JsonPlace given(config.value().at(pointer), config.where() + "." + setting.name);
     if constexpr (std::is_same_v<Value, bool>)
-      said.truth();
+      given.truth();
     else if constexpr (std::is_same_v<Value, std::size_t>)
-      said.count(setting.range);
+      given.count(setting.range);
     else
-      said.number(setting.range);
+      given.number(setting.range);
   });
 }
 

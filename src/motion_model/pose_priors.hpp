@@ -7,8 +7,8 @@
 
 namespace mcdbn {
 
-/// What a network says of the poses behind tracks: regenerate's answers, each with the network's
-/// own deviation where it has learnt one (Mcdbn::deviation).
+/// A network's priors of the poses behind tracks: regenerate's answers, each with the network's own
+/// deviation where it has learnt one (Mcdbn::deviation).
 /// @param tracks standardized 2D [frames x dimension]
 /// @return result[track · samples + sample]
 std::vector<PosePrior> pose_priors(const Mcdbn& network, const std::vector<MatrixF>& tracks,

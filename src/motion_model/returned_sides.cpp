@@ -10,10 +10,10 @@
 namespace mcdbn {
 namespace {
 
-/// What is looked at on either side of a spell: how limbs go on there tells of their sides, too.
+/// Time on either side of a spell that is compared, too: how limbs move there shows their sides.
 constexpr double kAround_s = 2;
 /// So much likelier, in natural logarithms, the exchanged one has to be. Chosen on detector-like
-/// tracks of training people whose legs are out of sight twice for 0.25 s.
+/// tracks of training people whose legs are hidden twice for 0.25 s.
 constexpr double kClearly = 3;
 
 }  // namespace

@@ -40,7 +40,7 @@ double distance(const std::vector<MatrixD>& many, const std::vector<MatrixD>& si
   return sum / static_cast<double>(copies);
 }
 
-/// Every so many clips, so that memory does not grow with the corpus: ten minutes say enough.
+/// Every so many clips, so that memory does not grow with the corpus: ten minutes are enough.
 std::size_t every_of_ten_minutes(const std::vector<MatrixF>& clips, double fps) {
   const auto frames = static_cast<double>(total_frames(clips));
   return static_cast<std::size_t>(std::max(1.0, std::ceil(frames / (kMost_s * fps))));

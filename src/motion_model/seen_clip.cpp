@@ -12,8 +12,9 @@ namespace mcdbn {
 namespace {
 
 /// More rounds change next to nothing: with an arm hidden for a second held-out walkers are off by
-/// 8.9, 7.8, 7.6 and 7.5 mm after 0, 1, 2 and 4, all in sight by 6.5. A third makes detector-like
-/// tracks of training people no better either, whether the camera is known or to be found.
+/// 8.9, 7.8, 7.6 and 7.5 mm after 0, 1, 2 and 4, with all joints visible by 6.5. A third makes
+/// detector-like tracks of training people no better either, whether the camera is known or to be
+/// found.
 constexpr int kRounds = 2;
 
 /// Between the frames that a round solves for: it needs to know about where joints are. With frames

@@ -23,14 +23,14 @@ std::string named(const std::string& key) {
   return printable(key.substr(0, kLongest));
 }
 
-void add_table(std::vector<SaidSetting>& said, const std::filesystem::path& file,
+void add_table(std::vector<GivenSetting>& given, const std::filesystem::path& file,
                const toml::table& table, const std::string& prefix) {
   for (const auto& [key, node] : table) {
     const std::string name = prefix + std::string(key.str());
     if (const toml::table* inner = node.as_table())
-      add_table(said, file, *inner, name + ".");
+      add_table(given, file, *inner, name + ".");
     else
-      said.push_back(
+      given.push_back(
           {name, scalar_of(node), fmt::format("{}: {}", location_of(file, node), named(name))});
   }
 }
@@ -63,10 +63,10 @@ nlohmann::json scalar_of(const toml::node& node) {
   return nullptr;
 }
 
-std::vector<SaidSetting> read_settings_file(const std::filesystem::path& file) {
-  std::vector<SaidSetting> said;
-  add_table(said, file, read_toml_file(file), "");
-  return said;
+std::vector<GivenSetting> read_settings_file(const std::filesystem::path& file) {
+  std::vector<GivenSetting> given;
+  add_table(given, file, read_toml_file(file), "");
+  return given;
 }
 
 std::string settings_toml(const TrainingConfig& config) {

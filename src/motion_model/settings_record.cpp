@@ -7,29 +7,29 @@
 namespace mcdbn {
 namespace {
 
-/// Up to version 0.1 all views were made anew after so many mini-batches, where they now give way
-/// one by one: what a model was trained with then nobody does again.
+/// Up to version 0.1 all views were made anew after so many mini-batches; now they are replaced one
+/// by one, and the old setting is ignored.
 constexpr const char* kGone = "fine-tuning.new-views-every";
 
-/// Today's name of a setting that is said by the one that it had before.
-std::string name_today(const std::string& said) {
-  std::string name = said;
+/// Today's name of a setting that is given by its name now or its former one.
+std::string name_today(const std::string& given) {
+  std::string name = given;
   const TrainingConfig usual;
   visit_settings(usual, [&](const Setting& setting, const auto&) {
-    if (former_name(setting.name) == said) name = setting.name;
+    if (former_name(setting.name) == given) name = setting.name;
   });
   return name;
 }
 
-void assign(TrainingConfig& config, SaidSetting said, RangeCheck check) {
-  said.name = name_today(said.name);
-  assign_setting(config, said, check);
+void assign(TrainingConfig& config, GivenSetting given, RangeCheck check) {
+  given.name = name_today(given.name);
+  assign_setting(config, given, check);
 }
 
 }  // namespace
 
-void assign_settings(TrainingConfig& config, const std::vector<SaidSetting>& said) {
-  for (const SaidSetting& setting : said) assign(config, setting, RangeCheck::on);
+void assign_settings(TrainingConfig& config, const std::vector<GivenSetting>& given) {
+  for (const GivenSetting& setting : given) assign(config, setting, RangeCheck::on);
 }
 
 nlohmann::json settings_json(const TrainingConfig& config) {
@@ -38,7 +38,7 @@ nlohmann::json settings_json(const TrainingConfig& config) {
 
 TrainingConfig settings_from_json(const nlohmann::json& record) {
   TrainingConfig config;
-  // Models from before there was fine-tuning say nothing of it.
+  // Models from before there was fine-tuning have no settings of it.
   config.fine_tuning.steps = 0;
   const nlohmann::json flat = record.flatten();
   for (const auto& [pointer, value] : flat.items()) {

@@ -28,7 +28,7 @@ PieceChoice pieces_of(const TrainingConfig& config) {
   return {.frames = frames_of_pieces(config), .groups_power = config.fine_tuning.people_power};
 }
 
-/// Seeds are small numbers: these views are nobody's else.
+/// Users' seeds are small numbers: no other views are drawn with this one.
 std::uint64_t seed_of_strangers(const TrainingConfig& config) {
   return config.seed + (1ULL << 32U);
 }

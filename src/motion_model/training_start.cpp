@@ -21,32 +21,33 @@ bool is_of_model(const std::string& name) {
   return std::ranges::count(kOfModel, name) > 0 || name.starts_with("camera.");
 }
 
-/// Models of the library may have layers of any sizes, which no setting says.
+/// Models of the library may have layers of any sizes, which no setting gives.
 void check_sizes(const Mcdbn& network, const TrainingConfig& config) {
   for (const Cdbn& cdbn : network.cdbns) {
     bool fits = cdbn.layers.size() == config.layers;
     for (const Crbm& layer : cdbn.layers)
       fits = fits && layer.shape().hidden == config.hidden && layer.shape().order == config.order;
     if (!fits)
-      throw ConfigError("the model to start from has layers of other sizes than its settings say");
+      throw ConfigError(
+          "the model to start from has layers of other sizes than its settings specify");
   }
 }
 
 }  // namespace
 
-std::vector<SaidSetting> settings_of_start(const Model& start) {
-  std::vector<SaidSetting> said;
+std::vector<GivenSetting> settings_of_start(const Model& start) {
+  std::vector<GivenSetting> given;
   const TrainingConfig own = settings_from_json(start.config);
   visit_settings(own, [&](const Setting& setting, const auto& value) {
     if (is_of_model(setting.name))
-      said.push_back({setting.name, value, "the model to start from: " + setting.name});
+      given.push_back({setting.name, value, "the model to start from: " + setting.name});
   });
-  return said;
+  return given;
 }
 
 void check_start(const Model& start, const TrainingConfig& config) {
   const nlohmann::json now = settings_json(config);
-  for (const SaidSetting& own : settings_of_start(start))
+  for (const GivenSetting& own : settings_of_start(start))
     if (const auto& value = now.at(record_pointer(own.name)); value != own.value)
       throw ConfigError(fmt::format("`{}` is {}, but {} in the model to start from; leave it out",
                                     own.name, value.dump(), own.value.dump()));

@@ -60,7 +60,7 @@ def opening_words(text):
 
 
 def headers_faults(rooms):
-    """Each room has one main header that says what the room uses; mcdbn.hpp has every public one."""
+    """Each room has one main header that lists what the room uses; mcdbn.hpp has every public one."""
     for room, uses in rooms.items():
         opening = f"// The room {room}:"
         heads = [text for folder in ("include/mcdbn", "src")
@@ -70,7 +70,7 @@ def headers_faults(rooms):
         if len(heads) != 1:
             yield f"src/{room}: {len(heads)} headers open with '{opening}', there must be one"
         elif f" It uses {', '.join(uses) or 'no other room'}. " not in opening_words(heads[0]):
-            yield f"src/{room}: its main header must say '// It uses {', '.join(uses)}.'"
+            yield f"src/{room}: its main header must contain '// It uses {', '.join(uses)}.'"
     public = pathlib.Path("include/mcdbn")
     listed = public.joinpath("mcdbn.hpp").read_text(encoding="utf-8")
     for path in sorted(public.glob("*/*.hpp")):

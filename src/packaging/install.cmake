@@ -19,7 +19,7 @@ install(FILES ${CMAKE_BINARY_DIR}/generated/mcdbn-config.cmake
               ${CMAKE_BINARY_DIR}/generated/mcdbn-config-version.cmake
         DESTINATION ${MCDBN_PACKAGE_DIR})
 
-# A static library leaves its own dependencies to whoever links it.
+# A static library leaves its own dependencies to the program that links it.
 set(dependencies "opencv4 clblast fmt spdlog tomlplusplus")
 set(libraries " -lceres")  # has no pkg-config file
 if(BUILD_SHARED_LIBS)

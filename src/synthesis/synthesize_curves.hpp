@@ -1,6 +1,6 @@
 #pragma once
 
-// Boost 1.74's pchip.hpp calls isnan without saying whose.
+// Boost 1.74's pchip.hpp calls isnan without a namespace.
 #include <math.h>  // NOLINT(modernize-deprecated-headers)
 
 #include <Eigen/Core>

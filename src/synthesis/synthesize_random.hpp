@@ -14,7 +14,7 @@ class Random : public RandomSequence {
   /// Independent streams for different keys (seed, subject, clip, …).
   explicit Random(std::initializer_list<std::uint64_t> keys) : RandomSequence(mixed_seed(keys)) {}
 
-  /// Normal, redrawn beyond 2 deviations so that nobody walks on stilts.
+  /// Normal, redrawn beyond 2 deviations, so that bodies stay plausible.
   double normal(double mean, double deviation);
 };
 

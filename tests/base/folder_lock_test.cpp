@@ -34,7 +34,7 @@ std::string refusal(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("a folder is locked for one at a time, who is said") {
+TEST_CASE("a folder is locked for one process at a time, which is named") {
   const test::ScratchFolder folder;
   {
     const FolderLock lock(folder / "");

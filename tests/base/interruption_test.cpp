@@ -7,9 +7,8 @@
 
 using namespace mcdbn;
 
-TEST_CASE(
-    "a call that runs interruptibly gives back what it holds before anyone hears of its end") {
-  constexpr int kOften = 2000;  // whoever is late is late now and then
+TEST_CASE("a call that runs interruptibly releases what it holds before it returns or throws") {
+  constexpr int kOften = 2000;  // a late release is late now and then
   const auto held = std::make_shared<int>(0);
   for (int i = 0; i < kOften; ++i) {
     run_interruptibly([held] { ++*held; });

@@ -1,4 +1,4 @@
-// Matrices from files of others and back, and what is said of damaged ones.
+// Matrices from files of others and back, and the messages about damaged ones.
 
 #include "mcdbn/base/matrix_file.hpp"
 
@@ -44,7 +44,7 @@ std::string header_of(const std::string& type, const std::string& shape, bool by
                      by_columns ? "True" : "False", shape);
 }
 
-/// What reading the file says; empty if it reads.
+/// The message of reading the file; empty if it is read.
 std::string complaint(const std::filesystem::path& path, const std::string& tensor = "") {
   try {
     read_matrix(path, tensor);
@@ -129,7 +129,7 @@ TEST_CASE("npy: every type of number, both orders, all versions") {
   CHECK(npy_matrix(npy_of(header_of("|u1", "(1, 1)"), "\xff")) == rows_of({{255}}));
 }
 
-TEST_CASE("npy: what is written is laid out as the format says") {
+TEST_CASE("npy: what is written is laid out as the format specifies") {
   const std::string bytes = npy_bytes(random_matrix(3, 2, 1));
   std::uint16_t length = 0;
   std::memcpy(&length, bytes.data() + 8, 2);
@@ -139,10 +139,10 @@ TEST_CASE("npy: what is written is laid out as the format says") {
   CHECK(bytes.size() == 10U + length + 6 * sizeof(float));
 }
 
-TEST_CASE("npy: damaged files are refused, saying what is wrong") {
+TEST_CASE("npy: damaged files are refused, and the message names what is wrong") {
   const ScratchFolder folder;
   const std::string six = bytes_of<float>({1, 2, 3, 4, 5, 6});
-  const auto says = [&](const std::string& bytes, const std::string& words) {
+  const auto check_refused = [&](const std::string& bytes, const std::string& words) {
     const auto path = folder.write("x.npy", bytes);
     CAPTURE(words);
     const std::string text = complaint(path);
@@ -150,29 +150,29 @@ TEST_CASE("npy: damaged files are refused, saying what is wrong") {
     CHECK(text.starts_with(": not a readable .npy file: "));
     CHECK(text.find(words) != std::string::npos);
   };
-  says("", "does not begin");
-  says("hello", "does not begin");
-  says("\x93NUMPY", "shorter than its header");
-  says(npy_of("{}", six), "no 'descr'");
-  says(npy_of(header_of("<f4", "(2, 3)"), six, 4), "version 4");
-  says(npy_of(header_of("<f4", "(2, 3)"), six).substr(0, 40), "shorter than its header");
-  says(npy_of(header_of("<f4", "(2, 4)"), six), "24 bytes of numbers, not 2 x 4");
-  says(npy_of(header_of("<f4", "(2, 2)"), six), "not 2 x 2");
-  says(npy_of(header_of("<f4", "(0, 3)"), six), "not 0 x 3");
-  says(npy_of(header_of("<f4", "(2, 3)"), six.substr(1)), "23 bytes");
-  says(npy_of(header_of("<f4", "(4611686018427387904, 4)"), ""), "0 bytes of numbers");
-  says(npy_of(header_of("<f4", "(1, 2, 3)"), six), "3 dimensions");
-  says(npy_of(header_of("<f4", "()"), six.substr(0, 4)), "0 dimensions");
-  says(npy_of(header_of(">f4", "(2, 3)"), six), "type '>f4'");
-  says(npy_of(header_of("<f2", "(2, 3)"), six), "type '<f2'");
-  says(npy_of(header_of("|O", "(2, 3)"), six), "type '|O'");
-  says(npy_of(header_of("<f4", "(-2, 3)"), six), "'shape' is not of whole numbers");
-  says(npy_of(header_of("<f4", "2"), six), "'shape' is no tuple");
-  says(npy_of("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (2, 3), }", six),
-       "records are not read");
-  says(npy_of("{'descr': '<f4', 'fortran_order': 0, 'shape': (2, 3), }", six),
-       "neither True nor False");
-  says(npy_of("{'descr': '<f4', 'fortran_order': ", six), "neither True nor False");
+  check_refused("", "does not begin");
+  check_refused("hello", "does not begin");
+  check_refused("\x93NUMPY", "shorter than its header");
+  check_refused(npy_of("{}", six), "no 'descr'");
+  check_refused(npy_of(header_of("<f4", "(2, 3)"), six, 4), "version 4");
+  check_refused(npy_of(header_of("<f4", "(2, 3)"), six).substr(0, 40), "shorter than its header");
+  check_refused(npy_of(header_of("<f4", "(2, 4)"), six), "24 bytes of numbers, not 2 x 4");
+  check_refused(npy_of(header_of("<f4", "(2, 2)"), six), "not 2 x 2");
+  check_refused(npy_of(header_of("<f4", "(0, 3)"), six), "not 0 x 3");
+  check_refused(npy_of(header_of("<f4", "(2, 3)"), six.substr(1)), "23 bytes");
+  check_refused(npy_of(header_of("<f4", "(4611686018427387904, 4)"), ""), "0 bytes of numbers");
+  check_refused(npy_of(header_of("<f4", "(1, 2, 3)"), six), "3 dimensions");
+  check_refused(npy_of(header_of("<f4", "()"), six.substr(0, 4)), "0 dimensions");
+  check_refused(npy_of(header_of(">f4", "(2, 3)"), six), "type '>f4'");
+  check_refused(npy_of(header_of("<f2", "(2, 3)"), six), "type '<f2'");
+  check_refused(npy_of(header_of("|O", "(2, 3)"), six), "type '|O'");
+  check_refused(npy_of(header_of("<f4", "(-2, 3)"), six), "'shape' is not of whole numbers");
+  check_refused(npy_of(header_of("<f4", "2"), six), "'shape' is no tuple");
+  check_refused(npy_of("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (2, 3), }", six),
+                "records are not read");
+  check_refused(npy_of("{'descr': '<f4', 'fortran_order': 0, 'shape': (2, 3), }", six),
+                "neither True nor False");
+  check_refused(npy_of("{'descr': '<f4', 'fortran_order': ", six), "neither True nor False");
 }
 
 TEST_CASE("csv: with and without a header, empty cells, spaces and line ends of others") {
@@ -186,7 +186,7 @@ TEST_CASE("csv: with and without a header, empty cells, spaces and line ends of 
   CHECK(read("a,b\n1,-2.5\n3e-2,4\n") == want);
   CHECK(read("1,b\n1,-2.5\n0.03,4\n") == want);
   CHECK(read("\xEF\xBB\xBF\"x y\",z\r\n +1 ,\t-2.5\r\n\r\n0.03,4\r\n\r\n") == want);
-  CHECK(read("a,b,c\n1,-2.5\n0.03,4\n") == want);  // a header may say more than there is
+  CHECK(read("a,b,c\n1,-2.5\n0.03,4\n") == want);  // a header may have more names than columns
   const MatrixF holes = read("1,,3\nnan,NaN,\n");
   CHECK(holes.array().isNaN().count() == 4);
   CHECK(holes(0, 2) == 3);
@@ -196,18 +196,18 @@ TEST_CASE("csv: with and without a header, empty cells, spaces and line ends of 
 
 TEST_CASE("csv: damaged files are refused by file and line") {
   const ScratchFolder folder;
-  const auto says = [&](const std::string& text, const std::string& words) {
+  const auto check_refused = [&](const std::string& text, const std::string& words) {
     CAPTURE(text);
     CHECK(complaint(folder.write("x.csv", text)) == words);
   };
-  says("", ": no numbers");
-  says("a,b\n", ": no numbers");
-  says("1,2\n3\n", ":2: 1 columns, 2 in the lines before it");
-  says("a,b\n\n1,2\n3,4,5\n", ":4: 3 columns, 2 in the lines before it");
-  says("1,2\n3,x\n", ":2: 'x' in column 2 is no number");
-  says("a,b\nc,d\n", ":2: 'c' in column 1 is no number");
-  says("1,2\n1;2\n", ":2: '1;2' in column 1 is no number");
-  says("1,2\n3,4x\n", ":2: '4x' in column 2 is no number");
+  check_refused("", ": no numbers");
+  check_refused("a,b\n", ": no numbers");
+  check_refused("1,2\n3\n", ":2: 1 columns, 2 in the lines before it");
+  check_refused("a,b\n\n1,2\n3,4,5\n", ":4: 3 columns, 2 in the lines before it");
+  check_refused("1,2\n3,x\n", ":2: 'x' in column 2 is no number");
+  check_refused("a,b\nc,d\n", ":2: 'c' in column 1 is no number");
+  check_refused("1,2\n1;2\n", ":2: '1;2' in column 1 is no number");
+  check_refused("1,2\n3,4x\n", ":2: '4x' in column 2 is no number");
   CHECK(complaint(folder / "absent.csv").find("cannot be opened") != std::string::npos);
 }
 
@@ -226,7 +226,7 @@ TEST_CASE("safetensors: the only tensor, or the one of a name") {
   write_safetensors(folder / "x.safetensors", content);
   CHECK(read_matrix(folder / "x.safetensors", "two") == two);
   CHECK(read_matrix(folder / "x.safetensors", "flat") == rows_of({{1}, {2}, {3}}));
-  CHECK(complaint(folder / "x.safetensors") == ": 4 tensors; say the name of one");
+  CHECK(complaint(folder / "x.safetensors") == ": 4 tensors; give the name of one");
   CHECK(complaint(folder / "x.safetensors", "cube") ==
         ": tensor cube has 3 dimensions; 2 are wanted");
   folder.write("y.safetensors", "hello");

@@ -54,7 +54,7 @@ TEST_CASE("what is no regular file is not replaced") {
   CHECK(test::entries_of(folder / "") == std::set<std::string>{"pipe", "link", "loop"});
 }
 
-TEST_CASE("the reason why a file cannot be written is said") {
+TEST_CASE("the reason why a file cannot be written is reported") {
   const test::ScratchFolder folder;
   const auto message = [&](const auto& write) -> std::string {
     try {
@@ -170,7 +170,7 @@ TEST_CASE("a batch does not replace what was read while it lives, from a folder 
     batch.put_in_place();
   }
   CHECK(read_text_file(other) == "new");
-  const OutputBatch next;  // knows nothing of the one before
+  const OutputBatch next;  // independent of the one before
   CHECK_NOTHROW(check_output(frame));
 }
 

@@ -76,7 +76,7 @@ std::string complaint(const ScratchFolder& folder, const std::string& bytes) {
   return "";
 }
 
-bool says(const std::string& text, const std::string& part) {
+bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("tensors and metadata come back from their file, bit for bit") {
   check_same(read_safetensors(folder / "x"), content);
 }
 
-TEST_CASE("the file is laid out as the format says") {
+TEST_CASE("the file is laid out as the format specifies") {
   const ScratchFolder folder;
   const Safetensors content = example();
   write_safetensors(folder / "x", content);
@@ -180,17 +180,17 @@ TEST_CASE("damaged files are refused by name, with what is wrong") {
   };
   CHECK(complaint(folder, file_of(entry("F32", "[2, 3]", "[0, 24]"), data)).empty());
   for (const char* dtype : {"F64", "BF16", "I32", ""})
-    CHECK(says(complaint(folder, file_of(entry(dtype, "[2, 3]", "[0, 24]"), data)), "F32"));
+    CHECK(contains(complaint(folder, file_of(entry(dtype, "[2, 3]", "[0, 24]"), data)), "F32"));
   // Data that end before the tensor does, or that are read from behind the end.
   const std::string offsets = ": x.data_offsets";
-  CHECK(says(complaint(folder, file_of(entry("F32", "[2, 3]", "[0, 24]"), data.substr(0, 23))),
-             offsets + "[1]: must be at least 0 and at most 23, not 24"));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[2, 3]", "[4, 28]"), data)), offsets));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[0]", "[25, 25]"), data)), offsets));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[2]", "[8, 0]"), data)), offsets));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[6]", "[0, 24, 24]"), data)), offsets));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[6]", "[0]"), data)), offsets));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[6]", "[-1, 24]"), data)), offsets));
+  CHECK(contains(complaint(folder, file_of(entry("F32", "[2, 3]", "[0, 24]"), data.substr(0, 23))),
+                 offsets + "[1]: must be at least 0 and at most 23, not 24"));
+  CHECK(contains(complaint(folder, file_of(entry("F32", "[2, 3]", "[4, 28]"), data)), offsets));
+  CHECK(contains(complaint(folder, file_of(entry("F32", "[0]", "[25, 25]"), data)), offsets));
+  CHECK(contains(complaint(folder, file_of(entry("F32", "[2]", "[8, 0]"), data)), offsets));
+  CHECK(contains(complaint(folder, file_of(entry("F32", "[6]", "[0, 24, 24]"), data)), offsets));
+  CHECK(contains(complaint(folder, file_of(entry("F32", "[6]", "[0]"), data)), offsets));
+  CHECK(contains(complaint(folder, file_of(entry("F32", "[6]", "[-1, 24]"), data)), offsets));
   // Bytes of no tensor, before, between and behind, and bytes of two.
   const auto two = [&](const std::string& first, const std::string& second) {
     return complaint(
@@ -201,23 +201,23 @@ TEST_CASE("damaged files are refused by name, with what is wrong") {
   };
   CHECK(two("[0, 8]", "[8, 16]").empty());
   CHECK(two("[8, 16]", "[0, 8]").empty());
-  CHECK(says(two("[0, 8]", "[4, 12]"), "'b': its numbers overlap those before them"));
-  CHECK(says(two("[0, 8]", "[0, 8]"), "'b': its numbers overlap"));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[2]", "[8, 16]"), data)), "leave a hole"));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[2]", "[0, 8]"), data)),
-             "16 bytes that belong to no tensor"));
+  CHECK(contains(two("[0, 8]", "[4, 12]"), "'b': its numbers overlap those before them"));
+  CHECK(contains(two("[0, 8]", "[0, 8]"), "'b': its numbers overlap"));
+  CHECK(contains(complaint(folder, file_of(entry("F32", "[2]", "[8, 16]"), data)), "leave a hole"));
+  CHECK(contains(complaint(folder, file_of(entry("F32", "[2]", "[0, 8]"), data)),
+                 "16 bytes that belong to no tensor"));
   // More or fewer bytes than the shape asks for.
   const std::string size = ": x.shape: is not that of the numbers that are there";
   for (const char* shape : {"[2, 2]", "[7]", "[]", "[2, 3, 2]", "[0, 6]",
                             "[4611686018427387904, 4]", "[4294967296, 4294967296, 6]"})
-    CHECK(says(complaint(folder, file_of(entry("F32", shape, "[0, 24]"), data)), size));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[2]", "[0, 9]"), data)), size));
+    CHECK(contains(complaint(folder, file_of(entry("F32", shape, "[0, 24]"), data)), size));
+  CHECK(contains(complaint(folder, file_of(entry("F32", "[2]", "[0, 9]"), data)), size));
   // A header that is no header.
-  CHECK(says(complaint(folder, ""), "shorter than its header"));
-  CHECK(says(complaint(folder, std::string(7, '\0')), "shorter than its header"));
-  CHECK(says(complaint(folder, file_of(entry("F32", "[2, 3]", "[0, 24]"), "").substr(0, 30)),
-             "shorter than its header"));
-  CHECK(says(complaint(folder, std::string(8, '\xff') + "{}"), "shorter than its header"));
+  CHECK(contains(complaint(folder, ""), "shorter than its header"));
+  CHECK(contains(complaint(folder, std::string(7, '\0')), "shorter than its header"));
+  CHECK(contains(complaint(folder, file_of(entry("F32", "[2, 3]", "[0, 24]"), "").substr(0, 30)),
+                 "shorter than its header"));
+  CHECK(contains(complaint(folder, std::string(8, '\xff') + "{}"), "shorter than its header"));
   CHECK_FALSE(complaint(folder, file_of("{", data)).empty());
   CHECK_FALSE(complaint(folder, file_of(R"({"x": {"dtype": "F32", "shape": [6]}})", data)).empty());
   CHECK_FALSE(complaint(folder, file_of(R"({"x": {"shape": [6], "data_offsets": [0, 24]}})", data))
@@ -239,8 +239,8 @@ TEST_CASE("a matrix is asked for by name and shape") {
       content.get(name, "the/file", rows, columns);
     } catch (const InputError& error) {
       const std::string text = error.what();
-      return says(text, "the/file") && says(text, name) && says(text, std::to_string(rows)) &&
-             says(text, std::to_string(columns));
+      return contains(text, "the/file") && contains(text, name) &&
+             contains(text, std::to_string(rows)) && contains(text, std::to_string(columns));
     }
     return false;
   };

@@ -30,7 +30,7 @@ Member at(Value& member) {
   return &member;
 }
 
-/// What a struct's visit() must say of one of its settings.
+/// What a struct's visit() must give for one of its settings.
 template <typename Settings>
 struct Expected {
   const char* name;

@@ -62,7 +62,7 @@ Eigen::VectorXd heights(const Track2d& track) {
   return Eigen::VectorXd::Constant(track.frames(), kHeight_px);
 }
 
-DetectorNoise silent() {
+DetectorNoise noiseless() {
   DetectorNoise none;
   visit_settings(none, [](const Setting& setting, double& value) {
     if (setting.range.contains(0)) value = 0;
@@ -109,20 +109,20 @@ bool same(const Track2d& a, const Track2d& b) {
 
 }  // namespace
 
-TEST_CASE("a detector without noise says where joints are") {
+TEST_CASE("a detector without noise gives the joints' places") {
   const Track2d exact = standing(50);
-  CHECK(same(detected(exact, silent(), 1), exact));
+  CHECK(same(detected(exact, noiseless(), 1), exact));
 }
 
 TEST_CASE("each part of a detector's noise has the deviation and the duration of its setting") {
   const Track2d exact = standing(6000);
-  DetectorNoise jitter = silent();
+  DetectorNoise jitter = noiseless();
   jitter.jitter = 0.01;
   const Track2d jittered = detected(exact, jitter, 1);
   CHECK(rms_of_all(jittered, exact) == doctest::Approx(0.01).epsilon(0.02));
   CHECK(rms_change(jittered, exact, 1) == doctest::Approx(0.01 * std::sqrt(2)).epsilon(0.02));
 
-  DetectorNoise drift = silent();
+  DetectorNoise drift = noiseless();
   drift.drift = 0.01;
   drift.drift_s = 0.5;
   const Track2d drifted = detected(exact, drift, 2);
@@ -132,7 +132,7 @@ TEST_CASE("each part of a detector's noise has the deviation and the duration of
     CHECK(rms_change(drifted, exact, lag) ==
           doctest::Approx(0.01 * std::sqrt(2 * (1 - std::exp(-lag / 15.0)))).epsilon(0.07));
 
-  DetectorNoise bias = silent();
+  DetectorNoise bias = noiseless();
   bias.bias = 0.01;
   bias.bias_s = 1e6;
   double sum = 0;
@@ -147,7 +147,7 @@ TEST_CASE("each part of a detector's noise has the deviation and the duration of
 }
 
 TEST_CASE("noise does not hang on the frame rate, but for what is new in every frame") {
-  DetectorNoise noise = silent();
+  DetectorNoise noise = noiseless();
   noise.drift = 0.01;
   const Track2d slow = standing(4000, 30), fast = standing(16000, 120);
   CHECK(rms_change(detected(slow, noise, 1), slow, 3) ==
@@ -159,11 +159,11 @@ TEST_CASE("noise grows with speed") {
   // One body height a second, there and back.
   for (int t = 0; t < exact.frames(); ++t)
     exact.x_px.row(t).array() += kHeight_px / 30.0 * (t % 400 < 200 ? t % 200 : 200 - t % 200);
-  DetectorNoise noise = silent();
+  DetectorNoise noise = noiseless();
   noise.jitter = 0.002;
   noise.jitter_speed = 0.004;
   CHECK(rms_of_all(detected(exact, noise, 1), exact) == doctest::Approx(0.006).epsilon(0.03));
-  noise = silent();
+  noise = noiseless();
   noise.drift = 0.01;
   noise.drift_speed = 0.5;
   CHECK(rms_of_all(detected(exact, noise, 1), exact) == doctest::Approx(0.015).epsilon(0.06));
@@ -171,12 +171,12 @@ TEST_CASE("noise grows with speed") {
 
 TEST_CASE("what is hidden is less sure: further off, lost and astray more often, less confident") {
   const Track2d exact = standing(4000);
-  DetectorNoise noise = silent();
+  DetectorNoise noise = noiseless();
   noise.hidden = 0.02;
   CHECK(rms_of_all(detected(exact, noise, 1, true), exact) == doctest::Approx(0.02).epsilon(0.08));
   CHECK(same(detected(exact, noise, 1, false), exact));
 
-  noise = silent();
+  noise = noiseless();
   noise.lost = 0.05;
   noise.lost_hidden = 0.3;
   const auto missing = [&](bool hidden) {
@@ -188,16 +188,16 @@ TEST_CASE("what is hidden is less sure: further off, lost and astray more often,
   CHECK(missing(false) == doctest::Approx(0.05).epsilon(0.1));
   CHECK(missing(true) == doctest::Approx(0.3).epsilon(0.05));
 
-  noise = silent();
+  noise = noiseless();
   noise.confidence = 0.8;
   noise.confidence_hidden = 0.4;
   CHECK(detected(exact, noise, 4, false).confidence.mean() == doctest::Approx(0.8));
   CHECK(detected(exact, noise, 4, true).confidence.mean() == doctest::Approx(0.4));
 }
 
-TEST_CASE("joints go astray in the share and for the time that are set, and say so") {
+TEST_CASE("joints go astray in the share, for the time and with the confidence that are set") {
   const Track2d exact = standing(20000);
-  DetectorNoise noise = silent();
+  DetectorNoise noise = noiseless();
   noise.stray = 0.01;
   noise.stray_hands = 0.1;
   noise.stray_size = 0.2;
@@ -222,7 +222,7 @@ TEST_CASE("joints go astray in the share and for the time that are set, and say 
                       kHeight_px);
     }
   }
-  // Half a frame more than the setting says: time comes in frames.
+  // Half a frame more than is set: time comes in frames.
   CHECK(0.1 * 2 * 20000 / 30 / episodes == doctest::Approx(0.2).epsilon(0.2));
   std::ranges::sort(sizes);
   CHECK(sizes[sizes.size() / 2] == doctest::Approx(0.2).epsilon(0.1));
@@ -233,7 +233,7 @@ TEST_CASE("legs that are close are swapped in the share that is set, all that th
   for (const int left : {kLeftKnee, kLeftAnkle})  // 10 px apart: close
     exact.x_px.col(left == kLeftKnee ? kRightKnee : kRightAnkle) =
         exact.x_px.col(left).array() + 10.0;
-  DetectorNoise noise = silent();
+  DetectorNoise noise = noiseless();
   noise.swapped_legs = 0.2;
   const Track2d track = detected(exact, noise, 6);
   const auto moved = [&](Eigen::Index column) {
@@ -249,13 +249,13 @@ TEST_CASE("legs that are close are swapped in the share that is set, all that th
     CHECK(track.x_px(t, kRightAnkle) == exact.x_px(t, kLeftAnkle));
   }
   for (const int other : {0, kLeftWrist, kRightWrist}) CHECK(!moved(other).any());
-  noise = silent();
+  noise = noiseless();
   noise.swapped_arms = 0.2;
   CHECK(same(detected(exact, noise, 6), exact));  // they are 41 px apart: not close
   exact.x_px.col(kRightWrist) = exact.x_px.col(kLeftWrist).array() + 1.0;
   CHECK(!same(detected(exact, noise, 6), exact));
   exact = standing(2000);
-  noise = silent();
+  noise = noiseless();
   noise.swapped_legs = 0.5;
   for (const int joint : {kRightKnee, kRightAnkle}) exact.x_px.col(joint).array() += 300.0;
   CHECK(same(detected(exact, noise, 6), exact));

@@ -72,7 +72,7 @@ TEST_CASE("a keypoint lies off its joint as a standing body has it, and turns wi
   CHECK(place(places, 0, 4).array().isNaN().all());                      // it has no toes
 }
 
-TEST_CASE("where the rest pose does not stand, the clip tells how joints are turned") {
+TEST_CASE("where the rest pose does not stand, the joints' axes follow from the clip") {
   const Motion motion = test::standing_still(test::role_body(), 3);
   const SkeletonRoles roles = test::roles_of_role_body();
   const Eigen::Matrix3d turn = (Eigen::AngleAxisd(1.6, Eigen::Vector3d::UnitZ()) *

@@ -79,7 +79,7 @@ TEST_CASE("keypoint map: with the true answer every joint is where it is") {
   }
 }
 
-TEST_CASE("keypoint map: before an answer, what hips and shoulders tell of left and up is used") {
+TEST_CASE("keypoint map: before an answer, left and up follow from hips and shoulders") {
   const Scene scene;
   const double height_px = 0.9 * scene.camera.height_px;
   for (const auto& keypoints : {body_25_keypoints(), coco_keypoints()}) {
@@ -125,7 +125,7 @@ TEST_CASE("keypoint map: what is not seen is missing, and others stand in") {
   }
 }
 
-TEST_CASE("keypoint map: what only other joints tell of is no evidence") {
+TEST_CASE("keypoint map: what follows from other joints alone is no evidence") {
   const Scene scene;
   for (auto keypoints : {coco_keypoints(), body_25_keypoints()}) {
     const auto hidden = [&](const char* name) {
@@ -145,7 +145,7 @@ TEST_CASE("keypoint map: what only other joints tell of is no evidence") {
   }
 }
 
-TEST_CASE("keypoint map: too little of a body is said to be too little") {
+TEST_CASE("keypoint map: too little of a body is refused") {
   const Scene scene;
   auto upper = coco_keypoints();
   std::erase_if(upper, [](const Keypoint& place) { return place.name.ends_with("_hip"); });

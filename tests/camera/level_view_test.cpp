@@ -67,7 +67,7 @@ TEST_CASE("level view: pitch and roll are taken out, the heading stays") {
   CHECK((level_rotation(camera_rotation(20, 5)) * Eigen::Vector3d(0, -1, 0) -
          Eigen::Vector3d::UnitY())
             .norm() < 1e-12);
-  // Straight down and straight up: the image's upper edge says where ahead is, or the lower one.
+  // Straight down and straight up: ahead is towards the image's upper edge, or the lower one.
   for (const double elevation_deg : {90.0, -90.0})
     CHECK(largest(level_rotation(camera_rotation(33, elevation_deg)) - camera_rotation(33, 0)) <
           1e-9);

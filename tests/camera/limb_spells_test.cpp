@@ -1,4 +1,4 @@
-// Where limbs come back into sight: what of them hangs on how long they were out of it.
+// Where limbs are seen again: which are followed depends on how long they were hidden.
 
 #include "camera/limb_spells.hpp"
 
@@ -13,7 +13,7 @@ using namespace mcdbn::test;
 
 namespace {
 
-/// Two seconds of a detector that sees all of somebody.
+/// Two seconds of a detector that sees a whole person.
 Track2d all_seen() {
   Track2d track;
   track.keypoints = coco_keypoints();
@@ -32,7 +32,7 @@ void hide(Track2d& track, const std::string& side, const std::vector<std::string
 
 }  // namespace
 
-TEST_CASE("limb spells: only limbs that are out of sight for longer than joints are followed") {
+TEST_CASE("limb spells: only limbs that are hidden for longer than joints are followed") {
   CHECK(limb_spells(all_seen()).empty());
   Track2d track = all_seen();
   for (const char* side : {"left", "right"}) hide(track, side, {"knee", "ankle"}, 20, 6);

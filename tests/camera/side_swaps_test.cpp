@@ -115,7 +115,7 @@ TEST_CASE("side swaps: every setting counts, and a track without keypoints is le
   CHECK(find_side_swaps(track, {.most_surprise = 0.001}).empty());
   CHECK(find_side_swaps(track, {.swapped_cost_per_s = 10}).empty());
   CHECK_THROWS_AS(find_side_swaps(track, {.switch_cost = 0}), ConfigError);
-  // Seen in two frames of three only: nothing can be said of velocities without bridging.
+  // Seen in two frames of three only: no velocities without bridging.
   for (int t = 0; t < track.frames(); t += 3) track.confidence.row(t).setZero();
   CHECK(described(find_side_swaps(track)).starts_with("legs swapped in frames "));
   CHECK(find_side_swaps(track, {.longest_gap_s = 0.01}).empty());

@@ -52,13 +52,13 @@ TEST_CASE("damage: each kind does its own, as much as asked for") {
   const auto differs = [](const Track2d& a, const Track2d& b) { return a.x_px != b.x_px; };
   CHECK(differs(damaged({3, 0, 0}, 1), damaged({3, 0, 0}, std::uint64_t{1} << 32U)));
   CHECK(differs(damaged({3, 0, 0}, 1), damaged({3, 0, 0}, 1 + (std::uint64_t{1} << 32U))));
-  // Not the seed itself: whoever sees the track may draw with that one.
+  // Not the seed itself: what reads the track may draw with that one.
   Track2d plain = whole;
   add_pixel_noise(plain, 3, 1);
   CHECK(differs(plain, noisy));
 }
 
-TEST_CASE("damage: a limb is out of sight for 0.3 to 1.5 seconds, about every other second") {
+TEST_CASE("damage: a limb is hidden for 0.3 to 1.5 seconds, about every other second") {
   const Skeleton body = test::small_body();
   const auto any_hidden = [&](int frames, double fps, std::uint64_t seed) {
     Track2d track = track_at(fps);
@@ -69,7 +69,7 @@ TEST_CASE("damage: a limb is out of sight for 0.3 to 1.5 seconds, about every ot
     for (int t = 0; t < frames; ++t) hidden.push_back((track.confidence.row(t).array() == 0).any());
     return hidden;
   };
-  // In less than three seconds once: what touches no end is a whole time out of sight.
+  // Once in less than three seconds: where it touches no end, its whole time is seen.
   double shortest_s = 9, longest_s = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const std::vector<bool> hidden = any_hidden(290, 100, seed);

@@ -54,7 +54,7 @@ TEST_CASE("joints go missing in the share that was asked for, the same for the s
   }
 }
 
-TEST_CASE("limbs go out of sight with all that hangs from them, at most a third of the joints") {
+TEST_CASE("limbs are hidden with all that hangs from them, at most a third of the joints") {
   const Skeleton body = test::small_body();
   const Track2d whole = track_of(240);
   std::set<int> seen_hidden;

@@ -32,7 +32,7 @@ void move(Track2d& track, int first, int frames, double heights) {
 
 }  // namespace
 
-TEST_CASE("stretches: one who goes on is one, whoever comes and goes") {
+TEST_CASE("stretches: a person who goes on is one, whatever joints come and go") {
   Track2d track = walking(90);
   CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 90}});
   track.confidence.middleRows(20, 30).setZero();
@@ -48,7 +48,7 @@ TEST_CASE("stretches: who is suddenly elsewhere begins another") {
   Track2d track = walking(90);
   move(track, 40, 50, 1.1);
   CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 40}, {40, 50}});
-  // The frames between in which nobody is seen are the former's.
+  // Frames between that show no person belong to the former.
   track.confidence.middleRows(37, 3).setZero();
   move(track, 40, 50, 1);
   const TrackStretches found = find_stretches(track);
@@ -62,7 +62,7 @@ TEST_CASE("stretches: who is suddenly elsewhere begins another") {
   CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 90}});
 }
 
-TEST_CASE("stretches: no runner is cut in two, and nothing where nobody stays") {
+TEST_CASE("stretches: no runner is cut in two, and nothing where no person stays") {
   Track2d track = walking(90);
   for (int t = 0; t < 90; ++t) move(track, t, 1, 6.0 * t / track.fps);
   CHECK(find_stretches(track).stretches.size() == 1);
@@ -98,7 +98,7 @@ TEST_CASE("stretches: some frames elsewhere are strays, and the others are one")
   CHECK(track.y_px.row(60).array().isNaN().all());
 }
 
-TEST_CASE("stretches: of a detector's joints those of the limbs tell") {
+TEST_CASE("stretches: of a detector's joints those of the limbs decide") {
   Track2d track = walking(90);
   track.keypoints.resize(5);
   using enum JointRole;

@@ -60,7 +60,7 @@ TEST_CASE("track summary: jitter is the deviation of the noise, and no motion") 
   CHECK(std::isnan(summarize(straight_track(2, 5)).jitter_px));
 }
 
-TEST_CASE("track summary: a track in which nobody is seen") {
+TEST_CASE("track summary: a track that shows no person") {
   Track2d track = straight_track(3, 1);
   for (int frame = 0; frame < 3; ++frame) lose(track, frame, 0);
   const TrackSummary summary = summarize(track);

@@ -93,7 +93,7 @@ std::vector<BenchRow> bench_rows() {
   return rows;
 }
 
-/// What it says of a step is what was measured, and follows from the time.
+/// A step's figures are what was measured, and follow from the time.
 void check_bench_step(json step, const BenchRow& row, double peak_gflops) {
   CAPTURE(step.dump());
   const auto take = [&](const char* name) {
@@ -156,17 +156,17 @@ static std::string two_people() {
   return entries.dump();
 }
 
-TEST_CASE("info: every option changes what its help says") {
+TEST_CASE("info: every option changes what its help describes") {
   const ScratchFolder folder;
   const fs::path clip = folder.write("clip.bvh", small_bvh(6));
   const fs::path track = folder.write("track.json", two_people());
-  const auto told = [&](const std::string& options) {
+  const auto info_of = [&](const std::string& options) {
     const CliResult result = run_cli("info --json " + track.string() + options);
     CAPTURE(result.standard_error);
     REQUIRE(result.exit_code == 0);
     return json::parse(result.standard_output);
   };
-  const json plain = told("");
+  const json plain = info_of("");
   CHECK(plain.at("format") == "coco");
   CHECK(plain.at("joint_set") == "COCO_17");
   CHECK(plain.at("roles").at("left_knee") == "left_knee");
@@ -188,29 +188,29 @@ TEST_CASE("info: every option changes what its help says") {
         }},
        {"--format",
         [&] {
-          CHECK(told(" --format coco") == plain);
+          CHECK(info_of(" --format coco") == plain);
           const CliResult other = run_cli("info --format sleap " + track.string());
           CHECK(other.exit_code == 3);
           CHECK(other.standard_error.find("no column frame_idx") != std::string::npos);
         }},
        {"--person",
         [&] {
-          const json second = told(" --person 2").at("people");
+          const json second = info_of(" --person 2").at("people");
           CHECK(second == json::array({plain.at("people")[1]}));
-          CHECK(told(" --person all") == plain);
+          CHECK(info_of(" --person all") == plain);
           CHECK(run_cli("info --person 3 " + track.string()).exit_code == 3);
           CHECK(run_cli("info --person tall " + track.string()).exit_code == 2);
         }},
        {"--fps",
         [&] {
-          CHECK(told(" --fps 50").at("fps") == 50);
-          CHECK(told(" --fps 50").at("duration_s") == 0.8);
+          CHECK(info_of(" --fps 50").at("fps") == 50);
+          CHECK(info_of(" --fps 50").at("duration_s") == 0.8);
         }},
        {"--image-size",
         [&] {
-          const json said = told(" --image-size 1000 800");
-          CHECK(said.at("width_px") == 1000);
-          CHECK(said.at("height_px") == 800);
+          const json sized = info_of(" --image-size 1000 800");
+          CHECK(sized.at("width_px") == 1000);
+          CHECK(sized.at("height_px") == 800);
         }},
        {"--json", [&] {
           const CliResult result = run_cli("info --json " + clip.string());
@@ -218,7 +218,7 @@ TEST_CASE("info: every option changes what its help says") {
         }}});
 }
 
-TEST_CASE("info says of a model what it was trained with") {
+TEST_CASE("info gives a model's training settings") {
   if (!have_device()) return;
   const fs::path model = TinyPipeline::instance().model();
   const json about = json::parse(run_cli("info --json " + model.string()).standard_output);
@@ -239,7 +239,7 @@ TEST_CASE("info says of a model what it was trained with") {
   CHECK(text.starts_with("camera.azimuth        30\n"));
 }
 
-TEST_CASE("devices: every option changes what its help says") {
+TEST_CASE("devices: every option changes what its help describes") {
   if (!have_device()) return;
   check_options("devices",
                 {{"--json", [] {
@@ -269,7 +269,7 @@ TEST_CASE("devices: every option changes what its help says") {
                   }}});
 }
 
-TEST_CASE("bench: every option changes what its help says") {
+TEST_CASE("bench: every option changes what its help describes") {
   if (!have_device()) return;
   std::vector<OptionRow> rows = {
       {"--json",

@@ -15,7 +15,7 @@
 using namespace mcdbn::test;
 namespace fs = std::filesystem;
 
-TEST_CASE("corpus: every option changes what its help says") {
+TEST_CASE("corpus: every option changes what its help describes") {
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;
   const std::string broken = folder.write("broken.bvh", "HIERARCHY\n").string();
@@ -58,7 +58,7 @@ TEST_CASE("corpus: every option changes what its help says") {
         }},
        {"--joint-map",
         [&] {
-          // The ankle that is said to be a knee is nobody's ankle.
+          // An ankle that is mapped to a knee is no ankle any more.
           const fs::path map = folder.write("map.toml", "left_knee = \"LeftFoot\"\n");
           const auto json = nlohmann::json::parse(
               run_cli(fmt::format("{} --json --joint-map '{}'", data, map.string()))

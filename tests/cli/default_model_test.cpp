@@ -33,7 +33,7 @@ TEST_CASE("the default model: small, whom to thank, and nothing of the machine i
     CHECK(clip.at("path").get<std::string>().find('/') == std::string::npos);
 }
 
-TEST_CASE("the default model: info, regenerate and evaluate take it and say so") {
+TEST_CASE("the default model: info, regenerate and evaluate take it and report it") {
   const CliResult info = run_cli("info --json");
   REQUIRE(info.exit_code == 0);
   CHECK(nlohmann::json::parse(info.standard_output).contains("acknowledgement"));

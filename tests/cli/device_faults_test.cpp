@@ -1,4 +1,4 @@
-// What the command says of a device that fails, and what it keeps.
+// The command's messages about a device that fails, and what it keeps.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 

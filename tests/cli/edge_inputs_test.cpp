@@ -80,7 +80,7 @@ TEST_CASE("a clip in which nothing moves trains beside others, and its track is 
   CHECK(answer.channels.allFinite());
 }
 
-TEST_CASE("a track that shows nobody is described, and refused by its name") {
+TEST_CASE("a track that shows no person is described, and refused by its name") {
   if (!have_device()) return;
   const ScratchFolder folder;
   const TinyPipeline& pipeline = TinyPipeline::instance();
@@ -95,7 +95,7 @@ TEST_CASE("a track that shows nobody is described, and refused by its name") {
   CHECK(!fs::exists(out));
 }
 
-TEST_CASE("a track that jumps to another person: info and regenerate say where") {
+TEST_CASE("a track that jumps to another person: info and regenerate report where") {
   if (!have_device()) return;
   const ScratchFolder folder;
   const fs::path clip = TinyPipeline::instance().motion() / "walk_s02_01.bvh",
@@ -107,8 +107,9 @@ TEST_CASE("a track that jumps to another person: info and regenerate say where")
   track.x_px.bottomRows(track.frames() - half).array() += track.width_px;
   track.y_px.row(5).array() -= 2 * track.height_px;
   write_track_csv(csv, track);
-  const auto told = nlohmann::json::parse(run_cli("info --json " + csv.string()).standard_output);
-  CHECK(told.at("people")[0].at("jumps_to_frames") == nlohmann::json{half});
+  const auto described =
+      nlohmann::json::parse(run_cli("info --json " + csv.string()).standard_output);
+  CHECK(described.at("people")[0].at("jumps_to_frames") == nlohmann::json{half});
   const std::string model = TinyPipeline::instance().model().string();
   const std::string call =
       fmt::format("regenerate --model {} --input {} -o {}", model, csv.string(), out.string());
@@ -116,6 +117,6 @@ TEST_CASE("a track that jumps to another person: info and regenerate say where")
             fmt::format("track.csv: jumps to another place, as if to another person: frames 0-{}, "
                         "{}-{} are regenerated each by themselves",
                         half - 1, half, track.frames() - 1));
-  check_run(call, 0, "track.csv: somebody elsewhere in frames 5: left out");
+  check_run(call, 0, "track.csv: another person in frames 5: left out");
   CHECK(read_bvh(out).frames() == track.frames());
 }

@@ -94,7 +94,7 @@ TEST_CASE("evaluate scores what regenerate writes, against the test clip's own f
         doctest::Approx(acceleration).epsilon(0.02));
   found["acceleration_error_mm_s2"] = acceleration;
   const double within =
-      found.at("within_90");  // the network says how sure it is, without a fit too
+      found.at("within_90");  // the network gives its uncertainty, without a fit too
   CHECK(within > 0);
   CHECK(within < 1);
   found.erase("within_90");

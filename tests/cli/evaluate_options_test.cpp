@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What may be said; the library's run takes the same.
+/// What may be given; the library's run takes the same.
 struct Call {
   fs::path model = {};
   std::vector<fs::path> test = {};
@@ -45,7 +45,7 @@ struct Views {
   std::vector<mcdbn::MatrixF> tracks = {}, poses = {};
 };
 
-/// The summary; without what baselines say, which take longer than all the rest, unless there are
+/// The summary; without the baselines, which take longer than all the rest, unless there are
 /// views for them.
 json by_library(const Call& call, const std::optional<Views>& views = {}) {
   const mcdbn::Model model = load_model(usual_device(), call.model);
@@ -92,7 +92,7 @@ json by_library(const Call& call, const std::optional<Views>& views = {}) {
 Views views_of_training(const fs::path& model) {
   const TinyPipeline& pipeline = TinyPipeline::instance();
   mcdbn::TrainingConfig config;
-  config.augment.views = 1;  // as kTiny says
+  config.augment.views = 1;  // as in kTiny
   mcdbn::TrainingSet views =
       make_augmented_views(mcdbn::load_clips({pipeline.motion() / "walk_s01_01.bvh",
                                               pipeline.motion() / "walk_s01_02.bvh"}),
@@ -115,7 +115,7 @@ json by_program(const Call& call, const std::string& options) {
                   call.model.string(), call.uncertainty_draws, clips, options));
   CAPTURE(result.standard_error);
   REQUIRE(result.exit_code == 0);
-  // That a calibration pose was dropped is said, and no more.
+  // That a calibration pose was dropped is reported, and no more.
   const bool calibrated = std::ranges::any_of(call.test, [](const fs::path& clip) {
     return clip.parent_path().filename() == "calibrated";
   });
@@ -129,8 +129,8 @@ json by_program(const Call& call, const std::string& options) {
 
 }  // namespace
 
-/// Rows of what makes the tracks of a detector. All are said at once: each row then says that its
-/// own option did something.
+/// Rows of what makes the tracks of a detector. All are given at once: each row then checks that
+/// its own option did something.
 std::vector<OptionRow> detector_rows() {
   const TinyPipeline& pipeline = TinyPipeline::instance();
   Call usual;
@@ -150,14 +150,14 @@ std::vector<OptionRow> detector_rows() {
       {"--detector-fov-to", &Cameras::fov_to_deg, 90},
       {"--detector-distance-from", &Cameras::distance_from_m, 4},
       {"--detector-distance-to", &Cameras::distance_to_m, 30}};
-  std::string said =
+  std::string given =
       "--baselines none --tracks detector --like mediapipe --camera-unknown --person-height 0.2 "
       "--person-proportions 0.2";
   for (const auto& [option, setting, value] : cameras) {
     all.cameras.*setting = value;
-    said += fmt::format(" {} {}", option, value);
+    given += fmt::format(" {} {}", option, value);
   }
-  const json found = without_baselines(by_program(all, said));
+  const json found = without_baselines(by_program(all, given));
   CHECK(found == without_baselines(by_library(all)));
   const auto row = [=](const std::string& option, const std::function<void(Call&)>& undo) {
     return OptionRow{option, [=] {
@@ -187,7 +187,7 @@ std::vector<OptionRow> detector_rows() {
   return rows;
 }
 
-TEST_CASE("evaluate: every option changes what its help says") {
+TEST_CASE("evaluate: every option changes what its help describes") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;
@@ -206,7 +206,7 @@ TEST_CASE("evaluate: every option changes what its help says") {
   all.azimuth_deg = 55;
   all.elevation_deg = 20;
   all.damage = {2, 0.1, 0.3};
-  // Everything at once: each row then says that its own option did something.
+  // Everything at once: each row then checks that its own option did something.
   const fs::path report = folder / "report";
   const json summary = by_program(
       all, fmt::format("--actions by-folder --keep-first-frame --include-training --fit none "
@@ -292,12 +292,12 @@ TEST_CASE("evaluate: every option changes what its help says") {
       {"--protocol", [&] { CHECK(refused("--protocol other", 2)); }},
       {"--platform", [&] { CHECK(refused("--platform no-such-name", 4)); }},
       {"--device", [&] { CHECK(refused("--device no-such-name", 4)); }},
-      {"--quiet", [] {}}};  // by_program says it, and the next test case does not
+      {"--quiet", [] {}}};  // by_program gives it, and the next test case does not
   for (OptionRow& of_detector : detector_rows()) rows.push_back(std::move(of_detector));
   check_options("evaluate", rows);
 }
 
-TEST_CASE("evaluate: what holds where an option is not said, and the text for people") {
+TEST_CASE("evaluate: what holds where an option is not given, and the text for people") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   Call call;

@@ -18,16 +18,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Another value than the default for each setting, with its flag as it is said: a setting more is
+/// Another value than the default for each setting, with its flag as it is given: a setting more is
 /// a row more.
-struct SaidSetting {
+struct GivenSetting {
   std::string name, flag;
   json value;
   bool is_switch;
 };
 
-std::vector<SaidSetting> said_settings() {
-  std::vector<SaidSetting> said;
+std::vector<GivenSetting> given_settings() {
+  std::vector<GivenSetting> given;
   const mcdbn::MachineSettings usual;
   mcdbn::visit_settings(usual, [&](const mcdbn::Setting& setting, const auto& value) {
     std::string flag = setting.name;
@@ -38,20 +38,20 @@ std::vector<SaidSetting> said_settings() {
       flag = (value ? "--no-" : "--") + flag;
     } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
       const double more =
-          value == 0 ? 1e-3 : value * (1.0 + 1e-3 * static_cast<double>(said.size()));
+          value == 0 ? 1e-3 : value * (1.0 + 1e-3 * static_cast<double>(given.size()));
       other = setting.range.contains(more) ? more : 0.5 * value;
       flag = fmt::format("--{} {}", flag, other.get<double>());
     } else {
       other = setting.name == "hidden" ? 5 : setting.name.ends_with("epochs") ? 2 : value + 1;
       flag = fmt::format("--{} {}", flag, other.template get<std::size_t>());
     }
-    said.push_back({setting.name, flag, other, other.is_boolean()});
+    given.push_back({setting.name, flag, other, other.is_boolean()});
   });
-  return said;
+  return given;
 }
 
-/// One run has all of them (but for what only a machine without history learns), and its file says
-/// so.
+/// One run has all of them (but for what only a machine without history learns), and its file
+/// records them.
 std::vector<OptionRow> setting_option_rows() {
   const ScratchFolder folder;
   const auto config_of = [&](const std::string& options) {
@@ -59,24 +59,24 @@ std::vector<OptionRow> setting_option_rows() {
     output_of("fit " + FittedMachines::instance().values() + " -o " + file + " --quiet" + options);
     return mcdbn::describe_machine(file).at("config");
   };
-  const auto without_history = [](const SaidSetting& one) {
+  const auto without_history = [](const GivenSetting& one) {
     return one.name.ends_with("deviation-rate");
   };
   std::string flags, other_flags;
-  for (const SaidSetting& one : said_settings())
+  for (const GivenSetting& one : given_settings())
     (without_history(one) ? other_flags : flags) += " " + one.flag;
   const json config = config_of(" --machine cdbn" + flags),
              other =
                  config_of(" --machine gaussian-rbm --hidden 5 --gaussian-epochs 2" + other_flags);
   std::vector<OptionRow> rows;
-  for (const SaidSetting& one : said_settings()) {
+  for (const GivenSetting& one : given_settings()) {
     std::string pointer = "/" + one.name;
     std::replace(pointer.begin(), pointer.end(), '.', '/');
     const json recorded = (without_history(one) ? other : config).at(json::json_pointer(pointer));
     const std::string flag = one.flag.substr(0, one.flag.find(' '));
     rows.push_back({flag, [recorded, value = one.value] { CHECK(recorded == value); }});
     if (!one.is_switch) continue;
-    // What it is unless it is said.
+    // What it is unless it is given.
     const std::string opposite =
         flag.starts_with("--no-") ? "--" + flag.substr(5) : "--no-" + flag.substr(2);
     const json usual =
@@ -119,7 +119,7 @@ TEST_CASE("fit: every kind of machine, its sizes, its metrics") {
   }
 }
 
-TEST_CASE("fit: every option changes what its help says") {
+TEST_CASE("fit: every option changes what its help describes") {
   if (!have_device()) return;
   const FittedMachines& machines = FittedMachines::instance();
   const ScratchFolder folder;
@@ -217,8 +217,8 @@ TEST_CASE("fit: an MRBM of three modalities, and one of them inferred from the o
   check_refused(infer + " --infer b", 2, "wants what is given");
   check_refused(infer + " --modality a=" + path("a.npy") + " --infer w", 2, "none of that name");
   check_refused(infer + " --modality a=" + path("a.npy") + " --infer a", 2, "it is given");
-  check_refused(infer + " --modality a=" + path("a.npy"), 2, "--modality: of --infer");
-  check_refused(infer + " " + machines.bits(), 3, "an MRBM; its data are said by --modality");
+  check_refused(infer + " --modality a=" + path("a.npy"), 2, "--modality is for --infer");
+  check_refused(infer + " " + machines.bits(), 3, "an MRBM; its data are given by --modality");
 }
 
 TEST_CASE("fit: a settings file, over which flags have the last word") {
@@ -232,12 +232,12 @@ TEST_CASE("fit: a settings file, over which flags have the last word") {
     output_of(fit + options);
     return mcdbn::read_text_file(folder / "m.safetensors");
   };
-  const std::string said = fitted(" --seed 3 --config " + path("fit.toml"));
+  const std::string with_file = fitted(" --seed 3 --config " + path("fit.toml"));
   const json config = mcdbn::describe_machine(path("m.safetensors")).at("config");
   CHECK(config.at("hidden") == 4);
   CHECK(config.at("seed") == 3);
   CHECK(config.at("gaussian").at("rate") == 0.002);
-  CHECK(said == fitted(" --hidden 4 --seed 3 --gaussian-rate 0.002 --gaussian-epochs 2"));
+  CHECK(with_file == fitted(" --hidden 4 --seed 3 --gaussian-rate 0.002 --gaussian-epochs 2"));
   folder.write("fit.toml", "hidden = 4\nhiden = 9\n");
   check_refused(fit + " --config " + path("fit.toml"), 2, "fit.toml:2: hiden is no setting");
   folder.write("fit.toml", "\n[gaussian]\nrate = -1\n");
@@ -295,7 +295,7 @@ TEST_CASE("fit: data and flags that do not fit are refused") {
   CHECK(!fs::exists(folder / "m.safetensors"));
 }
 
-TEST_CASE("fit: a rate that is too high trips the guard, which says what to lower") {
+TEST_CASE("fit: a rate that is too high trips the guard, which names what to lower") {
   if (!have_device()) return;
   const ScratchFolder folder;
   const std::string file = (folder / "m.safetensors").string();

@@ -146,7 +146,7 @@ TEST_CASE("regenerate --follow: a track that shows too little is refused by its 
 TEST_CASE("regenerate --follow: a reader that closes the pipe ends it") {
   if (!have_device()) return;
   const Scene scene;
-  // The track goes on for as long as somebody reads.
+  // The track goes on for as long as it is read.
   const fs::path script = scene.folder.write(
       "closed.sh",
       fmt::format("(head -n 2 '{0}'; while tail -n +3 '{0}' 2>/dev/null; do :; done) |\n"
@@ -171,7 +171,7 @@ TEST_CASE("regenerate --follow: an output that cannot be written is named, no fr
   CHECK(full.exit_code == 3);
   CHECK(full.standard_error.find("error: standard output: a frame cannot be written") !=
         std::string::npos);
-  CHECK(full.standard_error.find("nobody was seen") == std::string::npos);
+  CHECK(full.standard_error.find("shows no person") == std::string::npos);
   fs::create_directory(scene.folder / "folder");
   const CliResult folder = run_cli(scene.call(fmt::format(
       "--input '{}' -o '{}'", scene.track.string(), (scene.folder / "folder").string())));
@@ -201,7 +201,7 @@ TEST_CASE("regenerate --follow: what cannot be followed") {
   CHECK(run_cli(plain + " --frames csv").exit_code == 2);
   const CliResult empty = scene.follow("", scene.folder.write("empty.csv", ""));
   CHECK(empty.exit_code == 3);
-  CHECK(empty.standard_error.find("no frame that shows somebody") != std::string::npos);
+  CHECK(empty.standard_error.find("no frame that shows a person") != std::string::npos);
   const CliResult header = scene.follow("", scene.folder.write("bad.csv", "1,2,3\n4,5,6\n"));
   CHECK(header.exit_code == 3);
   CHECK(header.standard_error.find("standard input:1: numbers where the header is expected") !=

@@ -43,7 +43,7 @@ struct Call {
   }
 };
 
-/// The defaults are written out here once more, as the help says them.
+/// The defaults are written out here once more, as the help gives them.
 std::vector<std::string> by_library(const Call& call) {
   const mcdbn::Model model = load_model(usual_device(), call.model);
   mcdbn::GenerationOptions options;
@@ -92,7 +92,7 @@ fs::path seed_clip(int clip) {
 
 }  // namespace
 
-TEST_CASE("generate: every option changes what its help says") {
+TEST_CASE("generate: every option changes what its help describes") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;
@@ -144,7 +144,7 @@ TEST_CASE("generate: every option changes what its help says") {
   check_options("generate", rows);
 }
 
-TEST_CASE("generate: what holds where an option is not said") {
+TEST_CASE("generate: what holds where an option is not given") {
   if (!have_device()) return;
   const Call bare{.model = TinyPipeline::instance().model(), .seed_clips = {seed_clip(1)}};
   CHECK(by_program(bare) == by_library(bare));

@@ -1,5 +1,5 @@
-// What is odd about an input is said by every command that reads it, also where --quiet hides the
-// rest.
+// What is odd about an input is reported by every command that reads it, also where --quiet hides
+// the rest.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A clip of the pipeline, at another rate: its frame time says so many seconds.
+/// A clip of the pipeline, at another rate: its frame time is so many seconds.
 fs::path clip_at(const ScratchFolder& folder, const std::string& clip, const std::string& seconds) {
   std::string text = mcdbn::read_text_file(TinyPipeline::instance().motion() / clip);
   const std::string words = "Frame Time: ";
@@ -32,7 +32,7 @@ void check_warned(const std::string& arguments, const std::string& warning) {
 
 }  // namespace
 
-TEST_CASE("a frame rate that no clip has is said by every command that reads one, once") {
+TEST_CASE("a frame rate that no clip has is reported by every command that reads one, once") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder, out;
@@ -64,7 +64,7 @@ TEST_CASE("a frame rate that no clip has is said by every command that reads one
                warning);
 }
 
-TEST_CASE("what is odd about a skeleton's file is said") {
+TEST_CASE("what is odd about a skeleton's file is reported") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;

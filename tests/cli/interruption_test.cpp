@@ -1,4 +1,4 @@
-// Ctrl-C is heard, whatever the program does, before it has computed for another second on every
+// Ctrl-C ends the program, whatever it does, before it has computed for another second on every
 // processor, and leaves nothing behind: its own work is counted, as others share the clock.
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -10,7 +10,7 @@
 
 namespace mcdbn::test {
 
-/// The device that the program takes where nothing is said. Never closed, as every_device.hpp says.
+/// The device that the program takes by default. Never closed, as every_device.hpp explains.
 Device& usual_device();
 
 /// What the library itself makes of a call, for comparison with the program's files.

@@ -104,7 +104,7 @@ TEST_CASE("transform: the hidden probabilities, and the reconstruction in the da
   }
 }
 
-TEST_CASE("transform: every option changes what its help says") {
+TEST_CASE("transform: every option changes what its help describes") {
   if (!have_device()) return;
   const FittedMachines& machines = FittedMachines::instance();
   const ScratchFolder folder;
@@ -219,7 +219,7 @@ TEST_CASE("score: an MRBM's free energy of all modalities, and each one's recons
   check_refused(call + files.modality("a") + " --log-partition", 2, "an MRBM has none");
 }
 
-TEST_CASE("score: every option changes what its help says") {
+TEST_CASE("score: every option changes what its help describes") {
   if (!have_device()) return;
   const FittedMachines& machines = FittedMachines::instance();
   const ScratchFolder folder;
@@ -312,7 +312,7 @@ TEST_CASE("sample: a modality of an MRBM, free or with others given, in its own 
                 "holes.npy: not numbers throughout");
 }
 
-TEST_CASE("sample: every option changes what its help says") {
+TEST_CASE("sample: every option changes what its help describes") {
   if (!have_device()) return;
   const FittedMachines& machines = FittedMachines::instance();
   const ScratchFolder folder;

@@ -92,7 +92,7 @@ std::string track_text(const fs::path& file, const ProjectCall& call) {
 
 }  // namespace
 
-TEST_CASE("synthesize: every option changes what its help says") {
+TEST_CASE("synthesize: every option changes what its help describes") {
   const std::string base = "--action jump --clips 1 --subjects 1 --seconds 0.5";
   const std::vector<Clip> one = {{"jump_s01_01.bvh", 1, 1}};
   check_clips(synthesized(base), one, short_clip());
@@ -162,7 +162,7 @@ TEST_CASE("synthesize: every option changes what its help says") {
         }}});
 }
 
-TEST_CASE("project: every option changes what its help says") {
+TEST_CASE("project: every option changes what its help describes") {
   const ScratchFolder folder;
   const fs::path clip = folder.write("clip.bvh", small_bvh(60, true));
   const fs::path output = folder / "track.csv";

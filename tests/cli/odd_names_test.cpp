@@ -55,7 +55,7 @@ TEST_CASE("a name that is too long, or goes in a circle, is refused by its name"
   CHECK(entries_of(folder / "") == std::set<std::string>{"clip.bvh", "circle"});
 }
 
-TEST_CASE("a pipe is no file to read: nobody waits for somebody to write into it") {
+TEST_CASE("a pipe is no file to read: no command waits for a writer") {
   if (!have_device()) return;
   const ScratchFolder folder;
   const std::string clip = folder.write("clip.bvh", small_bvh(4)).string(),

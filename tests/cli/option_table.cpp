@@ -83,7 +83,7 @@ void check_options(const std::string& command, const std::vector<OptionRow>& row
   }
   for (const std::string& option : listed) {
     INFO(command, " ", option);
-    FAIL_CHECK("an option without a row that says what it changes");
+    FAIL_CHECK("an option without a row that checks what it changes");
   }
 }
 

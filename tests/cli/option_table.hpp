@@ -8,7 +8,7 @@
 namespace mcdbn::test {
 
 /// One option of a command (or a positional argument, by its name), and the check that it does what
-/// its help says: what must change in the output when it is given.
+/// its help describes: what must change in the output when it is given.
 struct OptionRow {
   std::string option;
   std::function<void()> check;

@@ -139,7 +139,8 @@ TEST_CASE("a training for which the disk is too full from the start leaves nothi
   CHECK(train(pipeline.training_clips(), folder / "run", kTiny + " --quiet").exit_code == 0);
 }
 
-TEST_CASE("a fitted machine that has no room where it belongs is kept elsewhere, and it is said") {
+TEST_CASE(
+    "a fitted machine that has no room where it belongs is kept elsewhere, and that is reported") {
   if (!have_device()) return;
   const ScratchFolder folder, temporary;
   std::string rows;

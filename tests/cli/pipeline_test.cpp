@@ -197,7 +197,7 @@ TEST_CASE("evaluate --report writes the tables, by action, training clips marked
   CHECK(count_lines(mcdbn::read_text_file(report / "table_7.csv")) == 2);
   CHECK(count_lines(mcdbn::read_text_file(report / "tracks.csv")) == 3);
 
-  // The paper's protocol: every clip, ten times; what was said stays.
+  // The paper's protocol: every clip, ten times; what was given stays.
   const CliResult paper = run_cli(evaluate + pipeline.test_clips() + pipeline.training_clips() +
                                   " --protocol paper --samples 2 --baselines none");
   CAPTURE(paper.standard_error);

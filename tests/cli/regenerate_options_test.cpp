@@ -59,7 +59,7 @@ struct Call {
   }
 };
 
-/// The defaults are written out here once more, as the help says them.
+/// The defaults are written out here once more, as the help gives them.
 std::vector<std::string> by_library(const Call& call) {
   const mcdbn::Model model = load_model(usual_device(), call.model);
   mcdbn::ClipPlacement placement;
@@ -114,7 +114,7 @@ fs::path first_test_clip() {
   return TinyPipeline::instance().motion() / "walk_s02_01.bvh";
 }
 
-/// The track with some joints called as a detector calls them, the rest as nobody does.
+/// The track with some joints called as a detector calls them, the rest by unknown names.
 void make_places(const fs::path& track, const fs::path& places) {
   mcdbn::Track2d seen = mcdbn::read_track_csv(track);
   seen.keypoints.clear();
@@ -138,7 +138,7 @@ void make_track(const fs::path& track, const fs::path& camera, const std::string
 
 }  // namespace
 
-TEST_CASE("regenerate: every option changes what its help says") {
+TEST_CASE("regenerate: every option changes what its help describes") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;
@@ -234,10 +234,10 @@ TEST_CASE("regenerate: every option changes what its help says") {
   for (const char* option : {"--follow", "--look-ahead", "--frames"})
     rows.push_back(
         {option, [=, &folder] {
-           const std::string said = std::string(option) == "--look-ahead" ? " 1"
-                                    : std::string(option) == "--frames"   ? " csv"
-                                                                          : "";
-           CHECK(run_cli(one.arguments(folder / "live.bvh") + " " + option + said).exit_code == 2);
+           const std::string value = std::string(option) == "--look-ahead" ? " 1"
+                                     : std::string(option) == "--frames"   ? " csv"
+                                                                           : "";
+           CHECK(run_cli(one.arguments(folder / "live.bvh") + " " + option + value).exit_code == 2);
          }});
   rows.push_back({"--write-camera", [&] {
                     const fs::path written = folder / "written.yaml";
@@ -276,7 +276,7 @@ TEST_CASE("regenerate: every option changes what its help says") {
          CHECK(five == mcdbn::read_text_file(folder / "wanted.csv"));
          REQUIRE(run_cli(sure + " --seed 6").exit_code == 0);
          CHECK(mcdbn::read_text_file(written) != five);
-         // The network alone says it, too, if in fewer words.
+         // The network alone gives it, too, in a shorter message.
          const CliResult alone = run_cli(sure + " --fit none --seed 5");
          CHECK(alone.exit_code == 0);
          CHECK(alone.standard_error.find("standard deviation of") != std::string::npos);
@@ -341,27 +341,27 @@ TEST_CASE("regenerate: every option changes what its help says") {
   check_options("regenerate", rows);
 }
 
-TEST_CASE("regenerate: what holds where an option is not said") {
+TEST_CASE("regenerate: what holds where an option is not given") {
   if (!have_device()) return;
   const ScratchFolder folder;
   make_track(folder / "track.csv", folder / "camera.yaml", "--noise-px 2");
   const Call bare{.model = TinyPipeline::instance().model(), .track = folder / "track.csv"};
   const auto answer = by_program(bare);
   CHECK(answer == by_library(bare));
-  Call said = bare;
-  said.samples = 1;
-  said.temperature = 0;
-  said.seed = 77;  // nothing is drawn
-  said.fit = "track";
-  CHECK(answer == by_library(said));
+  Call given = bare;
+  given.samples = 1;
+  given.temperature = 0;
+  given.seed = 77;  // nothing is drawn
+  given.fit = "track";
+  CHECK(answer == by_library(given));
 
   Call several = bare;
   several.samples = 2;
   several.fit = "none";
-  said = several;
-  said.temperature = 2;
-  said.seed = 1;
-  CHECK(by_program(several) == by_library(said));
+  given = several;
+  given.temperature = 2;
+  given.seed = 1;
+  CHECK(by_program(several) == by_library(given));
   // Steps of both kinds; and one sample that is drawn.
   several.gibbs_steps = 2;
   several.mrbm_gibbs_steps = 3;

@@ -42,7 +42,7 @@ double rate_of(const fs::path& film) {
 
 }  // namespace
 
-TEST_CASE("render: every option changes what its help says") {
+TEST_CASE("render: every option changes what its help describes") {
   const ScratchFolder folder;
   std::string moved = small_bvh(200, true);
   for (std::size_t at = 0; (at = moved.find("0 90 ", at)) != std::string::npos; at += 5)
@@ -178,8 +178,9 @@ TEST_CASE("render: without the program that draws, the message names it") {
   CHECK(result.exit_code == 1);
   CHECK(
       result.standard_error ==
-      fmt::format("mcdbn-cl: error: what draws cannot be started, {}: No such file or directory\n",
-                  (folder / "libexec" / "mcdbn-cl" / "render").string()));
+      fmt::format(
+          "mcdbn-cl: error: the drawing program cannot be started, {}: No such file or directory\n",
+          (folder / "libexec" / "mcdbn-cl" / "render").string()));
 }
 
 }  // namespace render_options_test

@@ -85,7 +85,7 @@ TEST_CASE("a training that is refused before it begins leaves the place free") {
   CHECK(train(clips, folder / run, kTiny + " --quiet").exit_code == 0);
 }
 
-TEST_CASE("one training at a time: a second one is told whose the folder is") {
+TEST_CASE("one training at a time: a second one is refused, and the owner is named") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;
@@ -109,7 +109,7 @@ TEST_CASE("one training at a time: a second one is told whose the folder is") {
   CHECK(entries_of(run) == std::set<std::string>{"unfinished"});
 }
 
-TEST_CASE("a training that was stopped goes on by --resume, with nothing else said") {
+TEST_CASE("a training that was stopped goes on by --resume, with nothing else given") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;

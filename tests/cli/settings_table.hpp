@@ -9,7 +9,7 @@
 namespace mcdbn::test {
 
 /// A setting of training by its name, another value than its default, and where it belongs, written
-/// down by hand: what visit_settings and the flags say is compared with this.
+/// down by hand: what visit_settings and the flags give is compared with this.
 struct SettingRow {
   const char* name;
   double value;  ///< 1 and 0 for true and false

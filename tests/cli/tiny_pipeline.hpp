@@ -28,7 +28,7 @@ std::filesystem::path with_calibration_pose(const std::filesystem::path& clip,
                                             const std::filesystem::path& path);
 
 /// The whole job at a size that takes seconds, done once for all tests. All read the same clips,
-/// whose places the model knows; each process has a run folder of its own.
+/// whose paths the model records; each process has a run folder of its own.
 class TinyPipeline {
  public:
   static const TinyPipeline& instance();
@@ -47,7 +47,7 @@ class TinyPipeline {
 };
 
 /// Fails the test where there is none: nothing would be tested. Where MCDBN_ALLOW_NO_DEVICE is set,
-/// says that the test is skipped, by name, and returns false.
+/// reports by name that the test is skipped, and returns false.
 bool have_device();
 
 }  // namespace mcdbn::test

@@ -31,7 +31,7 @@ bool is_on(std::size_t number, bool even) {
   return (number % 2 == 0) == even;
 }
 
-/// What is set where every switch is said, `--mirror` or `--no-mirror`, and a file says the
+/// What is set where every switch is given, `--mirror` or `--no-mirror`, and a file sets the
 /// opposite.
 std::map<std::string, double> switched(bool even) {
   const ScratchFolder folder;
@@ -77,7 +77,7 @@ std::vector<OptionRow> setting_option_rows() {
 
 }  // namespace
 
-TEST_CASE("train: every option changes what its help says") {
+TEST_CASE("train: every option changes what its help describes") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const ScratchFolder folder;
@@ -145,17 +145,18 @@ TEST_CASE("train: every option changes what its help says") {
   rows.push_back(
       {"--joint-map", [&] {
          const fs::path map = folder.write("map.toml", "head = \"Neck\"\n");
-         const std::string said = fmt::format("--joint-map '{}'", map.string());
-         trained(pipeline.training_clips(), said);
+         const std::string mapped = fmt::format("--joint-map '{}'", map.string());
+         trained(pipeline.training_clips(), mapped);
          CHECK(model().find("JOINT left_shoulder") != std::string::npos);  // the humanoid
-         CHECK(train(pipeline.training_clips(), run, kQuick + " --force --skeleton own " + said)
+         CHECK(train(pipeline.training_clips(), run, kQuick + " --force --skeleton own " + mapped)
                    .exit_code == 2);
          folder.write("map.toml", "left_knee = \"LeftFoot\"\n");
-         const CliResult lame = train(pipeline.training_clips(), run, kQuick + " --force " + said);
+         const CliResult lame =
+             train(pipeline.training_clips(), run, kQuick + " --force " + mapped);
          CHECK(lame.exit_code == 3);
          CHECK(lame.standard_error.find("left_ankle") != std::string::npos);
          folder.write("map.toml", "left_knee = 3\n");
-         CHECK(train("x.bvh", run, said).exit_code == 3);
+         CHECK(train("x.bvh", run, mapped).exit_code == 3);
        }});
   rows.push_back(
       {"--from", [&] {
@@ -184,9 +185,10 @@ TEST_CASE("train: every option changes what its help says") {
        }});
   rows.push_back({"--tracks", [&] {
                     CHECK(train("x.bvh", run, "--tracks other").exit_code == 2);
-                    const auto share = [&](const std::string& said) {
+                    const auto share = [&](const std::string& options) {
                       const fs::path made = folder / "tracks";
-                      REQUIRE(train(pipeline.training_clips(), made, kTiny + said).exit_code == 0);
+                      REQUIRE(train(pipeline.training_clips(), made, kTiny + options).exit_code ==
+                              0);
                       const std::string text = mcdbn::read_text_file(made / "config.toml");
                       fs::remove_all(made);
                       const auto at = text.find("detector = ");
@@ -198,7 +200,7 @@ TEST_CASE("train: every option changes what its help says") {
                   }});
   rows.push_back({"--force", [&] {
                     CHECK(train(pipeline.training_clips(), run, kQuick).exit_code == 2);
-                    trained(pipeline.training_clips(), "");  // which says it
+                    trained(pipeline.training_clips(), "");  // which gives it
                   }});
   rows.push_back({"--resume", [&] {  // of a training that is done; run_folder_test.cpp has others
                     const std::string resume = fmt::format("train --resume '{}'", run.string());

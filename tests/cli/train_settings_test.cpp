@@ -42,12 +42,12 @@ void check_settings(const std::map<std::string, double>& found, const TrainingCo
   CHECK(found.size() == setting_rows().size());
   for (const SettingRow& row : setting_rows()) {
     CAPTURE(row.name);
-    const auto said = wanted.find(row.name);
-    CHECK(found.at(row.name) == (said == wanted.end() ? row.read(base) : said->second));
+    const auto set = wanted.find(row.name);
+    CHECK(found.at(row.name) == (set == wanted.end() ? row.read(base) : set->second));
   }
 }
 
-/// Everything that a line of metrics.jsonl says but the speed.
+/// Every field of a line of metrics.jsonl but the speed.
 void check_line(const json& line, const mcdbn::EpochReport& epoch) {
   CAPTURE(line.dump());
   CHECK(line.at("stage") == epoch.stage);
@@ -70,7 +70,7 @@ void check_line(const json& line, const mcdbn::EpochReport& epoch) {
 
 }  // namespace
 
-TEST_CASE("every setting's name stands for the member that the table says") {
+TEST_CASE("every setting's name stands for the member that the table gives") {
   std::set<std::string> unknown;
   for (const SettingRow& row : setting_rows()) unknown.insert(row.name);
   const TrainingConfig defaults;
@@ -93,19 +93,21 @@ TEST_CASE("every setting's name stands for the member that the table says") {
   for (const SettingRow& row : setting_rows()) CHECK(row.read(config) == row.value);
 }
 
-TEST_CASE("the help says each setting's unit, default, reason and range, by groups") {
+TEST_CASE("the help gives each setting's unit, default, reason and range, by groups") {
   const std::string help = run_cli("train --help").standard_output;
-  const auto said = [&](const std::string& words) { return help.find(words) != std::string::npos; };
-  CHECK(said("\n  --hidden UNITS=768 "));
-  CHECK(said("hidden units of every CRBM (at least 1 and at most 100000)"));
-  CHECK(said("\n  --gaussian-rate NUMBER=0.001"));
-  CHECK(said("\n  --camera-fov DEGREES=45.0"));
-  CHECK(said("vertical field of view (above 0 and below"));
-  CHECK(said("where the skeleton has sides (on unless told otherwise)"));
-  CHECK(said("keep a leading calibration pose (off unless told otherwise)"));
+  const auto shown = [&](const std::string& words) {
+    return help.find(words) != std::string::npos;
+  };
+  CHECK(shown("\n  --hidden UNITS=768 "));
+  CHECK(shown("hidden units of every CRBM (at least 1 and at most 100000)"));
+  CHECK(shown("\n  --gaussian-rate NUMBER=0.001"));
+  CHECK(shown("\n  --camera-fov DEGREES=45.0"));
+  CHECK(shown("vertical field of view (above 0 and below"));
+  CHECK(shown("where the skeleton has sides (default: on)"));
+  CHECK(shown("keep a leading calibration pose (default: off)"));
   for (const char* group : {"Settings:", "Settings of gaussian:", "Settings of fine-tuning:",
                             "Settings of augment:", "Settings of camera:"})
-    CHECK(said(std::string("\n") + group + "\n"));
+    CHECK(shown(std::string("\n") + group + "\n"));
 }
 
 TEST_CASE("flags of every setting arrive in config.toml and in the model's record") {
@@ -141,7 +143,7 @@ TEST_CASE("the program trains what the library trains with these settings, and l
   CHECK(held_out);  // the settings hold one of two people out
 }
 
-TEST_CASE("a settings file says what flags say") {
+TEST_CASE("a settings file sets what flags set") {
   if (!have_device()) return;
   const ScratchFolder folder;
   const fs::path file = folder.write("all.toml", all_toml());
@@ -177,7 +179,7 @@ TEST_CASE("a flag overrides the file, the file overrides the preset") {
                   {"gaussian.rate-B", 0.25}});
 }
 
-TEST_CASE("--preset and --stages say which stages there are and whose defaults hold") {
+TEST_CASE("--preset and --stages set which stages there are and whose defaults hold") {
   if (!have_device()) return;
   using Wanted = std::map<std::string, double>;
   check_settings(settings_of_options(""), TrainingConfig{}, {});
@@ -197,7 +199,7 @@ TEST_CASE("--preset and --stages say which stages there are and whose defaults h
   check_settings(
       settings_of_options("--stages both --no-fine-tuning-from-greedy --fine-tuning-steps 7"),
       TrainingConfig{}, {{"fine-tuning.steps", 7}});
-  // Who asks for the stage gets it, however many steps the preset or the flags say.
+  // A stage that is asked for runs, however many steps the preset or the flags set.
   const double steps = static_cast<double>(TrainingConfig{}.fine_tuning.steps);
   check_settings(settings_of_options("--preset paper --stages both"), TrainingConfig::paper(),
                  {{"fine-tuning.steps", steps}});

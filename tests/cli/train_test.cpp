@@ -35,7 +35,7 @@ TEST_CASE("train writes a run folder") {
   CHECK(stages_of(run) == std::set<std::string>{"pose.0", "track.0", "mrbm", "fine-tuning"});
 }
 
-TEST_CASE("train says how far it is: in the end no time is left") {
+TEST_CASE("train reports its progress: in the end no time is left") {
   if (!have_device()) return;
   const std::string messages = TinyPipeline::instance().training_messages();
   CAPTURE(messages);
@@ -116,7 +116,7 @@ TEST_CASE("Python's safetensors opens a model file") {
   CHECK(std::stol(result.standard_output) > 0);
 }
 
-TEST_CASE("the paper's own settings trip the divergence guard, which says what to lower") {
+TEST_CASE("the paper's own settings trip the divergence guard, which names what to lower") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();
   const fs::path run = pipeline.folder("paper");

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kNoDrivers = "OCL_ICD_VENDORS=/nonexistent OCL_ICD_FILENAMES=";
 
-/// The error is one line that says who speaks, and stdout stays empty.
+/// The error is one line that begins with the program's name, and stdout stays empty.
 void check_one_line_error(const CliResult& result, int exit_code) {
   CAPTURE(result.standard_error);
   CHECK(result.exit_code == exit_code);
@@ -101,7 +101,7 @@ TEST_CASE("devices lists what there is") {
   }
 }
 
-TEST_CASE("no OpenCL platform is exit code 4 and says what to install") {
+TEST_CASE("no OpenCL platform is exit code 4 and the message names what to install") {
   const CliResult result = run_cli("devices", kNoDrivers);
   check_one_line_error(result, 4);
   CHECK(result.standard_error.find("pocl-opencl-icd") != std::string::npos);

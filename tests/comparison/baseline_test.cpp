@@ -42,7 +42,7 @@ std::vector<std::unique_ptr<Baseline>> small_baselines(Device& device) {
 
 }  // namespace
 
-TEST_CASE("baselines have names, and make what they say") {
+TEST_CASE("baselines have names, by which they are made") {
   const std::vector<std::string> usual = {"mean_pose", "hold_last_frame", "nearest_neighbour",
                                           "ridge_window", "mlp_window"};
   std::vector<std::string> all = usual;

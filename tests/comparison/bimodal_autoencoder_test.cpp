@@ -52,8 +52,8 @@ BimodalAutoencoderSettings tiny_settings() {
   return settings;
 }
 
-/// Drawn as the layers' numbers within the two modalities say: 2D's encoder, to and from the
-/// shared units, decoder; then 3D's.
+/// Drawn by the layers' numbers within the two modalities: 2D's encoder, to and from the shared
+/// units, decoder; then 3D's.
 std::vector<DenseLayer> first_layers(const BimodalAutoencoderSettings& settings) {
   const std::array<std::size_t, 2> visible = {33, 4};
   const std::array<std::size_t, 2> hidden = {settings.track_hidden, settings.pose_hidden};
@@ -235,7 +235,7 @@ TEST_CASE("pretrained_rbm learns to reconstruct, and its codes are its hidden un
   });
 }
 
-TEST_CASE("bimodal_autoencoder tells the pose of another clip, far better than the mean") {
+TEST_CASE("bimodal_autoencoder infers the pose of another clip, far better than the mean") {
   Clips clips;
   for (const float phase : {0.0F, 4.0F, 9.0F}) add_clip(clips, 120, phase);
   Clips other;

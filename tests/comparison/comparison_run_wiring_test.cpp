@@ -298,7 +298,7 @@ TEST_CASE("without views the perceptron learns from the training clips, at its f
     // 40 epochs of at least 40 mini-batches, each of more than ten launches; with views it would be
     // six such epochs.
     CHECK(device.launch_count() - before > 40 * 40 * 10);
-    // It knows these 23 frames by heart, next to the mean pose, and answers nothing else.
+    // It was trained on these 23 frames, and answers nothing else: far nearer than the mean pose.
     const auto& others = results[0].others;
     CHECK(others.at("mlp_window").score.error.mpjpe_mm <
           0.3 * others.at("mean_pose").score.error.mpjpe_mm);
@@ -364,7 +364,8 @@ TEST_CASE("a leading calibration pose is kept in test and training clips alike, 
   });
 }
 
-TEST_CASE("training clips that are gone matter to the baselines alone; a run says how far it is") {
+TEST_CASE(
+    "training clips that are gone matter to the baselines alone; a run reports its progress") {
   const Scene scene;
   on_every_device([&](Device& device) {
     Model model = scene.model(device);

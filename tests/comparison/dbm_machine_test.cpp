@@ -263,7 +263,7 @@ TEST_CASE("multimodal DBM: chains reach the distribution that enumeration gives"
     double all = 0;
     RowVectorD h_mean = RowVectorD::Zero(5), z_mean = RowVectorD::Zero(2), v_mean(5);
     v_mean.setZero();
-    double together = 0;  // E[h_0 · z_1], which tells layers that are coupled
+    double together = 0;  // E[h_0 · z_1], which shows that layers are coupled
     for (unsigned state = 0; state < 128; ++state) {
       const RowVectorD units = bits(state, 7), z = units.tail(2);
       double log_weight = r.c.row(0).dot(z);
@@ -303,7 +303,7 @@ TEST_CASE("multimodal DBM: chains reach the distribution that enumeration gives"
       v_got.tail(2) += share * chains.visible[1].to_host().cast<double>().colwise().sum();
       together_got += share * h0.col(0).dot(z.col(1));
     }
-    // 80,000 draws, of which some ten sweeps in a chain say the same: 8000 that are independent,
+    // 80,000 draws, of which some ten sweeps in a chain are alike: 8000 that are independent,
     // deviations of at most 0.5 (h, z) and 2 (v), four of which are allowed.
     CHECK((h_got - h_mean / all).cwiseAbs().maxCoeff() < 4 * 0.5 / std::sqrt(8000));
     CHECK((z_got - z_mean / all).cwiseAbs().maxCoeff() < 4 * 0.5 / std::sqrt(8000));

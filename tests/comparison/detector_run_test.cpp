@@ -82,7 +82,7 @@ TEST_CASE("a detector's test run: the clip by another body, from another camera,
       CHECK(same(truth.track.x_px, want.track.x_px));
       CHECK(same(truth.track.confidence, want.track.confidence));
       CHECK(truth.track.joint_names[2] == "left_elbow");
-      // Nobody is told the body: the answer has the model's, with lengths that the track tells.
+      // The body is not given: the answer has the model's, with lengths that the track shows.
       const Skeleton& answered = results[i].samples.at(0).motion.skeleton;
       const Eigen::Vector3d own = scene.modalities.pose_features.skeleton().joints[3].offset;
       const Eigen::Vector3d offset = answered.joints[3].offset;
@@ -146,8 +146,7 @@ TEST_CASE("a detector's test run shows every method the same track, whatever els
   });
 }
 
-TEST_CASE(
-    "a test run whose camera nobody knows answers in the assumed camera's axes, turned back") {
+TEST_CASE("a test run whose camera is unknown answers in the assumed camera's axes, turned back") {
   const Scene scene;
   on_every_device([&](Device& device) {
     TestRunOptions options = scene.options();

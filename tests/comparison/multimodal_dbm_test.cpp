@@ -238,7 +238,7 @@ TEST_CASE("multimodal DBM: a run is its stages one after another, chains start a
   });
 }
 
-TEST_CASE("multimodal_dbm tells the pose of another clip, far better than the mean") {
+TEST_CASE("multimodal_dbm infers the pose of another clip, far better than the mean") {
   std::vector<MatrixF> tracks, poses, other_tracks, other_poses;
   for (const float phase : {0.0F, 2.0F}) add_clip(tracks, poses, 100, phase);
   add_clip(other_tracks, other_poses, 60, 4.4F);

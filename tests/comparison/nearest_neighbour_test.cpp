@@ -46,7 +46,7 @@ TEST_CASE("nearest_neighbour equals the naive search over block borders") {
 }
 
 TEST_CASE("nearest_neighbour: the earliest of equal frames wins, far from the origin too") {
-  // A large common offset leaves single-precision products nothing to tell frames apart by.
+  // With a large common offset single-precision products do not distinguish frames.
   MatrixF training = test::random_clip(5000, 11, 6).array() + 300.0F;
   training.row(4999) = training.row(1234);
   training.row(3000) = training.row(1234);

@@ -1,4 +1,4 @@
-// What a report is told of each clip, and a clip's score by hand.
+// What a report is given of each clip, and a clip's score by hand.
 
 #include <doctest/doctest.h>
 
@@ -141,7 +141,7 @@ TEST_CASE("a clip's score: an answer in other units is as far off") {
   CHECK(score.error.mpjpe_mm == doctest::Approx(same.error.mpjpe_mm));
 }
 
-TEST_CASE("what a report is told of a clip") {
+TEST_CASE("what a report is given of a clip") {
   const Motion motion = swinging(small_body(), 6);
   on_every_device([&](Device& device) {
     const Model model = model_of(device);

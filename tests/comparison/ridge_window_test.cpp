@@ -84,7 +84,7 @@ TEST_CASE("ridge_window equals stacked least squares by QR at the penalty that i
   }
 }
 
-TEST_CASE("ridge_window shrinks hard where tracks say nothing about poses") {
+TEST_CASE("ridge_window shrinks hard where tracks carry no information about poses") {
   std::vector<MatrixF> tracks, poses;
   for (unsigned clip = 0; clip < 10; ++clip) {
     tracks.push_back(test::random_clip(30, 4, 200 + clip));

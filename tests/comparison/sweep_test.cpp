@@ -30,7 +30,7 @@ TrainingConfig tiny(const SweepConfiguration& varied) {
   return config;
 }
 
-SaidSetting said(const char* name, nlohmann::json value) {
+GivenSetting given(const char* name, nlohmann::json value) {
   return {name, std::move(value), name};
 }
 
@@ -76,7 +76,7 @@ TEST_CASE("sweep file: all combinations of a grid, and configurations as they ar
   CHECK(names_in("[[configuration]]\n") == Names{"base"});
 }
 
-TEST_CASE("sweep file: test clips are beside it, and each value knows where it stands") {
+TEST_CASE("sweep file: test clips are beside it, and each value keeps its place in the file") {
   const ScratchFolder folder;
   const auto file = folder.write("s.toml", "test = ['a.bvh', 'b/']\n[grid]\norder = [2,\n -3]\n");
   const SweepFile sweep = read_sweep_file(file);
@@ -124,7 +124,7 @@ TEST_CASE("sweep: a line for each configuration, failed ones too, none done twic
     const auto sweep = [&] {
       return Sweep(device, {files.files()[1]}, {files.files()[0]}, tiny, folder / "run");
     };
-    const ordered_json scored = sweep().run({said("order", 3)}, watch);
+    const ordered_json scored = sweep().run({given("order", 3)}, watch);
     CAPTURE(scored.dump());
     CHECK(scored.at("name") == "order=3");
     CHECK(scored.at("status") == "ok");
@@ -135,10 +135,10 @@ TEST_CASE("sweep: a line for each configuration, failed ones too, none done twic
     CHECK(begun == std::vector<bool>{false, true});
     CHECK(std::filesystem::exists(folder / "run/order=3/model.safetensors"));
 
-    const ordered_json diverged = sweep().run({said("gaussian.rate", 100)});
+    const ordered_json diverged = sweep().run({given("gaussian.rate", 100)});
     CHECK(diverged.at("status") == "failed");
     CHECK(diverged.at("error").get<std::string>().find("`gaussian.rate`") != std::string::npos);
-    const ordered_json refused = sweep().run({said("hidden", 0)});
+    const ordered_json refused = sweep().run({given("hidden", 0)});
     CHECK(refused.at("error") == "hidden must be at least 1 and at most 100000, not 0");
     CHECK(refused.at("settings") == ordered_json{{"hidden", 0}});
 
@@ -146,15 +146,15 @@ TEST_CASE("sweep: a line for each configuration, failed ones too, none done twic
     const auto file = folder / "run/sweep.jsonl";
     const std::string text = read_text_file(file);
     write_text_file(file, text + "{\"name\":\"cut");
-    CHECK(sweep().run({said("order", 3)}, watch) == scored);
-    CHECK(sweep().run({said("hidden", 0)}, watch) == refused);
+    CHECK(sweep().run({given("order", 3)}, watch) == scored);
+    CHECK(sweep().run({given("hidden", 0)}, watch) == refused);
     CHECK(begun.empty());
     CHECK(lines_of(folder.write("whole.jsonl", text)) ==
           std::vector<ordered_json>{scored, diverged, refused});
   });
 }
 
-TEST_CASE("sweep: who watches may stop it, and no line says that a configuration failed") {
+TEST_CASE("sweep: an observer may stop it, and no line records a failed configuration") {
   const TrainingFiles files({{.subject = 1}, {.subject = 2}});
   const ScratchFolder folder;
   on_every_device([&](Device& device) {

@@ -130,7 +130,7 @@ TEST_CASE("a test run draws of the single answer alone, and of none without a fi
     const auto alone = run_test(model, scene.tests, options);
     CHECK(alone[1].samples.at(0).deviation_mm == deviation_mm);  // whatever else is drawn
 
-    options.fit.reset();  // then it is the prior that says how sure it is
+    options.fit.reset();  // then the uncertainty is the prior's
     CHECK(std::isfinite(run_test(model, scene.tests, options)[0].samples.at(0).score.within_90));
     options = scene.options();
     options.uncertainty_draws = {};
@@ -138,7 +138,7 @@ TEST_CASE("a test run draws of the single answer alone, and of none without a fi
   });
 }
 
-TEST_CASE("a test run whose camera nobody knows turns what it draws as it turns its answer") {
+TEST_CASE("a test run whose camera is unknown turns what it draws as it turns its answer") {
   const Scene scene;
   on_every_device([&](Device& device) {
     const Model model = scene.model(device);
@@ -159,7 +159,7 @@ TEST_CASE("a test run whose camera nobody knows turns what it draws as it turns 
   });
 }
 
-TEST_CASE("a report is told how sure the single answer is, joint by joint") {
+TEST_CASE("a report is given the single answer's uncertainty, joint by joint") {
   const Scene scene;
   on_every_device([&](Device& device) {
     const Model model = scene.model(device);

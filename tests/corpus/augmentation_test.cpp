@@ -73,7 +73,7 @@ TEST_CASE("a track shows the motion beside it, with the noise that was asked for
   CHECK(std::sqrt(noise.array().square().mean()) < 4.0);  // twice the mean, for a larger figure
 }
 
-TEST_CASE("limbs go out of sight in the share of the views that was asked for") {
+TEST_CASE("limbs are hidden in the share of the views that was asked for") {
   const Motion raw = walk();
   AugmentationSettings settings = nothing();
   settings.missing = 0.5;

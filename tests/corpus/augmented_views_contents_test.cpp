@@ -80,10 +80,10 @@ TEST_CASE(
     for (std::uint32_t j = 0; j < i; ++j)
       CHECK((views.poses[i].rows() != views.poses[j].rows() || views.poses[i] != views.poses[j]));
   }
-  CHECK(unknown);  // so that the case covers limbs out of sight
-  CorpusConfig in_sight = config;
-  in_sight.augment.missing = 0;
-  CHECK(make_augmented_views(walks.files(), modalities, in_sight).tracks_seen.empty());
+  CHECK(unknown);  // so that the case covers hidden limbs
+  CorpusConfig all_seen = config;
+  all_seen.augment.missing = 0;
+  CHECK(make_augmented_views(walks.files(), modalities, all_seen).tracks_seen.empty());
   CHECK(views.modalities.fps == modalities.fps);
   CHECK(views.modalities.pose_scale.mean() == modalities.pose_scale.mean());
 }

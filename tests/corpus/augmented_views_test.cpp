@@ -11,7 +11,7 @@
 using namespace mcdbn;
 using namespace mcdbn::test;
 
-TEST_CASE("scaling for fine-tuning knows what mirrored views move") {
+TEST_CASE("scaling for fine-tuning covers what mirrored views move") {
   const ScratchFolder folder;
   SynthesisOptions options;
   options.action = SynthesisAction::wave_one;  // the other arm hangs

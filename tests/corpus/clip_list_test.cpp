@@ -33,7 +33,7 @@ TEST_CASE("a list of clips: what was written is read, from wherever it is read")
   CHECK_THROWS_AS(find_listed_clips({}), InputError);
 }
 
-TEST_CASE("a list of clips: what is wrong is said with its line") {
+TEST_CASE("a list of clips: what is wrong is reported with its line") {
   const test::ScratchFolder folder;
   const fs::path walk = folder.write("walk.bvh", "x");
   const auto refused = [&](const std::string& text, const std::string& what) {

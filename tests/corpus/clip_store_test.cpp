@@ -40,8 +40,9 @@ void check_same(const ClipStore& x, const ClipStore& y) {
   }
 }
 
-std::vector<std::string> told(const std::vector<ListedClip>& files, const CorpusSettings& settings,
-                              const std::filesystem::path& cache) {
+std::vector<std::string> notices_of(const std::vector<ListedClip>& files,
+                                    const CorpusSettings& settings,
+                                    const std::filesystem::path& cache) {
   std::vector<std::string> notices;
   cached_training_clips(files, settings, cache, &notices);
   return notices;
@@ -74,7 +75,7 @@ TEST_CASE(
     const auto written = std::filesystem::last_write_time(cache);
     check_same(cached_training_clips(files, settings, cache), in_memory);
     CHECK(std::filesystem::last_write_time(cache) == written);
-    CHECK(told(files, settings, cache).empty());
+    CHECK(notices_of(files, settings, cache).empty());
   }
   CHECK(entries_of(folder / "").size() == 2);  // nothing is left beside them
 }
@@ -92,7 +93,7 @@ TEST_CASE("skeletons that differ go through the file onto the humanoid") {
              load_training_clips(files, {}));
 }
 
-TEST_CASE("a cache of other settings, other clips or other bytes is told of and made anew") {
+TEST_CASE("a cache of other settings, other clips or other bytes is reported and made anew") {
   const TrainingFiles walks({{1, 1}, {2, 1}});
   const ScratchFolder folder;
   const auto cache = folder / "clips.cache";
@@ -100,14 +101,14 @@ TEST_CASE("a cache of other settings, other clips or other bytes is told of and 
   std::filesystem::copy_file(walks.files()[0], copy);
   const std::vector<ListedClip> files{{copy}, {walks.files()[1]}};
   CorpusSettings settings;
-  REQUIRE(told(files, settings, cache).empty());
+  REQUIRE(notices_of(files, settings, cache).empty());
   const auto check_made_anew = [&](const std::string& why) {
     CAPTURE(why);
-    const auto notices = told(files, settings, cache);
+    const auto notices = notices_of(files, settings, cache);
     REQUIRE(!notices.empty());
     CHECK(notices.front().find(why) != std::string::npos);
     CHECK(notices.front().find("read again") != std::string::npos);
-    CHECK(told(files, settings, cache).empty());
+    CHECK(notices_of(files, settings, cache).empty());
     check_same(cached_training_clips(files, settings, cache), load_training_clips(files, settings));
   };
   settings.keep_first_frame = true;

@@ -68,7 +68,7 @@ TEST_CASE("a survey: people, actions, skeletons and what is lost") {
   CHECK(text_of(clips[4].problems, Kind::unreadable).find("08_01.bvh:") != std::string::npos);
 }
 
-TEST_CASE("a survey: short, slow, nobody, a calibration pose") {
+TEST_CASE("a survey: short, slow, no person, a calibration pose") {
   const ScratchFolder folder;
   Motion motion = moving_humanoid(12);
   write_bvh(folder / "short.bvh", motion);

@@ -24,10 +24,10 @@ const Motion& walk() {
   return motion;
 }
 
-AugmentedView view_of(double share, std::uint32_t step, bool all_in_sight = false) {
+AugmentedView view_of(double share, std::uint32_t step, bool hide_no_limb = false) {
   AugmentationSettings settings = nothing();
   settings.detector = share;
-  return augmented_view(walk(), kFps, {}, settings, RandomKey{3, step, 0, 0}, all_in_sight);
+  return augmented_view(walk(), kFps, {}, settings, RandomKey{3, step, 0, 0}, hide_no_limb);
 }
 
 /// All of a skeleton's joints: no detector shows these.
@@ -129,7 +129,7 @@ TEST_CASE("detector views: joints are off as a detector's are, no more, and not 
   CHECK(confidences.size() > 15);
 }
 
-TEST_CASE("detector views: no limb is hidden where all is to be in sight, errors stay") {
+TEST_CASE("detector views: no limb is hidden where none is to be, errors stay") {
   for (std::uint32_t step = 0; step < 5; ++step) {
     const AugmentedView scaling = view_of(1, step, true), view = view_of(1, step);
     CHECK(scaling.track.confidence == view.track.confidence);

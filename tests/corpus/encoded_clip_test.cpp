@@ -98,7 +98,7 @@ TEST_CASE("a clip's leading calibration pose is dropped unless it is to be kept"
   CHECK(dropped.motion.frames() == 39);
   CHECK(dropped.pose_features.rows() == 39);
   CHECK(dropped.track_features.rows() == 39);
-  CHECK(notices.told().size() == 1);
+  CHECK(notices.all().size() == 1);
   CHECK(encode_clip(file, modalities, {}, true).motion.frames() == 40);
   CHECK(encode_clip(file, modalities, {}).motion.frames() == 39);
   CHECK_THROWS_AS(encode_clip(folder / "missing.bvh", modalities, {}), InputError);

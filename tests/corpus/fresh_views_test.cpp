@@ -87,7 +87,7 @@ TEST_CASE("a view hangs on its number and the seed alone, and several threads ma
   }
 }
 
-TEST_CASE("a view is a piece of a clip from anywhere in it, seen as the settings say") {
+TEST_CASE("a view is a piece of a clip from anywhere in it, seen as the settings specify") {
   CorpusSettings plain;
   plain.augment = nothing();
   const FreshViews some = views(plain, {.frames = 40});

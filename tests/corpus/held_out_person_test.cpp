@@ -50,12 +50,12 @@ TEST_CASE("who is held out: of people with a clip each the one with the fewest f
                            4) == 2U);
 }
 
-TEST_CASE("nobody is held out of too few, nor where nobody was told apart or asked for it") {
+TEST_CASE("no person is held out of too few, nor where people are unknown or none is asked for") {
   TrainingSet views = views_from({{0, "a", 50}, {1, "b", 30}, {2, "c", 20}, {3, "d", 90}});
   CHECK(person_to_hold_out(views, 4));
   CHECK_FALSE(person_to_hold_out(views, 5));
   CHECK_FALSE(person_to_hold_out(views, 0));
-  CHECK_FALSE(person_to_hold_out(views_from({{0, "a", 50}}), 1));  // somebody has to stay
+  CHECK_FALSE(person_to_hold_out(views_from({{0, "a", 50}}), 1));  // one has to stay
   views.people.clear();
   CHECK_FALSE(person_to_hold_out(views, 4));
 }

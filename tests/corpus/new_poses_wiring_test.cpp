@@ -87,8 +87,8 @@ TEST_CASE("gravity's error: the image and the heights stay, what is taken for le
     CHECK((was.col(1) - is.col(1)).cwiseAbs().maxCoeff() < 1e-6);
     for (int t = 0; t < motion.frames(); t += 20) {
       const MatrixD seen = truth.camera.camera_from_world * turns_of(truth.motion, t),
-                    told = view.camera.camera_from_world * turns_of(view.motion, t);
-      CHECK((seen - told).cwiseAbs().maxCoeff() < 1e-6);
+                    as_given = view.camera.camera_from_world * turns_of(view.motion, t);
+      CHECK((seen - as_given).cwiseAbs().maxCoeff() < 1e-6);
     }
   }
   CHECK(std::sqrt(sum) == doctest::Approx(1.5).epsilon(0.15));

@@ -4,7 +4,7 @@
 
 using namespace mcdbn;
 
-TEST_CASE("people are told by their bones") {
+TEST_CASE("people are distinguished by their bones") {
   Motion tall;
   tall.skeleton.joints.resize(2);
   tall.skeleton.joints[1].offset = {0, 50, 0};
@@ -18,7 +18,7 @@ TEST_CASE("people are told by their bones") {
   CHECK(people.number_of(tall.skeleton) == 0);
 }
 
-TEST_CASE("a person is read off a clip's name, where it tells") {
+TEST_CASE("a person is read off a clip's name, where it has one") {
   CHECK(person_of("cmu/walk/08_01.bvh") == "08");
   CHECK(person_of("13_13or19.bvh") == "13");
   CHECK(person_of("motion/walk_s02_01.bvh") == "s02");

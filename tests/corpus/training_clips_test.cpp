@@ -46,7 +46,7 @@ TEST_CASE("training clips: a skeleton that all share is learnt as it is") {
   CHECK_THROWS_AS(load_training_clips(alike, own), ConfigError);
 }
 
-TEST_CASE("training clips: skeletons that differ are brought onto the humanoid, and it is said") {
+TEST_CASE("training clips: skeletons that differ are brought onto the humanoid, with a notice") {
   const MixedFiles files;
   std::vector<std::string> notices;
   const auto clips = load_training_clips(files.all(), {}, &notices);
@@ -81,7 +81,7 @@ TEST_CASE("training clips: what cannot be learnt is refused by its file") {
                        InputError);
 }
 
-TEST_CASE("training clips: people are those that are said, else those of the bones") {
+TEST_CASE("training clips: people are those that are given, else those of the bones") {
   const MixedFiles files;
   const auto people = [&](const std::vector<ListedClip>& listed, SkeletonUse use) {
     CorpusSettings settings;
@@ -99,7 +99,7 @@ TEST_CASE("training clips: people are those that are said, else those of the bon
   }
 }
 
-TEST_CASE("training clips: windows are drawn by people, and by actions where those are said") {
+TEST_CASE("training clips: windows are drawn by people, and by actions where those are given") {
   const TrainingFiles walks({{1, 1}, {1, 2}, {2, 1}});
   const auto& files = walks.files();
   const auto groups = [&](const std::vector<ListedClip>& listed) {

@@ -82,7 +82,7 @@ void check_scale(const Standardizer& scale, const MatrixD& values) {
   }
 }
 
-/// The whole of make_training_set once more: what is encoded, and what the scaling knows.
+/// The whole of make_training_set once more: what is encoded, and what the scaling is fitted to.
 void check_set(const TrainingFiles& walks, const CorpusConfig& config,
                const std::vector<int>& phases, int views, std::size_t directions = 1) {
   const TrainingSet set = make_training_set(walks.files(), config, nullptr);
@@ -141,7 +141,7 @@ TEST_CASE("a training set: every clip encoded and scaled for itself and for its 
   const TrainingFiles walks(kWalks);
   CorpusConfig config = settings();
   check_set(walks, config, {1, 1, 1}, 3);
-  config.augment.views = 9;  // four say enough about the scale
+  config.augment.views = 9;  // four are enough for the scale
   check_set(walks, config, {1, 1, 1}, 4);
 }
 
@@ -210,7 +210,7 @@ TEST_CASE("clips are seen from as many directions as were asked for, where there
   CHECK(encoded_training_set(clips, set.modalities, config, false).poses == set.poses);
 }
 
-TEST_CASE("a training set and views of it: who is seen, and who does what where that was said") {
+TEST_CASE("a training set and views of it: people, and actions where those were given") {
   const TrainingFiles walks(kWalks);
   CorpusConfig config = settings();
   config.phases = 3;

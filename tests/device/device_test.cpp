@@ -82,6 +82,6 @@ TEST_CASE("small: the selection comes from the environment") {
   CHECK_THROWS_AS(Device::open(), DeviceError);
 }
 
-TEST_CASE("small: without any device the text says what to install") {
+TEST_CASE("small: without any device the text names what to install") {
   CHECK(describe_devices({}).find("pocl-opencl-icd") != std::string::npos);
 }

@@ -59,7 +59,7 @@ inline void write_padded(const Matrix& matrix, const MatrixF& values) {
 }
 
 /// Rows that a kernel writes, inside a bigger matrix whose other rows hold a sentinel, padding
-/// columns included. The block's own columns start as NaN (nobody may read them) or as `initial`.
+/// columns included. The block's own columns start as NaN (they must not be read) or as `initial`.
 class GuardedBlock {
  public:
   GuardedBlock(Device& device, std::size_t rows, std::size_t columns,

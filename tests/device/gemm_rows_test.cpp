@@ -182,7 +182,7 @@ TEST_CASE("small: results go to rows a step apart and leave those between alone"
   });
 }
 
-TEST_CASE("small: scatter puts rows where an index says and leaves the others alone") {
+TEST_CASE("small: scatter puts rows where an index points and leaves the others alone") {
   on_every_device([](Device& device) {
     const MatrixF rows = random_matrix(3, 17, 9), before = random_matrix(7, 17, 10);
     const Matrix out = Matrix::from_host(device, before);

@@ -50,7 +50,7 @@ TEST_CASE("a build that fails with an error is not tried again; its whole log is
   const HealthyDriver driver;
   layer::fail("clBuildProgram", 0, CL_BUILD_PROGRAM_FAILURE);
   const std::string log = "a warning\nfile.cl:3: error: no such name\nand much more\n";
-  layer::say_in_build_log(log);
+  layer::set_build_log(log);
   const std::string message = failure();
   CAPTURE(message);
   CHECK(builds() == 1);
@@ -61,40 +61,40 @@ TEST_CASE("a build that fails with an error is not tried again; its whole log is
 
 TEST_CASE("a build that fails without an error is tried once more, and only once") {
   const HealthyDriver driver;
-  layer::say_in_build_log("\nnothing wrong here\n");
+  layer::set_build_log("\nnothing wrong here\n");
   layer::fail_once("clBuildProgram", 0, CL_BUILD_PROGRAM_FAILURE);
   CHECK(failure().empty());
   CHECK(builds() == 2);
 
   layer::heal();
-  layer::say_in_build_log("\nnothing wrong here\n");
+  layer::set_build_log("\nnothing wrong here\n");
   layer::fail("clBuildProgram", 0, CL_BUILD_PROGRAM_FAILURE);
   const std::string message = failure();
   CAPTURE(message);
   CHECK(builds() == 2);
-  // What PoCL says when its cache is on a full disk has no error in it either.
-  CHECK(message.find("says no more than 'nothing wrong here'; is there room where it keeps") !=
+  // PoCL's log when its cache is on a full disk has no error in it either.
+  CHECK(message.find("reports only 'nothing wrong here'; is there room where it keeps") !=
         std::string::npos);
   kept_log(message);
 
   layer::heal();
-  layer::say_in_build_log(" \n");
+  layer::set_build_log(" \n");
   layer::fail("clBuildProgram", 0, CL_BUILD_PROGRAM_FAILURE);
-  CHECK(failure().find("says nothing of why; is there room") != std::string::npos);
+  CHECK(failure().find("gives no reason; is there room") != std::string::npos);
 }
 
 TEST_CASE("two builds that fail keep two logs") {
   const HealthyDriver driver;
   layer::fail("clBuildProgram", 0, CL_BUILD_PROGRAM_FAILURE);
-  layer::say_in_build_log("error one");
+  layer::set_build_log("error one");
   const std::string one = failure();
-  layer::say_in_build_log("error two");
+  layer::set_build_log("error two");
   const std::string two = failure();
   CHECK(kept_log(one).starts_with("error one"));
   CHECK(kept_log(two).starts_with("error two"));
 }
 
-TEST_CASE("a device that is lost while it builds says that, not what its log lacks") {
+TEST_CASE("a device that is lost while it builds is reported as lost, not for what its log lacks") {
   const HealthyDriver driver;
   layer::fail("clBuildProgram", 0, CL_DEVICE_NOT_AVAILABLE, true);
   const std::string message = failure();

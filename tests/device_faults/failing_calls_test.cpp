@@ -21,7 +21,7 @@ std::string error_of(const Work& work) {
   return "";
 }
 
-bool says(const std::string& text, const std::string& words) {
+bool contains(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
@@ -74,7 +74,8 @@ TEST_CASE(
   CHECK(training.train() == want);
 }
 
-TEST_CASE("a device that is lost in the middle, once and for all, is a DeviceError that says so") {
+TEST_CASE(
+    "a device that is lost in the middle, once and for all, is a DeviceError that reports it") {
   const HealthyDriver driver;
   const TinyTraining training;
   const std::string name = Device::open().info().name;
@@ -82,10 +83,11 @@ TEST_CASE("a device that is lost in the middle, once and for all, is a DeviceErr
   for (const int code : {CL_DEVICE_NOT_AVAILABLE, CL_INVALID_COMMAND_QUEUE, CL_OUT_OF_RESOURCES}) {
     layer::heal();
     layer::fail("clEnqueueNDRangeKernel", 40, code, true);
-    layer::fail("clGetKernelInfo", 0, code);  // nor does it tell which kernel it was
+    layer::fail("clGetKernelInfo", 0, code);  // nor is the kernel's name given
     const std::string error = error_of([&] { training.train(); });
     CAPTURE(error);
-    CHECK(says(error, code == CL_OUT_OF_RESOURCES ? "its driver reset it" : "the device is lost"));
+    CHECK(contains(error,
+                   code == CL_OUT_OF_RESOURCES ? "its driver reset it" : "the device is lost"));
     CHECK(error.starts_with(name + ": a kernel: "));
     CHECK(layer::objects() == before);
   }
@@ -97,22 +99,22 @@ TEST_CASE("out of device memory: how much was wanted, or what needs less") {
   layer::fail("clCreateBuffer", 0, CL_MEM_OBJECT_ALLOCATION_FAILURE);
   const std::string refused = error_of([&] { Matrix(device, 1000, 1000); });
   CAPTURE(refused);
-  CHECK(says(refused, device.info().name + ": no room for 4.03 MB more, of "));
-  CHECK(says(refused, "smaller layers and mini-batches"));
+  CHECK(contains(refused, device.info().name + ": no room for 4.03 MB more, of "));
+  CHECK(contains(refused, "smaller layers and mini-batches"));
   // Many drivers give memory only when it is first used.
   layer::heal();
   layer::fail("clEnqueueFillBuffer", 0, CL_MEM_OBJECT_ALLOCATION_FAILURE);
   const std::string late = error_of([&] { Matrix(device, 1000, 1000); });
   CAPTURE(late);
-  CHECK(says(late, device.info().name + ": clearing a matrix: out of memory"));
-  CHECK(says(late, "CL_MEM_OBJECT_ALLOCATION_FAILURE"));
+  CHECK(contains(late, device.info().name + ": clearing a matrix: out of memory"));
+  CHECK(contains(late, "CL_MEM_OBJECT_ALLOCATION_FAILURE"));
 }
 
-TEST_CASE("a code is said in words with its name, one that nobody knows by its number") {
-  CHECK(says(opencl_failure(CL_DEVICE_NOT_AVAILABLE), "lost"));
-  CHECK(says(opencl_failure(CL_DEVICE_NOT_AVAILABLE), "(CL_DEVICE_NOT_AVAILABLE)"));
-  CHECK(says(opencl_failure(CL_OUT_OF_HOST_MEMORY), "out of memory"));
-  CHECK(says(opencl_failure(CL_INVALID_WORK_GROUP_SIZE), "work-groups"));
+TEST_CASE("a code is given in words with its name, an unknown one by its number") {
+  CHECK(contains(opencl_failure(CL_DEVICE_NOT_AVAILABLE), "lost"));
+  CHECK(contains(opencl_failure(CL_DEVICE_NOT_AVAILABLE), "(CL_DEVICE_NOT_AVAILABLE)"));
+  CHECK(contains(opencl_failure(CL_OUT_OF_HOST_MEMORY), "out of memory"));
+  CHECK(contains(opencl_failure(CL_INVALID_WORK_GROUP_SIZE), "work-groups"));
   CHECK(opencl_failure(CL_INVALID_VALUE) == "CL_INVALID_VALUE");
   CHECK(opencl_failure(-4711) == "OpenCL's error -4711");
 }

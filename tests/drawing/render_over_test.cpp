@@ -96,7 +96,7 @@ TEST_CASE("a sheet over a film shows frames at even times") {
   CHECK(std::abs(grey(485, 645) - 118) < 8);  // the clip's last frame
 }
 
-TEST_CASE("what cannot be drawn over is said") {
+TEST_CASE("what cannot be drawn over is reported") {
   const ScratchFolder folder;
   const Motion motion = test::swinging(test::small_body(), 4);
   const auto film = write_film(folder, 6);

@@ -144,7 +144,7 @@ TEST_CASE("a video has a frame for every frame of the longest clip") {
   CHECK(frames == 24);
 }
 
-TEST_CASE("rendering says what is wrong and leaves no file behind") {
+TEST_CASE("rendering reports what is wrong and leaves no file behind") {
   const ScratchFolder folder;
   const RenderClip clip{short_clip(SynthesisAction::walk), "walk"};
   CHECK_THROWS_AS(render({}, folder / "a.png"), InputError);

@@ -109,7 +109,7 @@ TEST_CASE("best_of: the nearest sample, with all of its errors") {
   CHECK_THROWS_AS(best_of(truth, {}, 30), ShapeError);
 }
 
-TEST_CASE("mpjae_deg: by hand; of joints that no place tells apart, too") {
+TEST_CASE("mpjae_deg: by hand; of turns that move no joint, too") {
   Skeleton skeleton = chain({"Hips", "Knee", "Ankle", "Toe"});
   for (std::size_t j = 0; j < 3; ++j)  // the toe never turns
     skeleton.joints[j].channels = {Channel::y_rotation, Channel::x_rotation};

@@ -33,7 +33,7 @@ TEST_CASE("90 % intervals: of normal errors nine of ten, if the deviation is the
   CHECK(share(6) > 0.99);
 }
 
-TEST_CASE("90 % intervals: shapes, and nothing to tell") {
+TEST_CASE("90 % intervals: shapes, and no answer at all") {
   CHECK(std::isnan(share_within_90(MatrixD(), MatrixD(), MatrixD())));
   CHECK_THROWS_AS(share_within_90(MatrixD::Zero(2, 3), MatrixD::Zero(2, 3), MatrixD::Zero(2, 2)),
                   ShapeError);

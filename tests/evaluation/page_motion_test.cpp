@@ -6,7 +6,7 @@
 
 using namespace mcdbn;
 
-TEST_CASE("the page knows whose side each point is on; an end is on its joint's") {
+TEST_CASE("the page has each point's side; an end is on its joint's") {
   ReportClip clip;
   clip.name = "clip";
   clip.point_names = {"Hips", "LeftArm", "RHand", "LeftToe end", "odd end"};
@@ -19,7 +19,8 @@ TEST_CASE("the page knows whose side each point is on; an end is on its joint's"
   CHECK(motion.clips[0].at("sides") == std::vector<int>{0, -1, 1, -1, 1});
 }
 
-TEST_CASE("the page holds how sure an answer is, every so manieth frame of it, where it says so") {
+TEST_CASE(
+    "the page holds an answer's uncertainty, every so manieth frame of it, where it is given") {
   ReportClip clip;
   clip.name = "clip";
   clip.point_names = {"Hips", "Head"};

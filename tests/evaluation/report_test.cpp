@@ -31,7 +31,7 @@ EvaluationReport small_report() {
                     test::report_clip("c", "walk", 40, 30), test::report_clip("d", "jump", 60)});
 }
 
-bool says(const std::vector<Verdict>& list, Verdict::Kind kind, const std::string& words) {
+bool has_verdict(const std::vector<Verdict>& list, Verdict::Kind kind, const std::string& words) {
   return std::any_of(list.begin(), list.end(), [&](const Verdict& verdict) {
     return verdict.kind == kind && verdict.text.find(words) != std::string::npos;
   });
@@ -109,60 +109,62 @@ TEST_CASE("mean_score leaves out what is not finite, figure by figure") {
   CHECK(std::isnan(mean_score({}).pcc_flat));
 }
 
-TEST_CASE("a report says what was done to the tracks and to the answers") {
+TEST_CASE("a report names what was done to the tracks and to the answers") {
   EvaluationReport report = small_report();
   CHECK(summary_json(report).at("fit") == "none");
   report.fit = "track";
   report.damage = {5, 0.2, 1};
-  CHECK(says(verdicts(report), Verdict::Kind::note, "the simpler ones' too, was fitted"));
-  CHECK(says(verdicts(report), Verdict::Kind::note,
-             "5 px of noise, 20 % of the joints missing, an arm hidden for 1 s"));
-  CHECK(says(verdicts(report), Verdict::Kind::note, "Even the mean pose, fitted to the track,"));
+  CHECK(has_verdict(verdicts(report), Verdict::Kind::note, "the simpler ones' too, was fitted"));
+  CHECK(has_verdict(verdicts(report), Verdict::Kind::note,
+                    "5 px of noise, 20 % of the joints missing, an arm hidden for 1 s"));
+  CHECK(has_verdict(verdicts(report), Verdict::Kind::note,
+                    "Even the mean pose, fitted to the track,"));
   const ordered_json summary = summary_json(report);
   CHECK(summary.at("fit") == "track");
   CHECK(summary.at("track_damage") ==
         ordered_json{{"noise_px", 5.0}, {"missing_share", 0.2}, {"hidden_s", 1.0}});
 }
 
-TEST_CASE("a report says whose tracks they are, and whether the camera was known") {
+TEST_CASE("a report names the tracks' source, and whether the camera was known") {
   using Kind = Verdict::Kind;
   EvaluationReport report = small_report();
   CHECK(summary_json(report).at("tracks") == "exact");
   CHECK(summary_json(report).at("camera_known") == true);
-  CHECK(!says(verdicts(report), Kind::note, "as a detector's"));
+  CHECK(!has_verdict(verdicts(report), Kind::note, "as a detector's"));
   report.tracks = "mediapipe";
   CHECK(summary_json(report).at("tracks") == "mediapipe");
-  CHECK(says(verdicts(report), Kind::note,
-             "as a detector's (mediapipe), of other people than the clips' and through cameras "
-             "drawn around them; every method saw the same, and knew the camera."));
+  CHECK(has_verdict(
+      verdicts(report), Kind::note,
+      "as a detector's (mediapipe), of other people than the clips' and through cameras "
+      "drawn around them; every method saw the same, and knew the camera."));
   report.camera_known = false;
   CHECK(summary_json(report).at("camera_known") == false);
-  CHECK(says(verdicts(report), Kind::note, "every method saw the same, no camera known."));
+  CHECK(has_verdict(verdicts(report), Kind::note, "every method saw the same, no camera known."));
 }
 
-TEST_CASE("verdicts say in words who wins") {
+TEST_CASE("verdicts put in words which method wins") {
   using Kind = Verdict::Kind;
   EvaluationReport report = small_report();
-  CHECK(says(verdicts(report), Kind::good, "beats ridge regression"));
-  CHECK(says(verdicts(report), Kind::note,
-             "Even a pose that never moves reaches a flattened PCC of 0.9500"));
-  CHECK(!says(verdicts(report), Kind::bad, "trained on"));
-  CHECK(!says(verdicts(report), Kind::note, "fitted to the 2D track"));
-  CHECK(!says(verdicts(report), Kind::note, "damaged"));
-  CHECK(!says(verdicts(report), Kind::note, "show a person"));
+  CHECK(has_verdict(verdicts(report), Kind::good, "beats ridge regression"));
+  CHECK(has_verdict(verdicts(report), Kind::note,
+                    "Even a pose that never moves reaches a flattened PCC of 0.9500"));
+  CHECK(!has_verdict(verdicts(report), Kind::bad, "trained on"));
+  CHECK(!has_verdict(verdicts(report), Kind::note, "fitted to the 2D track"));
+  CHECK(!has_verdict(verdicts(report), Kind::note, "damaged"));
+  CHECK(!has_verdict(verdicts(report), Kind::note, "show a person"));
   report.clips[0].known_person = "08";
-  CHECK(says(verdicts(report), Kind::note, "1 of 4 clips show a person"));
+  CHECK(has_verdict(verdicts(report), Kind::note, "1 of 4 clips show a person"));
 
   for (ReportClip& clip : report.clips)
     clip.others["ridge_window"].score = test::score_of(5, 0.999, 0.9);
   report.clips[2].trained_on = true;
   report.clips[3].others["mean_pose"].score.pcc_flat = 1.2;  // mean 1.0125
   report = report_of(report.clips);
-  CHECK(says(verdicts(report), Kind::bad, "loses to ridge regression"));
-  CHECK(says(verdicts(report), Kind::bad, "nearer on 0 of 4 clips"));
-  CHECK(says(verdicts(report), Kind::bad, "On jump, ridge regression is nearer"));
-  CHECK(says(verdicts(report), Kind::bad, "1 of 4 clips were trained on"));
-  CHECK(says(verdicts(report), Kind::bad, "a pose that never moves (1.0125) is as good"));
+  CHECK(has_verdict(verdicts(report), Kind::bad, "loses to ridge regression"));
+  CHECK(has_verdict(verdicts(report), Kind::bad, "nearer on 0 of 4 clips"));
+  CHECK(has_verdict(verdicts(report), Kind::bad, "On jump, ridge regression is nearer"));
+  CHECK(has_verdict(verdicts(report), Kind::bad, "1 of 4 clips were trained on"));
+  CHECK(has_verdict(verdicts(report), Kind::bad, "a pose that never moves (1.0125) is as good"));
 }
 
 TEST_CASE("summary: the agreed fields, the single answer apart, null for NaN") {
@@ -250,7 +252,7 @@ TEST_CASE("write_report: every file, a page of its own without network") {
   CHECK_THROWS_AS(write_report(blocked / "file", report), InputError);
 }
 
-TEST_CASE("the page stays within its budget, and says what it leaves out") {
+TEST_CASE("the page stays within its budget, and names what it leaves out") {
   std::vector<ReportClip> clips;
   for (unsigned i = 0; i < 20; ++i)
     clips.push_back(test::report_clip("clip" + std::to_string(i), "walk", 10 * i, 2500, 4));

@@ -43,7 +43,7 @@ EvaluationReport duel(const Figures& model, const Figures& baseline, const char*
   return report;
 }
 
-bool says(const EvaluationReport& report, Kind kind, const std::string& text) {
+bool has_verdict(const EvaluationReport& report, Kind kind, const std::string& text) {
   for (const Verdict& verdict : verdicts(report))
     if (verdict.kind == kind && verdict.text == text) return true;
   for (const Verdict& verdict : verdicts(report)) MESSAGE(verdict.text);
@@ -53,29 +53,35 @@ bool says(const EvaluationReport& report, Kind kind, const std::string& text) {
 }  // namespace
 
 TEST_CASE("verdicts: nearer, or following better, or both, or neither") {
-  CHECK(says(duel({20, 0.9}, {25, 0.8}, "ridge_window"), Kind::good,
-             "The model beats ridge regression: 22.0 mm against 23.0 mm, per-channel PCC 0.900 "
-             "against 0.800; nearer on 1 of 2 clips."));
-  CHECK(says(duel({20, 0.7}, {25, 0.8}, "mlp_window"), Kind::bad,
-             "The model is nearer to the truth than the MLP, but follows the motion less well: "
-             "22.0 mm against 23.0 mm, per-channel PCC 0.700 against 0.800; nearer on 1 of 2 "
-             "clips."));
-  CHECK(says(duel({20, 0.9}, {22, 0.8}, "nearest_neighbour"), Kind::bad,
-             "The model is farther from the truth than the nearest neighbour, though it follows "
-             "the motion better: 22.0 mm against 20.0 mm, per-channel PCC 0.900 against 0.800; "
-             "nearer on 1 of 2 clips."));
-  CHECK(says(duel({20, 0.7}, {20, 0.8}, "hold_last_frame"), Kind::bad,
-             "The model loses to one pose held throughout: 22.0 mm against 18.0 mm, per-channel "
-             "PCC 0.700 against 0.800; nearer on 0 of 2 clips."));
+  CHECK(has_verdict(
+      duel({20, 0.9}, {25, 0.8}, "ridge_window"), Kind::good,
+      "The model beats ridge regression: 22.0 mm against 23.0 mm, per-channel PCC 0.900 "
+      "against 0.800; nearer on 1 of 2 clips."));
+  CHECK(has_verdict(
+      duel({20, 0.7}, {25, 0.8}, "mlp_window"), Kind::bad,
+      "The model is nearer to the truth than the MLP, but follows the motion less well: "
+      "22.0 mm against 23.0 mm, per-channel PCC 0.700 against 0.800; nearer on 1 of 2 "
+      "clips."));
+  CHECK(has_verdict(
+      duel({20, 0.9}, {22, 0.8}, "nearest_neighbour"), Kind::bad,
+      "The model is farther from the truth than the nearest neighbour, though it follows "
+      "the motion better: 22.0 mm against 20.0 mm, per-channel PCC 0.900 against 0.800; "
+      "nearer on 1 of 2 clips."));
+  CHECK(has_verdict(
+      duel({20, 0.7}, {20, 0.8}, "hold_last_frame"), Kind::bad,
+      "The model loses to one pose held throughout: 22.0 mm against 18.0 mm, per-channel "
+      "PCC 0.700 against 0.800; nearer on 0 of 2 clips."));
 }
 
 TEST_CASE("verdicts: a constant pose by the flattened correlation") {
-  CHECK(says(duel({20, 0.7, 0.95}, {50, 0.02, 0.81}, "mean_pose"), Kind::note,
-             "Even a pose that never moves reaches a flattened PCC of 0.8100 (the model: 0.9500): "
-             "judge by the per-channel PCC, where it gets 0.02."));
-  CHECK(says(duel({20, 0.7, 0.9}, {50, 0.02, 0.9}, "mean_pose"), Kind::bad,
-             "By the flattened PCC that the paper reports, a pose that never moves (0.9000) is as "
-             "good as the model (0.9000)."));
+  CHECK(has_verdict(
+      duel({20, 0.7, 0.95}, {50, 0.02, 0.81}, "mean_pose"), Kind::note,
+      "Even a pose that never moves reaches a flattened PCC of 0.8100 (the model: 0.9500): "
+      "judge by the per-channel PCC, where it gets 0.02."));
+  CHECK(has_verdict(
+      duel({20, 0.7, 0.9}, {50, 0.02, 0.9}, "mean_pose"), Kind::bad,
+      "By the flattened PCC that the paper reports, a pose that never moves (0.9000) is as "
+      "good as the model (0.9000)."));
   for (const Verdict& verdict : verdicts(duel({20, 0.7, 0.9}, {50, 0.02, 0.79}, "mean_pose")))
     CHECK(verdict.text.find("flattened") == std::string::npos);
 }
@@ -83,23 +89,24 @@ TEST_CASE("verdicts: a constant pose by the flattened correlation") {
 TEST_CASE("verdicts: planted feet, samples and how alike clips are") {
   EvaluationReport report = numbered_report();
   // The answer is the mean field, number 2: feet at 25 mm/s where the capture's are at 14.
-  CHECK(says(report, Kind::bad,
-             "Planted feet slide at 25 mm/s, in the capture itself at 14 mm/s: 1.8 times as "
-             "fast."));
+  CHECK(has_verdict(report, Kind::bad,
+                    "Planted feet slide at 25 mm/s, in the capture itself at 14 mm/s: 1.8 times as "
+                    "fast."));
   const ActionReport& walk = report.actions[0];
-  CHECK(
-      says(report, Kind::bad,
-           fmt::format("walk: 2 samples of a clip differ by {:.1f} mm; a sample is off by 49.2 mm "
-                       "on average, the best of 2 by 48.7 mm, the single mean-field answer by "
-                       "22.0 mm.",
-                       *walk.diversity_mm)));
+  CHECK(has_verdict(
+      report, Kind::bad,
+      fmt::format("walk: 2 samples of a clip differ by {:.1f} mm; a sample is off by 49.2 mm "
+                  "on average, the best of 2 by 48.7 mm, the single mean-field answer by "
+                  "22.0 mm.",
+                  *walk.diversity_mm)));
   for (ReportClip& clip : report.clips) clip.others.at(kMeanField).score.foot_slide = {20, 30, 3};
-  CHECK(says(report, Kind::good,
-             "Planted feet slide at 30 mm/s, in the capture itself at 20 mm/s: 1.5 times as "
-             "fast."));
-  CHECK(says(report, Kind::bad,
-             "1 of 5 clips were trained on: every figure that includes them flatters the model. "
-             "They are marked."));
+  CHECK(has_verdict(report, Kind::good,
+                    "Planted feet slide at 30 mm/s, in the capture itself at 20 mm/s: 1.5 times as "
+                    "fast."));
+  CHECK(has_verdict(
+      report, Kind::bad,
+      "1 of 5 clips were trained on: every figure that includes them flatters the model. "
+      "They are marked."));
 
   ActionReport& likeness = report.actions[0];
   likeness.pairs_real.statistics.median = 0.9;
@@ -125,15 +132,16 @@ TEST_CASE("verdicts: how many 90 % intervals hold the truth") {
     for (ReportClip& clip : report.clips) clip.samples[0].score.within_90 = share;
     return report;
   };
-  CHECK(says(with(0.851), Kind::good,
-             "Of 90 % intervals of the joints' places, 85.1 % hold the truth."));
-  CHECK(says(with(0.949), Kind::good,
-             "Of 90 % intervals of the joints' places, 94.9 % hold the truth."));
-  CHECK(
-      says(with(0.849), Kind::bad,
-           "Of 90 % intervals of the joints' places, 84.9 % hold the truth: they are too narrow."));
-  CHECK(says(with(0.951), Kind::bad,
-             "Of 90 % intervals of the joints' places, 95.1 % hold the truth: they are too wide."));
+  CHECK(has_verdict(with(0.851), Kind::good,
+                    "Of 90 % intervals of the joints' places, 85.1 % hold the truth."));
+  CHECK(has_verdict(with(0.949), Kind::good,
+                    "Of 90 % intervals of the joints' places, 94.9 % hold the truth."));
+  CHECK(has_verdict(
+      with(0.849), Kind::bad,
+      "Of 90 % intervals of the joints' places, 84.9 % hold the truth: they are too narrow."));
+  CHECK(has_verdict(
+      with(0.951), Kind::bad,
+      "Of 90 % intervals of the joints' places, 95.1 % hold the truth: they are too wide."));
   for (const Verdict& verdict : verdicts(with(NAN)))
     CHECK(verdict.text.find("intervals") == std::string::npos);
 }
@@ -143,21 +151,24 @@ TEST_CASE("verdicts: where a baseline is nearer on an action of several") {
   for (ReportClip& clip : report.clips)
     if (clip.action == "jump") clip.others.at("ridge_window").score.error.mpjpe_mm = 15;
   report.actions = analyse_actions(report.clips, 7);
-  CHECK(says(report, Kind::bad,
-             "On jump, ridge regression is nearer to the truth: 15.0 mm against the model's 22.0 "
-             "mm."));
+  CHECK(has_verdict(
+      report, Kind::bad,
+      "On jump, ridge regression is nearer to the truth: 15.0 mm against the model's 22.0 "
+      "mm."));
   for (const Verdict& verdict : verdicts(report))
     CHECK(verdict.text.find("On walk") == std::string::npos);
 }
 
-TEST_CASE("verdicts: where nothing moves no correlation is spoken of") {
+TEST_CASE("verdicts: where nothing moves no correlation is given") {
   const double none = std::numeric_limits<double>::quiet_NaN();
-  CHECK(says(duel({20, none}, {25, none}, "ridge_window"), Kind::good,
-             "The model beats ridge regression: 22.0 mm against 23.0 mm, no per-channel PCC, for "
-             "nothing moves; nearer on 1 of 2 clips."));
-  CHECK(says(duel({25, none}, {20, 0.5}, "ridge_window"), Kind::bad,
-             "The model loses to ridge regression: 27.0 mm against 18.0 mm, no per-channel PCC, "
-             "for nothing moves; nearer on 0 of 2 clips."));
+  CHECK(has_verdict(
+      duel({20, none}, {25, none}, "ridge_window"), Kind::good,
+      "The model beats ridge regression: 22.0 mm against 23.0 mm, no per-channel PCC, for "
+      "nothing moves; nearer on 1 of 2 clips."));
+  CHECK(has_verdict(
+      duel({25, none}, {20, 0.5}, "ridge_window"), Kind::bad,
+      "The model loses to ridge regression: 27.0 mm against 18.0 mm, no per-channel PCC, "
+      "for nothing moves; nearer on 0 of 2 clips."));
   for (const Verdict& verdict : verdicts(duel({20, none, 0.9}, {25, none, 0.9}, "mean_pose")))
     CHECK(verdict.text.find("nan") == std::string::npos);
 }

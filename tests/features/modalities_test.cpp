@@ -101,7 +101,7 @@ TEST_CASE(
   CHECK(known.camera_from_world.row(2).y() == doctest::Approx(-std::sin(20 * kRadians)));
   const Eigen::Vector3d up = known.camera_from_world * Eigen::Vector3d::UnitY();
   CHECK(std::atan2(up.x(), -up.y()) == doctest::Approx(-10 * kRadians));
-  // A model without a level view knows its own view alone.
+  // A model without a level view has its own view alone.
   Modalities old = m;
   old.level_view = false;
   CHECK(largest(old.assumed_camera({}, 1280, 720).camera_from_world - camera_rotation(35, 12)) <

@@ -165,7 +165,7 @@ TEST_CASE("pose features: root height is along the world's up, velocity sums up 
   CHECK(features.encode(single, kCamera).rightCols<3>().isZero());
 }
 
-TEST_CASE("pose features: camera-frame orientation is what the 6D block says") {
+TEST_CASE("pose features: camera-frame orientation is what the 6D block holds") {
   const Motion motion = swinging(small_body(), 3);
   const PoseFeatures features = PoseFeatures::fit({&motion});
   const MatrixD encoded = features.encode(motion, kCamera);
@@ -185,7 +185,7 @@ TEST_CASE("pose features: noisy and empty blocks still give rotations") {
   const MatrixD root = root_positions(features, motion);
   const Motion clean = features.decode(encoded, kCamera, motion.skeleton, 30, root);
   MatrixD scaled = encoded;
-  scaled.leftCols(features.dimension() - 4) *= 0.3;  // length says nothing
+  scaled.leftCols(features.dimension() - 4) *= 0.3;  // length carries no information
   CHECK(largest_difference(
             joint_positions(features.decode(scaled, kCamera, motion.skeleton, 30, root)),
             joint_positions(clean)) < 1e-9);
@@ -216,7 +216,7 @@ TEST_CASE("pose features: the axis along a joint's longest bone leads, the other
   for (const auto& [name, end] : {std::pair{"LLeg", "LShin"}, {"RArm", "RHand"}}) {
     CAPTURE(name);
     const int block = 6 * block_of(name), leads = 3 * features.leading_axis(block_of(name));
-    // The other axis says nothing of where the bone ends, however far it is off.
+    // Where the bone ends does not depend on the other axis, however far that is off.
     MatrixD askew = encoded;
     askew.middleCols<3>(block + 3 - leads) += 0.4 * encoded.middleCols<3>(block + leads);
     askew.middleCols<3>(block + 3 - leads).array() += 0.1;
@@ -228,7 +228,7 @@ TEST_CASE("pose features: the axis along a joint's longest bone leads, the other
     CHECK(largest_difference(again.middleCols<3>(block + 3 - leads),
                              encoded.middleCols<3>(block + 3 - leads)) > 0.05);
   }
-  // A model that is read knows it, too.
+  // A model that is read has the same axes.
   const PoseFeatures read = PoseFeatures::restored(features.skeleton(), features.root(),
                                                    features.joints(), features.fixed_channels());
   for (std::size_t k = 0; k < features.joints().size(); ++k)

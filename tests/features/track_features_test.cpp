@@ -187,7 +187,7 @@ TEST_CASE("track features: joints in no column are missing, and the body's size 
   CHECK(all_nan(seen.middleCols(2, 2)));
   for (const int column : {0, 1, 4, 5, 6, 7, 8})
     CHECK((seen.col(column) - whole.col(column)).cwiseAbs().maxCoeff() < 1e-9);
-  // A column that is empty throughout says as little.
+  // A column that is empty throughout counts as missing, too.
   Track2d empty = still_track();
   empty.x_px.col(0) = track.x_px.col(0);
   empty.y_px.col(0) = track.y_px.col(0);
@@ -197,7 +197,7 @@ TEST_CASE("track features: joints in no column are missing, and the body's size 
   CHECK(of_empty.unseen == filled.unseen);
   CHECK((same.array().isNaN() == seen.array().isNaN()).all());
   CHECK((same.rightCols<1>() - seen.rightCols<1>()).norm() < 1e-12);
-  // Nobody says what the foot is worth: then it is worth nothing.
+  // Where the foot's usual distance is not given, it counts as 0.
   const MatrixD alone = features.encode(track);
   CHECK(alone(0, 8) == doctest::Approx(std::log(std::sqrt((900 + 1600) / 3.0) / 1080)));
   // Half of what is seen at all is enough for a size.

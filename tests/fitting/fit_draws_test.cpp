@@ -1,4 +1,4 @@
-// Motions that fit_to_track draws about the likeliest, and what tells their width.
+// Motions that fit_to_track draws about the likeliest, and what sets their width.
 
 #include <doctest/doctest.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr PosteriorDraws kDraws{.count = 20, .seed = 4};
 
-/// What the scene's prior says of itself: the same deviation of every feature, in radians.
+/// The scene's prior mean with the same deviation of every feature, in radians.
 PosePrior prior_of(const Scene& scene, double deviation_rad) {
   const Eigen::VectorXd& scale = scene.modalities.pose_scale.deviation();
   const auto& kept = scene.modalities.pose_scale.kept_columns();
@@ -70,7 +70,7 @@ TEST_CASE("without a fit draws are what the prior leaves open, bones turned with
   REQUIRE(clip.draws.size() == 400);
   // e of deviation s about every axis moves a bone b by e × b: 2 s² |b|² in all. Two bones, of
   // which the lower one's e is as the upper one's by the correlation k, add 4 k s s' b·b'.
-  const MatrixD told = turn_deviations_rad(prior, scene.modalities, TrackFitSettings{});
+  const MatrixD prior_rad = turn_deviations_rad(prior, scene.modalities, TrackFitSettings{});
   const auto bone = [&](const char* upper, const char* lower) {
     const MatrixD places = joint_positions(clip.motion);
     const std::vector<int>& turning = scene.modalities.pose_features.joints();
@@ -79,7 +79,7 @@ TEST_CASE("without a fit draws are what the prior leaves open, bones turned with
         turning.begin();
     const MatrixD along = places.middleCols(3 * clip.motion.skeleton.find(lower), 3) -
                           places.middleCols(3 * clip.motion.skeleton.find(upper), 3);
-    return (along.array().colwise() * told.col(turn).array()).matrix().eval();
+    return (along.array().colwise() * prior_rad.col(turn).array()).matrix().eval();
   };
   const MatrixD hip = bone("Hips", "LeftUpLeg"), thigh = bone("LeftUpLeg", "LeftLeg");
   const double one = hip.squaredNorm(), two = one + thigh.squaredNorm(),
@@ -110,7 +110,7 @@ TEST_CASE("without a fit draws are what the prior leaves open, bones turned with
   CHECK(std::sqrt(sum / 400) == doctest::Approx(std::sqrt(2) * 0.1).epsilon(0.15));
 }
 
-TEST_CASE("fit draws: they spread as the settings say, and less where the track shows") {
+TEST_CASE("fit draws: they spread as the settings specify, and less where the track shows") {
   const Scene scene = make_scene(0, 30);
   const FittedClip narrow = drawn(scene, scene.mean);
   TrackFitSettings settings;
@@ -125,7 +125,7 @@ TEST_CASE("fit draws: they spread as the settings say, and less where the track 
         2 * width_of(scene, narrow, "LeftHand"));
 }
 
-TEST_CASE("fit draws: the prior's deviation counts as it is told, whatever the likeliest doubts") {
+TEST_CASE("fit draws: the prior's deviation counts as given, whatever the likeliest takes it for") {
   Scene scene = make_scene(0, 30);
   for (const char* joint : {"LeftForeArm", "LeftHand"})
     scene.track.confidence.col(scene.track.find(joint)).setZero();

@@ -1,4 +1,4 @@
-// The energy of a fit, by which readings of a track are told apart.
+// The energy of a fit, by which readings of a track are compared.
 
 #include <doctest/doctest.h>
 

@@ -100,7 +100,7 @@ TEST_CASE("known of a clip: without a camera it is the model's view with the tra
     const Motion there = scene.placed({camera_of_view(scene), std::nullopt}, settings);
     CHECK(largest(turns_of(got, scene.root()) - turns_of(there, scene.root())) < 1e-9);
     // The same path, but for where it stands: above the origin at first, as high on average as
-    // the answer says.
+    // in the answer.
     const MatrixD path = path_of(got, scene.root()), other = path_of(there, scene.root());
     const MatrixD shift = path - other;
     CHECK(largest(shift.rowwise() - shift.row(0)) < 1e-9);
@@ -126,7 +126,7 @@ TEST_CASE("known of a clip: the root's travel is kept where no camera is given")
   }
 }
 
-TEST_CASE("known of a clip: a body that nobody knows gets the lengths that the track shows") {
+TEST_CASE("known of a clip: an unknown body gets the lengths that the track shows") {
   Scene scene;
   // The track shows someone with thighs a tenth longer and forearms a tenth shorter.
   Motion other = scene.truth;
@@ -154,7 +154,7 @@ TEST_CASE("known of a clip: a body that nobody knows gets the lengths that the t
   }
   CHECK(length(got, "LeftHand") / length(own, "LeftHand") ==
         doctest::Approx(length(got, "RightHand") / length(own, "RightHand")));
-  // A camera does not tell how large anybody is: the body stays one of 1.7 m, so that the camera's
+  // A camera does not show how large a body is: it stays one of 1.7 m, so that the camera's
   // metres are its own, and is seen where the track shows it.
   CHECK(body_height(got) == doctest::Approx(body_height(own)));
   Camera camera = scene.camera;
@@ -209,7 +209,7 @@ TEST_CASE("known of a clip: motion goes onto the skeleton that is given") {
     CHECK(largest(joints_about(got, names, scene.root()) -
                   1.25 * joints_about(scene.truth, names, scene.root())) < 0.1);
     if (camera) continue;
-    // In its own units it stands as high as the answer says, in metres on a 1.7 m body.
+    // In its own units it stands as high as in the answer, in metres on a 1.7 m body.
     const double height = path_of(scene.truth, scene.root()).col(1).mean();
     CHECK(std::abs(path_of(got, scene.root()).col(1).mean() - 1.25 * height) < 0.1);
   }

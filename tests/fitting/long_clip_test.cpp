@@ -1,4 +1,4 @@
-// A clip of several windows: the middle one tells what they have in common, and where the others
+// A clip of several windows: the middle one gives what they have in common, and where the others
 // begin. CHECK is glog's here, as in terms_test.cpp.
 
 #include <doctest/doctest.h>

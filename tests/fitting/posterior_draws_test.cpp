@@ -61,7 +61,7 @@ PosteriorPoint point_of(const PosteriorClip& clip, const Eigen::VectorXd& row) {
   return point;
 }
 
-/// The inverse covariance, term by term. What nothing tells of has a deviation of 10.
+/// The inverse covariance, term by term. Without any term an unknown has a deviation of 10.
 class Information {
  public:
   Information(const PosteriorClip& clip, const RayNoise& noise, const TrackFitSettings& settings)
@@ -162,19 +162,19 @@ TEST_CASE("posterior draws: their covariance is the posterior's, of every pair o
       TrackFitSettings settings;
       settings.spread = spread;
       const MatrixD found = covariance_of(drawn(clip, settings, kDraws));
-      Eigen::Index told = found.rows();
-      if (!body_unknown) told -= 3;  // of lengths that are known nothing is drawn
-      CHECK(found.bottomRightCorner(found.rows() - told, found.rows() - told).isZero());
-      MatrixD wanted = MatrixD::Identity(told, told);
+      Eigen::Index unknowns = found.rows();
+      if (!body_unknown) unknowns -= 3;  // of lengths that are known nothing is drawn
+      CHECK(found.bottomRightCorner(found.rows() - unknowns, found.rows() - unknowns).isZero());
+      MatrixD wanted = MatrixD::Identity(unknowns, unknowns);
       {
         PosteriorClip known = clip;
         const Information information(known, {kNoise, 2 * kNoise}, settings);
         MatrixD all = information.covariance();
-        wanted = spread * spread * all.topLeftCorner(told, told);
+        wanted = spread * spread * all.topLeftCorner(unknowns, unknowns);
       }
       double worst = 0;
-      for (Eigen::Index i = 0; i < told; ++i)
-        for (Eigen::Index j = 0; j < told; ++j) {
+      for (Eigen::Index i = 0; i < unknowns; ++i)
+        for (Eigen::Index j = 0; j < unknowns; ++j) {
           // Of normal draws' mean products.
           const double deviation =
               std::sqrt((wanted(i, i) * wanted(j, j) + wanted(i, j) * wanted(i, j)) / kDraws);
@@ -191,7 +191,7 @@ TEST_CASE("posterior draws: the same by the same seed, others by another, each f
   CHECK(few == more.topRows(3));
   CHECK(few.row(0) != few.row(1));
   CHECK(drawn(clip, {}, 3, 4).row(0) != few.row(0));
-  // The second and third window have as many frames, and nothing else to tell them apart.
+  // The second and third window have as many frames, and differ in nothing else.
   constexpr Eigen::Index kFrames = 960, kOwn = 2 * kAllFrames.overlap + 100;  // in no other window
   const std::vector<ClipWindow> windows = windows_of(kFrames);
   REQUIRE(windows.size() == 4);

@@ -1,4 +1,4 @@
-// The likeliest motion, of a walk whose prior is wrong in ways that the fit is not told.
+// The likeliest motion, of a walk whose prior is wrong in ways unknown to the fit.
 
 #include <doctest/doctest.h>
 
@@ -149,7 +149,7 @@ TEST_CASE(
   CHECK(surely_px > 3);
 }
 
-TEST_CASE("posterior: the root's way bends as the prior's velocity says") {
+TEST_CASE("posterior: the root's way bends as the prior's velocity does") {
   Scene scene = make_scene(0, 30);
   // A tracker's jitter, of the whole body.
   for (int t = 0; t < 30; ++t) scene.track.x_px.row(t).array() += t % 2 ? 3 : -3;

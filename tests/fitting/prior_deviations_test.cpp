@@ -1,4 +1,4 @@
-// How far orientations may turn, from what a prior says.
+// How far orientations may turn, from a prior's deviations.
 
 #include "fitting/prior_deviations.hpp"
 
@@ -15,22 +15,22 @@ using namespace mcdbn::test;
 
 namespace {
 
-/// Of one orientation whose six numbers were told to be so many degrees off.
-double deviation_deg(double told_deg, const TrackFitSettings& settings) {
+/// Of one orientation whose six numbers have a deviation of so many degrees.
+double deviation_deg(double given_deg, const TrackFitSettings& settings) {
   const Modalities modalities = modalities_of({two_second_walk()}, {});
   const auto& kept = modalities.pose_scale.kept_columns();
   PosePrior prior(MatrixF::Zero(1, std::ssize(kept)), MatrixF::Zero(1, std::ssize(kept)));
   // A turn of deviation s moves two unit vectors by 2 s² each; here all of it by one number.
-  const double told_rad = told_deg * std::numbers::pi / 180;
+  const double given_rad = given_deg * std::numbers::pi / 180;
   prior.deviation(0, 0) =
-      static_cast<float>(2 * told_rad / modalities.pose_scale.deviation()[kept[0]]);
+      static_cast<float>(2 * given_rad / modalities.pose_scale.deviation()[kept[0]]);
   const int turn = kept[0] / PoseFeatures::kBlock;
   return turn_deviations_rad(prior, modalities, settings)(0, turn) * 180 / std::numbers::pi;
 }
 
 }  // namespace
 
-TEST_CASE("prior deviations: as told, a tenth of a degree at least") {
+TEST_CASE("prior deviations: as given, a tenth of a degree at least") {
   TrackFitSettings settings;
   settings.turn_deg = 10;
   CHECK(deviation_deg(0, settings) == doctest::Approx(0.1));
@@ -38,7 +38,7 @@ TEST_CASE("prior deviations: as told, a tenth of a degree at least") {
   CHECK(deviation_deg(40, settings) == doctest::Approx(40).epsilon(1e-5));
 }
 
-TEST_CASE("prior deviations: a prior that says none has the typical one") {
+TEST_CASE("prior deviations: a prior without any has the typical one") {
   const Modalities modalities = modalities_of({two_second_walk()}, {});
   const MatrixF mean = MatrixF::Zero(2, std::ssize(modalities.pose_scale.kept_columns()));
   TrackFitSettings settings;

@@ -18,7 +18,7 @@ using namespace mcdbn;
 
 namespace {
 
-/// A clip, its 2D track, and what root_trajectory is told and should answer. Units: centimetres.
+/// A clip, its 2D track, and what root_trajectory is given and should answer. Units: centimetres.
 struct Scene {
   Motion motion;
   Camera camera;
@@ -125,7 +125,7 @@ TEST_CASE("root trajectory: the model's velocity bridges what the track does not
   CHECK(path.allFinite());
   CHECK(largest(path - scene.root) < 0.1);
   CHECK(largest(solve(scene, false) - scene.root) < 12);  // it bobs unseen for a second
-  // Also at the ends, where only the velocity says where to go.
+  // Also at the ends, where the path follows from the velocity alone.
   scene = make_scene(walk());
   scene.track.confidence.topRows(10).setZero();
   scene.track.confidence.bottomRows(10).setZero();
@@ -142,7 +142,7 @@ TEST_CASE("root trajectory: joints are joined by name, swapped ones do not pull"
   Scene scene = make_scene(walk());
   const MatrixD whole = solve(scene, true);
   Scene mixed = scene;
-  // Another order, and a joint that only one side knows.
+  // Another order, and a joint that only one side has.
   std::reverse(mixed.track.joint_names.begin(), mixed.track.joint_names.end());
   mixed.track.x_px = scene.track.x_px.rowwise().reverse();
   mixed.track.y_px = scene.track.y_px.rowwise().reverse();

@@ -56,7 +56,7 @@ TEST_CASE("root trajectory: joints that are hardly trusted hardly pull") {
   CHECK(rms(doubted.solve() - clean.root) < 0.05 * rms(trusted.solve() - clean.root));
 }
 
-TEST_CASE("root trajectory: a velocity counts as much as its error says") {
+TEST_CASE("root trajectory: a velocity counts by its error") {
   Scene scene = make_scene();
   add_pixel_noise(scene.track, 4, 3);
   // The right velocity: believed it leaves a smooth path at the right speed, doubted a rough one.

@@ -19,7 +19,7 @@ SeenNoise noise_of(double track_px, bool own_skeleton) {
 
 }  // namespace
 
-TEST_CASE("seen noise: a track is a detector's until a solution says otherwise") {
+TEST_CASE("seen noise: a track is a detector's until a solution shows otherwise") {
   const SeenNoise noise = noise_of(1, true);
   CHECK(noise.rays().lasting == doctest::Approx(kUsual));
   CHECK(noise.rays().white == doctest::Approx(2 * 1 / kFocal_px));  // TrackFitSettings::caution
@@ -52,8 +52,7 @@ TEST_CASE("seen noise: an exact projection is found out, of an own skeleton alon
   CHECK(std::hypot(other.rays().lasting, 0.25 / kFocal_px) == doctest::Approx(kUsual));
 }
 
-TEST_CASE(
-    "seen noise: a track that tells of some itself is not exact, near as a solution may come") {
+TEST_CASE("seen noise: a track with noise of its own is not exact, near as a solution may come") {
   const auto exact_at = [](double share) {
     SeenNoise noise = noise_of(share * kUsual * kFocal_px / TrackFitSettings{}.caution, true);
     CHECK(noise.rays().steady == (share < 0.25));
@@ -64,7 +63,7 @@ TEST_CASE(
   CHECK(exact_at(0.24));
   CHECK_FALSE(exact_at(0.26));
   CHECK_FALSE(exact_at(0.45));
-  // An unknown body's is a detector's, whatever the track tells.
+  // An unknown body's is a detector's, whatever noise the track shows.
   CHECK_FALSE(noise_of(0, false).rays().steady);
 }
 
@@ -81,7 +80,7 @@ TEST_CASE("seen noise: that of a known body which no detector saw was measured, 
   own.learn(0.01 * kUsual);
   CHECK_FALSE(own.rays().exact);
   CHECK_FALSE(other.measure());
-  CHECK_FALSE(exact.measure());  // before a solution told anything of it, too
+  CHECK_FALSE(exact.measure());  // before the first solution, too
   exact.learn(0.25 * kUsual);
   CHECK_FALSE(exact.measure());
 }

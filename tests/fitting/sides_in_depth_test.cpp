@@ -230,7 +230,7 @@ TEST_CASE("window problem: where rays are exact the prior's mean counts for less
   const auto followed = [&](bool is_exact, double counts) {
     TrackFitSettings settings;
     settings.exact = counts;
-    const RayNoise noise{0.05, 0, is_exact};  // so far off that the prior is heard
+    const RayNoise noise{0.05, 0, is_exact};  // so far off that the prior counts
     const PosteriorPoint start = solved_from(clip, {1, 2}, {}, in_one_swing);
     return most_likely(clip, noise, settings, start).turns.norm();
   };

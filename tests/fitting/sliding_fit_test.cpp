@@ -107,7 +107,7 @@ TEST_CASE("a sliding fit: eight frames later it is where the whole clip's fit is
   CHECK(from_truth < 0.5 * unfitted);
 }
 
-TEST_CASE("a sliding fit: a prior that is surer than usual is believed as one that says nothing") {
+TEST_CASE("a sliding fit: a prior that is surer than usual counts as one without deviations") {
   const Scene scene = make_scene();
   const auto channels = [&](const PosePrior& prior) {
     return slid(scene, scene.truth.skeleton, 8, {}, prior).channels;
@@ -205,7 +205,7 @@ TEST_CASE("a sliding fit: after a look back it is no matter how solutions went b
   }
 }
 
-TEST_CASE("a sliding fit: it looks back for good, and its thread tells nothing by its pace") {
+TEST_CASE("a sliding fit: it keeps looking back, and its thread's pace changes nothing") {
   const Scene scene = make_scene();
   const auto again = [](const auto& rows, Eigen::Index first, Eigen::Index count) {
     std::decay_t<decltype(rows)> part(count, rows.cols());
@@ -284,7 +284,7 @@ TEST_CASE("a sliding fit: what settles does not jump where the past is looked at
 
 TEST_CASE("a sliding fit: what settles does not jump where less noise is learned") {
   const Scene scene = make_scene();
-  // Each fifth of a second tells of it, from when the first frame is dropped.
+  // It is learned each fifth of a second, from when the first frame is dropped.
   const Moved moved = moved_by(scene, {scene.known.camera, scene.truth.skeleton}, {}, {19, 25, 31});
   CAPTURE(moved.settling_mm);
   CAPTURE(moved.newest_mm);
@@ -292,7 +292,7 @@ TEST_CASE("a sliding fit: what settles does not jump where less noise is learned
   CHECK(moved.settling_mm < 0.35 * moved.newest_mm);
 }
 
-TEST_CASE("a sliding fit: what dropped frames tell leaves the others where all frames put them") {
+TEST_CASE("a sliding fit: what dropped frames add leaves the others where all frames put them") {
   const Scene scene = make_scene(1, 14);
   const Skeleton& model = scene.truth.skeleton;
   const std::vector<std::string> names = scene.modalities.track_features.joint_names();

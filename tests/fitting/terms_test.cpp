@@ -52,15 +52,15 @@ void check_jacobians(const ceres::CostFunction& cost, Unknowns at) {
   for (const auto& block : at.blocks)
     values.emplace_back(static_cast<std::size_t>(rows) * block.size(), 777.0);
   for (auto& value : values) all.push_back(value.data());
-  Eigen::VectorXd miss(rows);
-  REQUIRE(cost.Evaluate(at.pointers().data(), miss.data(), all.data()));
-  DOCTEST_CHECK((miss - residuals(cost, at)).norm() < 1e-12);
+  Eigen::VectorXd got(rows);
+  REQUIRE(cost.Evaluate(at.pointers().data(), got.data(), all.data()));
+  DOCTEST_CHECK((got - residuals(cost, at)).norm() < 1e-12);
   for (std::size_t b = 0; b < at.blocks.size(); ++b) {
     CAPTURE(b);
     std::vector<double> alone(values[b].size(), 777.0);
     std::vector<double*> one(at.blocks.size(), nullptr);
     one[b] = alone.data();
-    REQUIRE(cost.Evaluate(at.pointers().data(), miss.data(), one.data()));
+    REQUIRE(cost.Evaluate(at.pointers().data(), got.data(), one.data()));
     DOCTEST_CHECK(alone == values[b]);
     for (std::size_t i = 0; i < at.blocks[b].size(); ++i) {
       constexpr double kStep = 1e-6;

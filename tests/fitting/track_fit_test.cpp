@@ -65,7 +65,7 @@ struct Scene {
     return modalities.encode_pose(wrong, known.camera->camera_from_world);
   }
 
-  /// Which believe any prior as far as it says.
+  /// Which trust any prior by its own deviations.
   static TrackFitSettings believing() {
     TrackFitSettings settings;
     settings.turn_deg = 0.1;
@@ -172,7 +172,7 @@ TEST_CASE("fit to track: each frame moves as far as its own deviation lets it") 
   CHECK(held < 0.1F * moved);
 }
 
-TEST_CASE("fit to track: a velocity counts as much as its deviation says") {
+TEST_CASE("fit to track: a velocity counts by its deviation") {
   Scene scene;
   scene.prior.mean = scene.right;
   const auto& kept = scene.modalities.pose_scale.kept_columns();

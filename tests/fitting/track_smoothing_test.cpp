@@ -20,7 +20,7 @@ Track2d track_of(int frames) {
 
 }  // namespace
 
-TEST_CASE("a track's noise is told from the track") {
+TEST_CASE("a track's noise is measured from the track") {
   // Straight lines have no third differences but the noise's.
   Track2d track = track_of(2);
   const Eigen::Index frames = 1000, joints = track.joint_count();

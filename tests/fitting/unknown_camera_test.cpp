@@ -1,4 +1,4 @@
-// Pitch, roll and focal length of a camera that nobody calibrated, told by the fit.
+// Pitch, roll and focal length of an uncalibrated camera, found by the fit.
 
 #include <doctest/doctest.h>
 
@@ -16,8 +16,8 @@ using namespace mcdbn::test;
 
 namespace {
 
-/// A walk before a camera that looks down and is turned, and what a network says that knows how
-/// people walk, upright, and not how this camera stands.
+/// A walk before a camera that looks down and is turned, and the answer of a network that has
+/// learnt upright walks, and not how this camera stands.
 struct Scene {
   CameraPlacement view{60, 0, std::nullopt, 40, 1920, 1080};
   Motion truth;
@@ -42,8 +42,8 @@ struct Scene {
     pose = modalities.encode_pose(truth, camera.camera_from_world);
   }
 
-  FittedClip fit(const AssumedView& said, const TrackFitSettings& settings = {}) const {
-    return fit_to_track(pose, modalities, track, {std::nullopt, truth.skeleton, said}, settings);
+  FittedClip fit(const AssumedView& given, const TrackFitSettings& settings = {}) const {
+    return fit_to_track(pose, modalities, track, {std::nullopt, truth.skeleton, given}, settings);
   }
 };
 
@@ -62,16 +62,16 @@ TEST_CASE("unknown camera: pitch and roll are those that make an upright walker"
     }
 }
 
-TEST_CASE("unknown camera: what was said stays") {
+TEST_CASE("unknown camera: what was given stays") {
   const Scene scene(12, 3);
-  AssumedView said;
-  said.pitch_deg = 12;
-  CHECK(*scene.fit(said).view.pitch_deg == doctest::Approx(12));
-  CHECK(std::abs(*scene.fit(said).view.roll_deg - 3) < 1.5);
-  said.pitch_deg = 3;  // however wrong
-  said.roll_deg = -2;
-  said.field_of_view_deg = 50;
-  const AssumedView view = scene.fit(said).view;
+  AssumedView given;
+  given.pitch_deg = 12;
+  CHECK(*scene.fit(given).view.pitch_deg == doctest::Approx(12));
+  CHECK(std::abs(*scene.fit(given).view.roll_deg - 3) < 1.5);
+  given.pitch_deg = 3;  // however wrong
+  given.roll_deg = -2;
+  given.field_of_view_deg = 50;
+  const AssumedView view = scene.fit(given).view;
   CHECK(*view.pitch_deg == doctest::Approx(3));
   CHECK(*view.roll_deg == doctest::Approx(-2));
   CHECK(*view.field_of_view_deg == doctest::Approx(50));
@@ -89,7 +89,7 @@ TEST_CASE("unknown camera: what was found before is where the search starts, and
   // The answer is taken to be upright in the view that was found: from the right one nothing moves.
   known.found = {12, 0, {}};
   CHECK(std::abs(pitch_deg() - 12) < std::abs(from_level - 12) + 0.5);
-  known.found.pitch_deg = 30;  // of which nobody was sure
+  known.found.pitch_deg = 30;  // only a start
   CHECK(pitch_deg() < 25);
 }
 
@@ -137,9 +137,9 @@ TEST_CASE("unknown camera: the answer is seen where the track shows it, through 
   const Scene scene(12, 4);
   const FittedClip clip = scene.fit({});
   const Track2d seen = project_motion(clip.motion, clip.camera);
-  const double miss = ((seen.x_px - scene.track.x_px).cwiseAbs().mean() +
-                       (seen.y_px - scene.track.y_px).cwiseAbs().mean());
-  CHECK(miss < 6);
+  const double off_px = ((seen.x_px - scene.track.x_px).cwiseAbs().mean() +
+                         (seen.y_px - scene.track.y_px).cwiseAbs().mean());
+  CHECK(off_px < 6);
   CHECK((seen.x_px - clip.shown.x_px).cwiseAbs().maxCoeff() < 1e-6);
   CHECK((seen.y_px - clip.shown.y_px).cwiseAbs().maxCoeff() < 1e-6);
 }
@@ -151,7 +151,7 @@ TEST_CASE("unknown camera: standing feet are on one level") {
   const auto spread = [&](double ground_m) {
     TrackFitSettings settings;
     settings.ground_m = ground_m;
-    settings.step_s = 1 / scene.track.fps;  // each frame a witness
+    settings.step_s = 1 / scene.track.fps;  // every frame counts
     const Motion motion = fit_to_track(scene.pose, scene.modalities, scene.track,
                                        {scene.camera, scene.truth.skeleton}, settings)
                               .motion;

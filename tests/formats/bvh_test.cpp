@@ -64,7 +64,7 @@ void check_round_trip(const Motion& motion) {
 
 }  // namespace
 
-TEST_CASE("a small file reads as it says") {
+TEST_CASE("a small file is read as written") {
   std::vector<std::string> warnings;
   const Motion motion = parse_bvh(kSmall, "small.bvh", &warnings);
   CHECK(warnings.empty());

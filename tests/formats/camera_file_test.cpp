@@ -74,7 +74,7 @@ TEST_CASE("camera files: what is wrong is named with its file and line") {
         Case{"image_height: 480", "image_height: -3", ":4: image_height"},
         Case{"camera_matrix", "matrix", "camera_matrix is missing"},
         Case{"   rows: 3", "   rows: 9", "camera_matrix"},
-        // What a reader that makes room first would try, and say that it cannot.
+        // A reader that allocated before it checked would fail with another message.
         Case{"   rows: 3", "   rows: 1000000000", "camera_matrix is not a matrix of numbers"},
         Case{"   dt: d", "   dt: \"2d\"", "camera_matrix cannot be read"},
         Case{"800.", "-1.", ":5: camera_matrix"},

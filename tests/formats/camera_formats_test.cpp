@@ -82,7 +82,7 @@ TEST_CASE("camera formats: of several cameras one is chosen by name") {
   check_as_section(read_camera(odd.string() + ":one"), 1.0);
 }
 
-TEST_CASE("camera formats: Anipose's units are told by how far the cameras stand") {
+TEST_CASE("camera formats: Anipose's units follow from how far the cameras stand") {
   const ScratchFolder folder;
   const auto file = folder.write(
       "calibration.toml", section("cam_0", 1000, "", "0.1,\n 0, 0, 0, 0.2") + "[metadata]\n");

@@ -31,7 +31,7 @@ std::filesystem::path openpose_folder(const ScratchFolder& folder, const std::st
   return folder / name;
 }
 
-bool tells(const TrackReading& reading, const std::string& what) {
+bool reports(const TrackReading& reading, const std::string& what) {
   return std::ranges::any_of(reading.notices, [&](const std::string& notice) {
     return notice.find(what) != std::string::npos;
   });
@@ -59,20 +59,20 @@ TEST_CASE("frame numbers: gaps are missing joints, steps are none") {
   const TrackReading steps =
       read_tracks(openpose_folder(folder, "steps", {"f_000.json", "f_005.json", "f_010.json"}));
   CHECK(steps.people.front().frames() == 3);
-  CHECK(tells(steps, "steps of 5"));
+  CHECK(reports(steps, "steps of 5"));
 
   const TrackReading images = read_tracks(
       openpose_folder(folder, "images", {"f_000785.json", "f_040083.json", "f_196141.json"}));
   CHECK(images.people.front().frames() == 3);
-  CHECK(tells(images, "one after the other"));
+  CHECK(reports(images, "one after the other"));
 }
 
-TEST_CASE("frame numbers: names that have none are left out and said, doubles refused") {
+TEST_CASE("frame numbers: names that have none are left out with a notice, doubles refused") {
   const ScratchFolder folder;
   const TrackReading odd =
       read_tracks(openpose_folder(folder, "odd", {"f_1.json", "f_2.json", "front.json"}));
   CHECK(odd.people.front().frames() == 2);
-  CHECK(tells(odd, "front.json has no frame number"));
+  CHECK(reports(odd, "front.json has no frame number"));
   const auto doubles = openpose_folder(folder, "doubles", {"a_1.json", "b_1.json", "b_2.json"});
   CHECK_THROWS_WITH_AS(read_track(doubles), doctest::Contains("a second file of frame 1"),
                        InputError);
@@ -88,7 +88,7 @@ TEST_CASE("COCO's flags: visible, hidden and not labelled") {
   CHECK(track.confidence(0, 0) == 1);
   CHECK(track.confidence(0, 1) == 0.5);
   CHECK(track.width_px == 1280);
-  CHECK(tells(reading, "visibility flags"));
+  CHECK(reports(reading, "visibility flags"));
 }
 
 TEST_CASE("confidences a little beyond 1 are cut, not scaled") {
@@ -96,5 +96,5 @@ TEST_CASE("confidences a little beyond 1 are cut, not scaled") {
   const LayoutSample& sample = sample_called("mmpose_video.json");
   const TrackReading reading = read_tracks(folder.write(sample.name, sample.text));
   CHECK((reading.people.front().confidence.array() == 1).all());
-  CHECK(tells(reading, "are cut at 1"));
+  CHECK(reports(reading, "are cut at 1"));
 }

@@ -93,7 +93,7 @@ TEST_CASE("frame stream: places as CSV and JSON lines, on the frame's own bones"
   CHECK(frame.at("channels").at(5).get<double>() == doctest::Approx(motion.channels(2, 5)));
 }
 
-TEST_CASE("frame stream: what cannot be written is said") {
+TEST_CASE("frame stream: what cannot be written is reported") {
   std::stringstream out;
   out.setstate(std::ios::badbit);
   const Motion motion = swinging(small_body(), 1);

@@ -1,4 +1,4 @@
-// Files may be of any length: whoever waits for one can say that it is enough.
+// Files may be of any length: reading one can be interrupted.
 #include "base/interruption.hpp"
 
 #include <doctest/doctest.h>

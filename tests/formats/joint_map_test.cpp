@@ -38,7 +38,7 @@ TEST_CASE("joint map: a role and a name on each line") {
                          "ber"}});
 }
 
-TEST_CASE("joint map: what is wrong is said with its line") {
+TEST_CASE("joint map: what is wrong is reported with its line") {
   CHECK(error_of("head = \"a\"\nleft_heap = \"b\"")
             .starts_with("map.toml:2: no role is called "
                          "'left_heap'; there are: pelvis, "));

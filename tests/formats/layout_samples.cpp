@@ -235,7 +235,7 @@ LayoutSample coco_annotations() {
           json{{"images", images}, {"annotations", annotations}}.dump()};
 }
 
-/// MediaPipe's own names of JSON, with a frame in which nobody was found.
+/// MediaPipe's own names of JSON, with a frame in which no person was found.
 LayoutSample mediapipe_json() {
   const Track2d track = sample_figure("MEDIAPIPE_33");
   json frames = json::array();
@@ -301,7 +301,7 @@ LayoutSample mediapipe_columns() {
   return {"columns.csv", "mediapipe", "MEDIAPIPE_33", kFrames, 1, text};
 }
 
-/// The rows of frame 2 are missing: nobody was found.
+/// The rows of frame 2 are missing: no person was found.
 LayoutSample mediapipe_rows() {
   const Track2d track = sample_figure("MEDIAPIPE_33");
   std::string text = "Frame,LandmarkID,X,Y\n";

@@ -128,14 +128,14 @@ TEST_CASE("people: the file's own numbers hold where each is there once") {
   Frames frames;
   for (int frame = 0; frame < 6; ++frame) {
     frames.push_back({person_at(100), person_at(300)});
-    // The tracker says that they have changed places.
+    // By the tracker's numbers they have changed places.
     frames.back()[0].id = frame < 3 ? 7 : 9;
     frames.back()[1].id = frame < 3 ? 9 : 7;
   }
   auto people = follow_people(frames, 30);
   REQUIRE(people.size() == 2);
   CHECK(x_of(frames, people[0], 0) != x_of(frames, people[0], 5));
-  for (auto& frame : frames) frame[1].id = frame[0].id = 0;  // a number that says nothing
+  for (auto& frame : frames) frame[1].id = frame[0].id = 0;  // the same number for both
   people = follow_people(frames, 30);
   REQUIRE(people.size() == 2);
   CHECK(x_of(frames, people[0], 0) == x_of(frames, people[0], 5));

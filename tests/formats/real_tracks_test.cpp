@@ -1,4 +1,4 @@
-// Every 2D track of the shared data is read, and is what its README says.
+// Every 2D track of the shared data is read, and is what its README describes.
 #include "mcdbn/formats/track_file.hpp"
 
 #include <doctest/doctest.h>

@@ -132,7 +132,7 @@ TEST_CASE("roles of recorded skeletons: those of other programs") {
   check_roles("bvh_zoo/test_freebvh.bvh", mixamo, "Left", "Right");
 }
 
-TEST_CASE("roles of recorded skeletons: the tree tells what names tell") {
+TEST_CASE("roles of recorded skeletons: the tree gives the roles that names give") {
   for (const char* file : {"cmu/walk/02_01.bvh", "bvh_zoo/bvh_test1.bvh", "bvh_zoo/bvh_test2.bvh",
                            "bvh_zoo/walk01.bvh", "bvh_zoo/dab.bvh"}) {
     if (!test::have_shared_data(file, "roles by the tree")) continue;

@@ -90,10 +90,10 @@ TEST_CASE("track CSV: what other programs write is read") {
 TEST_CASE("track CSV: times that are not even are read with a notice, even ones without") {
   const test::ScratchFolder folder;
   const auto notices = [&](const std::string& times) {
-    std::vector<std::string> told;
-    read_track(folder.write("a.csv", "# width_px=640 height_px=480\n" + times), {}, &told);
+    std::vector<std::string> lines;
+    read_track(folder.write("a.csv", "# width_px=640 height_px=480\n" + times), {}, &lines);
     std::string all;
-    for (const std::string& one : told) all += one + '\n';
+    for (const std::string& one : lines) all += one + '\n';
     return all;
   };
   const std::string header = "time_s,Hips_x_px,Hips_y_px\n";
@@ -103,13 +103,13 @@ TEST_CASE("track CSV: times that are not even are read with a notice, even ones 
             .find("time_s goes on by 0.04 to 0.08 s: frames are taken as even, 18.75 a second") !=
         std::string::npos);
   // Thirty times off, one way and the other.
-  CHECK(notices(header + "0,1,2\n1,1,2\n2,1,2\n").find("says 1 frames a second") !=
+  CHECK(notices(header + "0,1,2\n1,1,2\n2,1,2\n").find("gives 1 frames a second") !=
         std::string::npos);
-  CHECK(notices("# fps=900\nHips_x_px,Hips_y_px\n1,2\n").find("says 900 frames a second") !=
+  CHECK(notices("# fps=900\nHips_x_px,Hips_y_px\n1,2\n").find("gives 900 frames a second") !=
         std::string::npos);
 }
 
-TEST_CASE("track CSV: confidence 0 means missing, an empty confidence says nothing") {
+TEST_CASE("track CSV: confidence 0 means missing, an empty confidence means 1") {
   const test::ScratchFolder folder;
   const Track2d track =
       read_track_csv(folder.write("a.csv", "# fps=50\n" + kHeader + "0,0,0\n3,4,\n"));

@@ -1,4 +1,4 @@
-// What files say of people, rates, frames and confidences, each where another reading would do for
+// What files give of people, rates, frames and confidences, each where another reading would do for
 // the layouts' figures.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -127,7 +127,7 @@ TEST_CASE("track details: labelled images are frames by the numbers in their nam
   REQUIRE(labels.people.front().frames() == 4);
   CHECK(labels.people.front().confidence(1, 0) == 0);
   CHECK(labels.people.front().y_px(3, 0) == 9);
-  // Names whose numbers are not different ones say nothing.
+  // Names whose numbers are not different ones give no order.
   CHECK(read_tracks(folder.write("labels.csv", header + "a7.png,5,6\nb7.png,7,8\nc9.png,7,9\n"))
             .people.front()
             .frames() == 3);

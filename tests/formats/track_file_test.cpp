@@ -30,7 +30,7 @@ TEST_CASE("every track format has a name of its own, and recognises and reads wh
     CHECK(names.insert(format.name).second);
     CHECK(format.about != "");
     if (format.write == nullptr) continue;
-    // The content tells, not the name.
+    // The content decides, not the name.
     const auto path = folder / ("track_of_" + format.name);
     const Track2d written = figure_track(format);
     format.write(path, written);

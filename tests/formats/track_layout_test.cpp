@@ -60,7 +60,7 @@ TEST_CASE("layouts: each is recognised, and is the figure that was written") {
   }
 }
 
-TEST_CASE("layouts: frames in which nobody was found are frames of missing joints") {
+TEST_CASE("layouts: frames in which no person was found are frames of missing joints") {
   const ScratchFolder folder;
   for (const LayoutSample& sample : layout_samples()) {
     if (sample.name != "rows.csv" && sample.name != "mediapipe.json") continue;
@@ -85,7 +85,7 @@ TEST_CASE("layouts: confidences of other scales end at 1") {
   }
 }
 
-TEST_CASE("layouts: what is wrong is told by its place") {
+TEST_CASE("layouts: what is wrong is reported with its place") {
   const ScratchFolder folder;
   struct Case {
     std::string name, text, message;
@@ -97,7 +97,7 @@ TEST_CASE("layouts: what is wrong is told by its place") {
                 "a.json: people[0].pose_keypoints_2d[2]: a text where a number"},
            Case{"a.json", R"({"people": [{"pose": []}]})",
                 "a.json: people[0]: no key 'pose_keypoints_2d'"},
-           Case{"a.json", R"({"people": []})", "a.json: nobody in any frame"},
+           Case{"a.json", R"({"people": []})", "a.json: no person in any frame"},
            Case{"a.json", "{\"people\": [\n{]}", "a.json:2: no readable JSON"},
            Case{"a.json", R"({"people": 1e999})", "a.json: "},
            Case{"a.json", R"([{"image_id": 1, "keypoints": [1, 2, 1]}, {"image_id": 2}])",
@@ -121,7 +121,7 @@ TEST_CASE("layouts: what is wrong is told by its place") {
   }
 }
 
-TEST_CASE("layouts: a folder of images in the first of which nobody was found") {
+TEST_CASE("layouts: a folder of images in the first of which no person was found") {
   const ScratchFolder folder;
   std::filesystem::create_directory(folder / "images");
   for (const LayoutSample& sample : layout_samples())
@@ -138,7 +138,7 @@ TEST_CASE("layouts: a folder of images in the first of which nobody was found") 
   CHECK((reading.people.front().confidence.row(3).array() == 0).all());
 }
 
-TEST_CASE("layouts: faces and hands that are left out are told") {
+TEST_CASE("layouts: faces and hands that are left out are reported") {
   const ScratchFolder folder;
   for (const LayoutSample& sample : layout_samples()) {
     if (sample.name != "whole_body.json" && sample.name != "halpe136.json") continue;
@@ -151,7 +151,7 @@ TEST_CASE("layouts: faces and hands that are left out are told") {
   }
 }
 
-TEST_CASE("layouts: files of other kinds are told what they are") {
+TEST_CASE("layouts: files of other kinds are refused by their kind") {
   const ScratchFolder folder;
   using namespace std::string_literals;
   struct Case {
@@ -230,7 +230,7 @@ TEST_CASE("layouts: 33 landmarks numbered from 1 are those numbered from 0") {
   CHECK(zero.x_px(0, 32) == doctest::Approx(1920 * 0.74));
 }
 
-TEST_CASE("layouts: an image's size that is said holds for pixels and for shares of it") {
+TEST_CASE("layouts: an image's size that is given holds for pixels and for shares of it") {
   const ScratchFolder folder;
   Track2d track = sample_figure("MEDIAPIPE_33");
   track.width_px = 640;
@@ -260,15 +260,16 @@ TEST_CASE("layouts: an image's size that is said holds for pixels and for shares
   CHECK(notices.front().find("1920 x 1080 px are taken") != std::string::npos);
 }
 
-TEST_CASE("layouts: shares of an image whose size nobody says are told as such") {
+TEST_CASE("layouts: shares of an image whose size is not given are reported") {
   const ScratchFolder folder;
   for (const LayoutSample& sample : layout_samples()) {
     if (sample.name != "rows.csv") continue;
     const auto path = folder.write(sample.name, sample.text);
-    const auto told = [&](const TrackReadOptions& options) {
+    const auto notice = [&](const TrackReadOptions& options) {
       return read_tracks(path, options).notices.front();
     };
-    CHECK(told({}).find("1920 x 1080 px, for the file does not say its size") != std::string::npos);
-    CHECK(told({.image_size = ImageSize{640, 480}}).ends_with("taken as 640 x 480 px"));
+    CHECK(notice({}).find("1920 x 1080 px, for the file does not give its size") !=
+          std::string::npos);
+    CHECK(notice({.image_size = ImageSize{640, 480}}).ends_with("taken as 640 x 480 px"));
   }
 }

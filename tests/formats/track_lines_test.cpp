@@ -134,7 +134,7 @@ TEST_CASE("track lines: every JSON format's frames are what its file is read as"
   }
 }
 
-TEST_CASE("track lines: nobody, then several people, of whom one is followed") {
+TEST_CASE("track lines: no person, then several, of whom one is followed") {
   TrackLines lines("pipe", of_image());
   auto frame = lines.read(people_line({}));
   REQUIRE(frame);
@@ -147,7 +147,7 @@ TEST_CASE("track lines: nobody, then several people, of whom one is followed") {
   CHECK(lines.read(people_line({700}))->confidence.sum() == 0);
   CHECK(lines.read(people_line({}))->joints() == 17);
   CHECK(lines.read(people_line({700, 330}))->x_px[0] == 330);
-  // After a second and a half whoever is there is taken.
+  // After a second and a half any person is taken.
   for (int t = 0; t < 90; ++t) CHECK(lines.read(people_line({700}))->confidence.sum() == 0);
   CHECK(lines.read(people_line({700}))->x_px[0] == 700);
 }
@@ -168,7 +168,7 @@ TEST_CASE("track lines: a person whom the file numbers is followed however far")
   CHECK(lines.read(line({{4, 300}}))->x_px[0] == 300);
   CHECK(lines.read(line({{7, 300}, {4, 900}}))->x_px[0] == 900);
   CHECK(lines.read(line({{7, 900}}))->confidence.sum() == 0);
-  // A number that several have does not tell them apart.
+  // A number that several have does not distinguish them.
   CHECK(lines.read(line({{4, 300}, {4, 890}}))->x_px[0] == 890);
 }
 
@@ -188,7 +188,7 @@ TEST_CASE("track lines: a broken line is named, and the next is read") {
   CHECK(json.read(people_line({302}))->x_px[0] == 302);
 }
 
-TEST_CASE("track lines: what has to be said is asked for") {
+TEST_CASE("track lines: what has to be given is asked for") {
   TrackLines nameless("pipe");
   CHECK(message_of(nameless, people_line({300})).find("`image-size`") != std::string::npos);
   TrackLines headless("pipe");

@@ -153,7 +153,7 @@ fs::path own_folder() {
   return pattern;
 }
 
-/// @param bytes that were read: words of theirs may be repeated, in a file's name say
+/// @param bytes that were read: words of theirs may be repeated, such as a file's name
 void check_message(const std::string& message, const fs::path& path, std::string_view bytes) {
   const auto require = [&](bool holds, const std::string& what) {
     if (!holds) throw std::logic_error(what + ": " + printable(message));

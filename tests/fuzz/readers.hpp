@@ -20,7 +20,7 @@ struct Reader {
 /// All that there are.
 const std::vector<Reader>& readers();
 
-/// What the reader says of these bytes; empty if it reads them.
+/// The reader's message about these bytes; empty if it reads them.
 /// @throws whatever came out that should not, std::logic_error for a message that is none
 std::string refusal(const Reader& reader, std::string_view bytes);
 

@@ -11,7 +11,7 @@ namespace bench_steps_test {
 using namespace mcdbn;
 using namespace mcdbn::test;
 
-TEST_CASE("bench steps: each runs again and again and says what it is") {
+TEST_CASE("bench steps: each runs again and again and describes itself") {
   on_every_device([](Device& device) {
     std::set<std::string> seen, layers;
     for (const BenchStepMaker& maker : bench_steps()) {

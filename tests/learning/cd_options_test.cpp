@@ -45,7 +45,7 @@ struct Scene {
           static_cast<std::int32_t>(shape.order + (7 * i + 3) % (kFrames - shape.order)));
   }
 
-  /// Every third number or so is out of sight, some frames as a whole.
+  /// Every third number or so is unseen, some frames as a whole.
   void hide_some() {
     seen = MatrixF::Ones(frames.rows(), frames.cols());
     for (Eigen::Index t = 0; t < frames.rows(); ++t)
@@ -97,18 +97,18 @@ struct Scene {
   CdRule rule(std::size_t step) const { return cd_rule_for(settings, 9, 0.2 * step); }
 
   reference::CdOptions options(std::size_t step) const {
-    const CdRule said = rule(step);
-    return {static_cast<int>(said.gibbs_steps),
-            said.W,
-            said.A,
-            said.B,
+    const CdRule chosen = rule(step);
+    return {static_cast<int>(chosen.gibbs_steps),
+            chosen.W,
+            chosen.A,
+            chosen.B,
             settings.adam,
-            said.sample_visible,
-            double{said.sparsity_target},
-            double{said.sparsity_strength},
+            chosen.sample_visible,
+            double{chosen.sparsity_target},
+            double{chosen.sparsity_strength},
             settings.persistent,
-            double{said.fast_rate},
-            double{said.deviation_rate}};
+            double{chosen.fast_rate},
+            double{chosen.deviation_rate}};
   }
 
   CrbmShape shape;
@@ -235,7 +235,7 @@ TEST_CASE("small: fast weights move the chains and no parameter, as the double r
   check_everywhere<PersistentContrastiveDivergence>(changed, false);
 }
 
-TEST_CASE("small: units out of sight stay at zero in every kind of chain, as in the reference") {
+TEST_CASE("small: unseen units stay at zero in every kind of chain, as in the reference") {
   CdSettings changed = settings();
   changed.sample_visible = true;
   check_everywhere<ContrastiveDivergence>(changed, true, 1, true);
@@ -290,7 +290,7 @@ TEST_CASE(
   });
 }
 
-TEST_CASE("a layer is trained by the rule that its settings say") {
+TEST_CASE("a layer is trained by the rule that its settings specify") {
   on_every_device([](Device& device) {
     const Scene scene(kBinary, settings());
     const auto trained = [&](bool persistent) {

@@ -81,7 +81,7 @@ TEST_CASE("a checkpoint's numbers are believed no more than a model's") {
   struct Case {
     const char* field;
     json value;
-    const char* said;
+    const char* wanted;
   };
   for (const Case& one : std::vector<Case>{{"/format_version", 2, ": format_version: "},
                                            {"/done", -1, ": done: "},
@@ -98,7 +98,7 @@ TEST_CASE("a checkpoint's numbers are believed no more than a model's") {
     json about = file.about();
     about[json::json_pointer(one.field)] = one.value;
     const std::string message = file.complaint(about);
-    CHECK(message.starts_with(file.path().string() + one.said));
+    CHECK(message.starts_with(file.path().string() + one.wanted));
   }
   for (const char* field : {"format_version", "over", "stage", "done", "now", "more"}) {
     CAPTURE(field);
@@ -114,8 +114,8 @@ TEST_CASE("a checkpoint's numbers are believed no more than a model's") {
 }
 
 TEST_CASE("a training takes no number of another kind for one of its own") {
-  const auto restored = [](const json& said, auto number) {
-    TrainingState::Content content{{{"n", said}}, {}};
+  const auto restored = [](const json& stored, auto number) {
+    TrainingState::Content content{{{"n", stored}}, {}};
     TrainingState state = TrainingState::restoring(content);
     state.number("n", number);
     return number;

@@ -1,5 +1,5 @@
 // Trainings that are killed again and again and go on from their checkpoints: the same bits and the
-// same reports in the end as of one that nobody disturbed, whatever the rule.
+// same reports in the end as of an undisturbed one, whatever the rule.
 #include "learning/checkpoints.hpp"
 
 #include <doctest/doctest.h>

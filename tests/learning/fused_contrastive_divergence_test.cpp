@@ -261,7 +261,7 @@ TEST_CASE("a mini-batch is two launches") {
   });
 }
 
-TEST_CASE("a layer that does not fit local memory falls back, and says so at debug level") {
+TEST_CASE("a layer that does not fit local memory falls back, and reports it at debug level") {
   on_every_device([](Device& device) {
     const std::size_t hidden = device.info().local_memory_bytes / sizeof(float) + 1;
     const Case test{{1, hidden, 0, kBinary}, 2, 1};

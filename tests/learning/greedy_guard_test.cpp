@@ -1,4 +1,4 @@
-// Where the greedy stages stop by themselves, and what they say then.
+// Where the greedy stages stop by themselves, and their messages.
 
 #include <doctest/doctest.h>
 
@@ -168,7 +168,7 @@ TEST_CASE("the greedy training names the modality, the kind of layer and the set
   });
 }
 
-TEST_CASE("an MRBM whose loss grows is stopped and says what to lower") {
+TEST_CASE("an MRBM whose loss grows is stopped, and the message names what to lower") {
   LearningSettings settings = settings_of(tiny_plan());
   settings.mrbm.rate = 40;
   settings.mrbm.weight_decay = 0;

@@ -1,4 +1,4 @@
-// What an observer of the greedy stages is told.
+// What an observer of the greedy stages is given.
 
 #include <doctest/doctest.h>
 

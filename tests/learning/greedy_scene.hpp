@@ -77,8 +77,8 @@ inline GreedyScene scene_of_different_sizes() {
   return {tiny_plan(), tiny_clips(3, 100), tiny_clips(5, 200)};
 }
 
-/// All sizes are equal, so that nothing but the numbers tells one matrix from another; three layers
-/// and a seed of more than 32 bits.
+/// All sizes are equal, so that nothing but the numbers distinguishes matrices; three layers and a
+/// seed of more than 32 bits.
 inline GreedyScene scene_of_equal_sizes() {
   GreedyScene scene{tiny_plan(), tiny_clips(5, 300), tiny_clips(5, 400)};
   scene.plan.seed = 0x500000005U;
@@ -211,7 +211,7 @@ inline std::map<std::string, MatrixD> tensors_of(const reference::GreedyMachine&
   return tensors;
 }
 
-/// All is as the reference says, but for rounding.
+/// All is as in the reference, but for rounding.
 inline void check_machine(const Mcdbn& got, const reference::GreedyMachine& want) {
   const auto got_tensors = tensors_of(machine_in_double(got));
   const auto want_tensors = tensors_of(want);

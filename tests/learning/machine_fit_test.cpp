@@ -133,7 +133,7 @@ TEST_CASE("an MRBM is fitted to three modalities, one of them Gaussian, in any o
     CHECK(mrbm.shape().modalities[1].visible == 2);
     CHECK(mrbm.shape().modalities[2].name == "right");
     CHECK(mrbm.hidden() == 4);
-    // Each is told from the one that is given.
+    // Each is inferred from the one that is given.
     const Matrix inferred_values(device, 80, 2), inferred_right(device, 80, 4);
     mrbm.infer({data[0].values, inferred_values, inferred_right}, {true, false, false}, 10);
     CHECK((inferred_right.to_host() - right).cwiseAbs().maxCoeff() < 0.3F);

@@ -21,11 +21,11 @@ std::string complaint(const std::function<void()>& check) {
   return "";
 }
 
-bool says(const std::string& text, const std::string& part) {
+bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// What is said on a device of so many bytes.
+/// The message on a device of so many bytes.
 std::string on_device_of(double bytes, const LearningSettings& settings, double frames) {
   DeviceInfo device;
   device.name = "the device";
@@ -69,15 +69,16 @@ TEST_CASE("memory of a training: what is more than the device has is refused, an
   CHECK(on_device_of(1e9, usual, 1e5).empty());
   const double need = memory_need(kDimensions, 1e5, usual).total();
   CHECK(on_device_of(need, usual, 1e5).empty());
-  CHECK(says(on_device_of(need - 1, usual, 1e5), "the training needs at least "));
+  CHECK(contains(on_device_of(need - 1, usual, 1e5), "the training needs at least "));
 
   LearningSettings large = usual;
   large.hidden = 100'000;
-  CHECK(says(on_device_of(8e9, large, 1e3), "the device has 8 GB: lower `hidden` (now 100000)"));
+  CHECK(
+      contains(on_device_of(8e9, large, 1e3), "the device has 8 GB: lower `hidden` (now 100000)"));
   large = usual;
   large.fine_tuning.windows = 100'000;
-  CHECK(says(on_device_of(8e9, large, 1e3), "`fine-tuning.windows` (100000)"));
-  CHECK(says(on_device_of(8e9, usual, 5e7), "train on fewer clips"));
+  CHECK(contains(on_device_of(8e9, large, 1e3), "`fine-tuning.windows` (100000)"));
+  CHECK(contains(on_device_of(8e9, usual, 5e7), "train on fewer clips"));
 }
 
 TEST_CASE("a window longer than every clip is refused by both lengths") {
@@ -87,7 +88,7 @@ TEST_CASE("a window longer than every clip is refused by both lengths") {
   settings.look_ahead = 3;
   CHECK(complaint([&] { check_window(18, settings); }).empty());
   const std::string message = complaint([&] { check_window(17, settings); });
-  CHECK(says(message, "a window of 18 frames"));
-  CHECK(says(message, "the longest clip has 17"));
-  CHECK(says(message, "`order` 7"));
+  CHECK(contains(message, "a window of 18 frames"));
+  CHECK(contains(message, "the longest clip has 17"));
+  CHECK(contains(message, "`order` 7"));
 }

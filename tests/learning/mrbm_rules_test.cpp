@@ -1,4 +1,4 @@
-// CD-PercLoss against double precision with its own draws; which rule the settings say.
+// CD-PercLoss against double precision with its own draws; which rule the settings specify.
 #include "learning/mrbm_rule.hpp"
 
 #include "device/every_device.hpp"
@@ -51,7 +51,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("the settings say which rule and which optimizer learn an MRBM") {
+TEST_CASE("the settings specify which rule and which optimizer learn an MRBM") {
   on_every_device([](Device& device) {
     Mrbm mrbm(device, two().start);
     const auto rule = [&](const MrbmSettings& settings) {

@@ -257,7 +257,7 @@ TEST_CASE("learning settings: what may be nothing is accepted as nothing") {
     check_accepted<LearningSettings>(name, 0);
 }
 
-TEST_CASE("learning settings: what no setting says") {
+TEST_CASE("learning settings: what no setting changes") {
   const UpdateRule adam = UpdateRule::adam();
   CHECK(adam.rate == 1e-3F);
   CHECK(adam.momentum == 0.9F);

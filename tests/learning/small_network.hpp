@@ -10,7 +10,8 @@
 
 namespace mcdbn::test {
 
-/// A layer of a small network: its hidden units and its frames of history, A's and B's own if said.
+/// A layer of a small network: its hidden units and its frames of history, A's and B's own if
+/// given.
 struct LayerSize {
   std::size_t hidden, order;
   std::optional<std::size_t> own_order_A = {}, own_order_B = {};

@@ -31,7 +31,7 @@ struct Case {
   std::size_t batch, gibbs_steps;
 };
 
-/// The frames of a mini-batch, some of each out of sight.
+/// The frames of a mini-batch, some units of each unseen.
 struct Problem {
   explicit Problem(const Case& test)
       : test(test), start(random_layer(test.shape, 3)), key{.seed = 5, .step = 2, .stream = 4} {
@@ -266,7 +266,7 @@ TEST_CASE("small: histories get no noise where nothing was seen") {
 
 namespace {
 
-constexpr Eigen::Index kHidden = 2;  ///< the unit of the first modality that nobody ever saw
+constexpr Eigen::Index kHidden = 2;  ///< the unit of the first modality that was never seen
 
 /// Two modalities of which the first may have a unit that was never seen.
 std::vector<ModalityMatrices> two_modalities_of(bool hides) {

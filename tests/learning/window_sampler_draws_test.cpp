@@ -88,9 +88,9 @@ TEST_CASE("windows are those that the reference draws, row by row") {
       CHECK(rows_of(kClips, settings(power), step) ==
             rows_in_reference(kClips, settings(power), step));
     }
-  // Where nobody was told apart all are one person.
-  const Clips untold{kClips.frames, {}};
-  CHECK(rows_of(untold, settings(0.4), 2) == rows_in_reference(untold, settings(0.4), 2));
+  // Where people are unknown all are one person.
+  const Clips unknown{kClips.frames, {}};
+  CHECK(rows_of(unknown, settings(0.4), 2) == rows_in_reference(unknown, settings(0.4), 2));
 }
 
 TEST_CASE("windows are others in every mini-batch, for every seed and at every place of a batch") {

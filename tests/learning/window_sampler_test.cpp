@@ -72,7 +72,7 @@ TEST_CASE("windows go frame by frame within one clip, 2D the look-ahead later") 
   CHECK(first_judged.count(0) + first_judged.count(60) + first_judged.count(100) == 3);
 }
 
-TEST_CASE("people of whom there is little are drawn as often as the power says") {
+TEST_CASE("people of whom there is little are drawn as often as the power specifies") {
   // 2000 draws: five deviations of the binomial distribution.
   const auto bound = [](double share) { return 5 * std::sqrt(share * (1 - share) / 2000); };
   for (const auto& [power, want] :

@@ -1,6 +1,6 @@
 #pragma once
 
-// Machines on the device against what the reference says of them, every parameter within its bound.
+// Machines on the device against the reference's, every parameter within its bound.
 
 #include <doctest/doctest.h>
 

@@ -40,7 +40,7 @@ struct Problem {
 
 }  // namespace
 
-TEST_CASE("answer deviation: the exponential of what the code says") {
+TEST_CASE("answer deviation: the exponential of a linear function of the code") {
   AnswerDeviation deviation{MatrixF(2, 1), MatrixF(1, 1)};
   deviation.C << 1.0F, -2.0F;
   deviation.c << 0.5F;

@@ -76,7 +76,7 @@ TEST_CASE("small: a CRBM's parameters come back from the device, each in its pla
   });
 }
 
-TEST_CASE("small: a CRBM's transposed weights follow W when they are told to") {
+TEST_CASE("small: a CRBM's transposed weights follow W when they are refreshed") {
   on_every_device([](Device& device) {
     Crbm layer(device, filled({5, 5, 1, VisibleKind::gaussian}, 1));
     const MatrixF other = random_matrix(5, 5, 77);

@@ -69,7 +69,7 @@ std::vector<MatrixF> clips_of(const CrbmShape& shape) {
   return {frames_of(shape, 9, 1), frames_of(shape, 2, 2), frames_of(shape, 5, 3)};
 }
 
-/// Checks every clip's column of numbers: zero before `order`, then what `want` says of the clip.
+/// Checks every clip's column of numbers: zero before `order`, then what `want` gives for the clip.
 template <typename Want>
 void check_clips(const Sequences& got, const std::vector<MatrixF>& clips, std::size_t order,
                  Want&& want) {

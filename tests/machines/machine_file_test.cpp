@@ -31,7 +31,7 @@ void check_same(const CrbmParameters& got, const CrbmParameters& want) {
     CHECK(got.*matrix == want.*matrix);
 }
 
-/// What loading says of this content; empty if it loads.
+/// The message of loading this content; empty if it loads.
 std::string complaint(Device& device, const std::filesystem::path& path,
                       const Safetensors& content) {
   write_safetensors(path, content);
@@ -45,7 +45,7 @@ std::string complaint(Device& device, const std::filesystem::path& path,
   return "";
 }
 
-bool says(const std::string& text, const std::string& part) {
+bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("small: a CDBN comes back from its file layer by layer") {
   });
 }
 
-TEST_CASE("a machine's file that is not whole is refused, and the message says what is missing") {
+TEST_CASE("a machine's file that is not whole is refused, and the message names what is missing") {
   const ScratchFolder folder;
   const auto path = folder / "machine.safetensors";
   on_every_device([&](Device& device) {
@@ -113,7 +113,7 @@ TEST_CASE("a machine's file that is not whole is refused, and the message says w
       CAPTURE(name);
       Safetensors without = whole;
       without.tensors.erase(name);
-      CHECK(says(complaint(device, path, without), "no tensor " + name + " "));
+      CHECK(contains(complaint(device, path, without), "no tensor " + name + " "));
     }
     const auto with = [&](const char* key, const json& value) {
       Safetensors content = whole;
@@ -123,15 +123,16 @@ TEST_CASE("a machine's file that is not whole is refused, and the message says w
       return complaint(device, path, content);
     };
     CHECK(with("kind", "crbm").empty());
-    CHECK(says(with("kind", "other"), "kind: a machine of unknown kind 'other'"));
-    CHECK(says(with("kind", "cdbn"), "no tensor 0.W"));
-    CHECK(says(with("layers", 3), ": layers: a number where a list is expected"));
-    CHECK(says(with("layers", json::array()), ": layers: 0 values; more are needed"));
-    CHECK(says(with("layers",
-                    json::array({{{"visible", 5}, {"hidden", 3}, {"order", 2}, {"kind", "odd"}}})),
-               ": layers[0].kind: 'odd'; gaussian and binary are known"));
-    CHECK(says(with("scales", {4}), ": scales[0]: a scale of 4 columns"));
-    CHECK(says(with("scales", {5, 5}), ": scales[1]: a scale of 5 columns"));
+    CHECK(contains(with("kind", "other"), "kind: a machine of unknown kind 'other'"));
+    CHECK(contains(with("kind", "cdbn"), "no tensor 0.W"));
+    CHECK(contains(with("layers", 3), ": layers: a number where a list is expected"));
+    CHECK(contains(with("layers", json::array()), ": layers: 0 values; more are needed"));
+    CHECK(contains(
+        with("layers",
+             json::array({{{"visible", 5}, {"hidden", 3}, {"order", 2}, {"kind", "odd"}}})),
+        ": layers[0].kind: 'odd'; gaussian and binary are known"));
+    CHECK(contains(with("scales", {4}), ": scales[0]: a scale of 4 columns"));
+    CHECK(contains(with("scales", {5, 5}), ": scales[1]: a scale of 5 columns"));
     for (const auto& [field, value] :
          std::vector<std::pair<const char*, json>>{{"visible", -5},
                                                    {"visible", 1e9},
@@ -144,22 +145,23 @@ TEST_CASE("a machine's file that is not whole is refused, and the message says w
       CAPTURE(field);
       json layer = {{"visible", 5}, {"hidden", 3}, {"order", 2}, {"kind", "gaussian"}};
       layer[field] = value;
-      CHECK(says(with("layers", json::array({layer})), std::string(": layers[0].") + field + ": "));
+      CHECK(contains(with("layers", json::array({layer})),
+                     std::string(": layers[0].") + field + ": "));
     }
-    CHECK(says(with("format_version", 2), "model format 2, this program reads 1"));
+    CHECK(contains(with("format_version", 2), "model format 2, this program reads 1"));
     for (const auto& [name, tensor] : whole.tensors)
       for (const float odd : {std::nanf(""), std::numeric_limits<float>::infinity(), -1e38F}) {
         CAPTURE(name);
         Safetensors content = whole;
         content.tensors[name].values.back() = odd;
-        CHECK(says(complaint(device, path, content), "tensor " + name + " holds"));
+        CHECK(contains(complaint(device, path, content), "tensor " + name + " holds"));
       }
     Safetensors flat = whole;
     flat.tensors["scale.0.deviation"].values[2] = 0;
-    CHECK(says(complaint(device, path, flat), "tensor scale.0.deviation holds"));
+    CHECK(contains(complaint(device, path, flat), "tensor scale.0.deviation holds"));
     Safetensors other = whole;
     other.metadata = {{"mcdbn", "{}"}};
-    CHECK(says(complaint(device, path, other), "not a machine that mcdbn-cl fitted"));
+    CHECK(contains(complaint(device, path, other), "not a machine that mcdbn-cl fitted"));
     CHECK_FALSE(is_machine_file(path));
     CHECK_THROWS_AS(load_machine(device, folder / "absent.safetensors"), InputError);
   });

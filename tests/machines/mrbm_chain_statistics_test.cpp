@@ -31,7 +31,7 @@ reference::Mrbm model() {
           p.b.cast<double>()};
 }
 
-/// Shares of the hidden states, each row's told from its p(absent | h), which differ by state.
+/// Shares of the hidden states, each row's inferred from its p(absent | h), which differ by state.
 RowVectorD hidden_shares(const MatrixF& absent, const reference::HiddenStates& states) {
   RowVectorD shares = RowVectorD::Zero(states.absent.rows());
   for (Eigen::Index r = 0; r < absent.rows(); ++r) {
@@ -76,7 +76,7 @@ TEST_CASE("enumeration: p(h | present) is what the clamped chain leaves as it is
   }
 }
 
-TEST_CASE("the sampled clamped chain's states are distributed as enumeration says") {
+TEST_CASE("the sampled clamped chain's states are distributed as enumeration gives") {
   for (const std::size_t present : {modality::track, modality::pose}) {
     const std::size_t units = present == modality::track ? kTrack : kPose;
     const MatrixF row = (0.5F * (random_matrix(1, units, 6).array() + 1.0F)).matrix();

@@ -95,13 +95,13 @@ struct Problem {
           CHECK(found[m] == values[m]);
           continue;
         }
-        int told = 0;
+        int compared = 0;
         for (Eigen::Index r = 0; r < found[m].rows(); ++r) {
           if (!(wanted[m].bound.row(r).maxCoeff() < 1e-2)) continue;  // rounding decides a draw
-          ++told;
+          ++compared;
           CHECK(misfit(found[m].row(r), wanted[m].value.row(r), wanted[m].bound.row(r)) == "");
         }
-        CHECK(told >= 3);
+        CHECK(compared >= 3);
       }
     });
   }
@@ -125,7 +125,7 @@ TEST_CASE("small: the mean field of three modalities, one or two of them absent,
   problem.check({false, false, false}, options_with(2, 0.0F));  // from b alone
 }
 
-TEST_CASE("small: a Gaussian modality is inferred, and tells of others, by its own units") {
+TEST_CASE("small: a Gaussian modality is inferred, and others from it, by its own units") {
   const Problem two({{6, kGaussian}, {5, kBinary}}, 7);
   const Problem three({{4, kGaussian}, {17, kBinary}, {3, kGaussian}}, 6);
   for (const float temperature : {0.0F, 1.0F, 0.4F}) {
@@ -186,7 +186,7 @@ TEST_CASE("small: the free energy of an MRBM sums its hidden units out of eq 19"
   });
 }
 
-TEST_CASE("an MRBM reconstructs by its means and draws what is not given as enumeration says") {
+TEST_CASE("an MRBM reconstructs by its means and draws what is not given as enumeration gives") {
   constexpr std::size_t kChains = 8000;
   const Problem problem({{3, kBinary}, {2, kBinary}}, 3);
   const reference::HiddenStates states =

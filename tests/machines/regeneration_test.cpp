@@ -68,7 +68,7 @@ TEST_CASE("mean-field regeneration is Algorithm 3 in double, within the rounding
         const auto got = regenerate(parameters.on(device), {track}, options_with_run_in(5));
         REQUIRE(got.size() == 1);
         REQUIRE(got[0].rows() == frames);
-        CHECK(want.bound.maxCoeff() < 1e-3);  // else the bound says nothing
+        CHECK(want.bound.maxCoeff() < 1e-3);  // else the bound checks nothing
         CHECK(misfit(got[0], want.value, want.bound) == "");
       });
     }
@@ -225,7 +225,7 @@ TEST_CASE(
   });
 }
 
-TEST_CASE("a third modality whose weights are zero tells nothing; what nobody has is refused") {
+TEST_CASE("a third modality whose weights are zero changes nothing; wrong inputs are refused") {
   const NetworkParameters parameters;
   const MatrixF track = random_matrix(11, kTrack, 7), third = random_matrix(11, 4, 9);
   MrbmParameters three = parameters.mrbm;

@@ -50,7 +50,7 @@ constexpr double kRounding = 1e-4;
 
 }  // namespace
 
-TEST_CASE("small: a running regeneration answers what regenerate says of all that was shown") {
+TEST_CASE("small: a running regeneration answers as regenerate does for all that was shown") {
   for (const std::size_t look_ahead : {0U, 2U})
     for (const std::size_t run_in : {0U, 5U})
       on_every_device([&](Device& device) {

@@ -164,7 +164,7 @@ TEST_CASE("regeneration: both chains at once, without a run-in, without a look-a
   });
 }
 
-TEST_CASE("regeneration: without a temperature the sampling rule says nothing") {
+TEST_CASE("regeneration: without a temperature the sampling rule has no effect") {
   const reference::Network network = two_layers();
   on_every_device([&](Device& device) {
     auto options =

@@ -183,7 +183,7 @@ TEST_CASE("small: reconstructions are mean field, up and down through all layers
   });
 }
 
-TEST_CASE("an RBM's free chains come to its states as often as enumeration says") {
+TEST_CASE("an RBM's free chains come to its states as often as enumeration gives") {
   const CrbmParameters p = tiny_crbm({4, 5, 0, kBinary}, 31);
   const Eigen::VectorXd want = reference::visible_distribution(in_double(p), MatrixD(1, 0));
   on_every_device([&](Device& device) {
@@ -201,7 +201,7 @@ TEST_CASE("an RBM's free chains come to its states as often as enumeration says"
   });
 }
 
-TEST_CASE("a Gaussian RBM's free chains have the marginals that enumeration says") {
+TEST_CASE("a Gaussian RBM's free chains have the marginals that enumeration gives") {
   const CrbmParameters p = tiny_crbm({3, 4, 0, kGaussian}, 41);
   on_every_device([&](Device& device) {
     const Crbm rbm(device, p);

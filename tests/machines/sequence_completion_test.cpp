@@ -31,7 +31,7 @@ CrbmParameters parameters(std::size_t order) {
 }
 
 /// Ten steps of mean field between the hidden units and what is missing, frame by frame. The guess
-/// before the first one is the frame before, or what the layer says without hidden units.
+/// before the first one is the frame before, or the layer's answer without hidden units.
 MatrixD completed(const CrbmParameters& p, const MatrixF& gappy) {
   MatrixD track = gappy.cast<double>();
   const auto order = static_cast<Eigen::Index>(p.shape.order);

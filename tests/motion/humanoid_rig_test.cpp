@@ -25,15 +25,15 @@ Matrix3d turn_deg(double deg, const Vector3d& axis) {
 }
 
 /// The same motion by a skeleton whose joints' own axes are turned: joint_from_humanoid by role;
-/// what a role does not say is as its parent's.
-Motion with_axes(const Motion& motion, const std::map<JointRole, Matrix3d>& said) {
+/// a role that is not given is as its parent's.
+Motion with_axes(const Motion& motion, const std::map<JointRole, Matrix3d>& given) {
   Motion result = motion;
   std::vector<Matrix3d> axes;
   for (int j = 0; j < motion.skeleton.joint_count(); ++j) {
     const int parent = motion.skeleton.joints[j].parent;
     const Matrix3d above = parent < 0 ? Matrix3d::Identity().eval() : axes[parent];
-    const auto own = said.find(*humanoid_roles().role_of(j));
-    axes.push_back(own == said.end() ? above : own->second);
+    const auto own = given.find(*humanoid_roles().role_of(j));
+    axes.push_back(own == given.end() ? above : own->second);
     if (parent >= 0) result.skeleton.joints[j].offset = above * motion.skeleton.joints[j].offset;
     const int first = motion.skeleton.first_channel(j);
     for (int t = 0; t < motion.frames(); ++t)
@@ -66,9 +66,9 @@ Motion renamed(Motion motion) {
   for (const JointRole role : joint_roles()) {
     const auto name = kOtherNames.find(role < right_clavicle ? role : other_side(role));
     if (name == kOtherNames.end()) continue;
-    std::string said = name->second;
-    if (role >= right_clavicle) said.replace(0, 4, "Right");
-    motion.skeleton.joints[humanoid_roles().joint(role)].name = said;
+    std::string new_name = name->second;
+    if (role >= right_clavicle) new_name.replace(0, 4, "Right");
+    motion.skeleton.joints[humanoid_roles().joint(role)].name = new_name;
   }
   return motion;
 }
@@ -105,7 +105,7 @@ TEST_CASE("a rig: rest poses of bodies are brought onto the humanoid's") {
   CHECK(largest_difference(HumanoidRig(still).to_humanoid(other), motion) < 1e-6);
 }
 
-TEST_CASE("a rig: where the rest pose is nobody's the motion tells") {
+TEST_CASE("a rig: where the rest pose is no human one the axes follow from the motion") {
   const Motion motion = renamed(moving_humanoid());
   // Every bone along x, as Bandai's: the trunk's up, each limb's length.
   Matrix3d up_is_x, down_is_x;
@@ -223,7 +223,7 @@ TEST_CASE("rigs of recorded motion: there and back") {
     const char* file;
     double mean_deg, mean_mm, worst_mm, humanoid_mm;
   };
-  // What is said is what was measured, rounded up: a trunk's bend that its joints do not share
+  // The bounds are what was measured, rounded up: a trunk's bend that its joints do not share
   // evenly, and knuckles (7 degrees and some centimetres of CMU's hands, on the humanoid).
   for (const auto& [file, mean_deg, mean_mm, worst_mm, humanoid_mm] :
        {Recorded{"cmu/walk/08_01.bvh", 0.8, 0.6, 5, 1.7},
@@ -248,7 +248,7 @@ TEST_CASE("rigs of recorded motion: there and back") {
     CHECK(error.worst_placed().worst_mm < worst_mm);
     CHECK(error.humanoid_mm() < humanoid_mm);
     // Knees bend about the body's left, elbows bend forward, whatever the file's axes are; but in
-    // bvh_test2 somebody stands for half a second on knees that its solver twisted by 28 degrees.
+    // bvh_test2 a person stands for half a second on knees that its solver twisted by 28 degrees.
     if (std::string(file).ends_with("bvh_test2.bvh")) continue;
     const Motion there = rig.to_humanoid(motion);
     for (const bool right : {false, true}) {

@@ -15,12 +15,12 @@ TEST_CASE("the humanoid: a joint for each role, in a T-pose of a body's proporti
   CHECK(humanoid.joint_count() == 23);
   CHECK(is_humanoid(humanoid));
   CHECK(body_height(humanoid) == doctest::Approx(170).epsilon(1e-9));
-  const SkeletonRoles told = skeleton_roles(humanoid);
+  const SkeletonRoles found = skeleton_roles(humanoid);
   const WorldPose rest = rest_pose(humanoid);
   const auto place = [&](JointRole role) { return rest.position[humanoid_roles().joint(role)]; };
   for (const JointRole role : joint_roles()) {
     CAPTURE(std::string(name_of(role)));
-    CHECK(told.joint(role) == humanoid_roles().joint(role));
+    CHECK(found.joint(role) == humanoid_roles().joint(role));
     CHECK(humanoid.joints[humanoid_roles().joint(role)].name == name_of(role));
     const Eigen::Vector3d mirrored = place(role).cwiseProduct(Eigen::Vector3d(-1, 1, 1));
     CHECK((place(other_side(role)) - mirrored).norm() < 1e-12);

@@ -7,7 +7,7 @@
 
 using namespace mcdbn;
 
-TEST_CASE("joint roles: every name is its role's alone, and says its side") {
+TEST_CASE("joint roles: every name is its role's alone, and has its side") {
   std::set<std::string_view> names;
   for (const JointRole role : joint_roles()) {
     const std::string_view name = name_of(role);

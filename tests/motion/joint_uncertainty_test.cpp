@@ -1,4 +1,4 @@
-// How sure joints are, told by drawn motions.
+// Joints' uncertainty, from drawn motions.
 
 #include "motion/joint_uncertainty.hpp"
 

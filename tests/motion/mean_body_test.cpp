@@ -29,7 +29,7 @@ TEST_CASE("mean body: of one person it is that person's, to the bit") {
 TEST_CASE("mean body: bones are the mean of people's of the first one's size") {
   const Skeleton first = test::small_body();
   Skeleton second = first;
-  const auto at = static_cast<std::size_t>(first.find("Neck"));  // says nothing of the body's size
+  const auto at = static_cast<std::size_t>(first.find("Neck"));  // no part of the body's size
   second.joints[at].offset *= 1.5;
   REQUIRE(body_height(second) == doctest::Approx(body_height(first)));
   const Skeleton mean = mean_body({first, scaled(second, 40)});

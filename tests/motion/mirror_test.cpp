@@ -114,7 +114,7 @@ TEST_CASE("mirrored angles run on continuously past half a turn") {
   CHECK((other->channels.col(turn) + motion.channels.col(turn)).cwiseAbs().maxCoeff() < 1e-10);
 }
 
-TEST_CASE("sides are told by words, and by letters at either end of a name") {
+TEST_CASE("sides are named by words, and by letters at either end of a name") {
   const auto opposite_of = [](const char* left, const char* right) {
     Motion motion = two_armed(true);
     motion.skeleton.joints[1].name = left;
@@ -147,7 +147,7 @@ TEST_CASE("a bone that leans by a hair does not turn its joint round in the mirr
   Joint crown = head;
   crown.name = "Crown";
   crown.parent = 5;
-  crown.offset = {0.1, 2, 0.01};  // turned half round y it would miss itself by less
+  crown.offset = {0.1, 2, 0.01};  // turned half round y it would be off itself by less
   motion.skeleton.joints.push_back(head);
   motion.skeleton.joints.push_back(crown);
   const int first = motion.skeleton.first_channel(5);

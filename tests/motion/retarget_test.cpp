@@ -16,7 +16,7 @@ namespace {
 
 using enum JointRole;
 
-/// Named and jointed as `style` says; arms out to the sides in the rest pose, or hanging.
+/// Arms out to the sides in the rest pose, or hanging; names and joints differ, too.
 Skeleton body(bool hanging, double scale) {
   const std::vector<Channel> zyx{z_rotation, y_rotation, x_rotation};
   Skeleton result;
@@ -68,10 +68,10 @@ TEST_CASE("retargeted: every role's joint is where it was, whatever the rest pos
               .cwiseAbs()
               .maxCoeff() < 1e-6);
   }
-  Skeleton nobody;
-  nobody.joints = {make_joint("Base", -1, {0, 0, 0}, {})};
+  Skeleton no_body;
+  no_body.joints = {make_joint("Base", -1, {0, 0, 0}, {})};
   const HumanoidRig there({target, 0.1, {}}, target_roles);
-  CHECK_THROWS_AS(retargeted({nobody, 0.1, {}}, skeleton_roles(nobody), there), InputError);
+  CHECK_THROWS_AS(retargeted({no_body, 0.1, {}}, skeleton_roles(no_body), there), InputError);
   // The humanoid's own motion needs no rig, whatever it lacks.
   const HumanoidRig rig(motion, roles);
   CHECK(retargeted(rig.to_humanoid(motion), {}, there).channels.isApprox(result.channels, 1e-6));

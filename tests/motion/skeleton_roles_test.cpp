@@ -22,7 +22,7 @@ struct Limbs {
 };
 
 /// A body whose joints are named as given; `%` is where the side goes. The right side comes first,
-/// so that order says nothing.
+/// so that the order carries no information.
 Skeleton body_named(const std::string& root, const std::vector<std::string>& trunk,
                     const Limbs& limbs, const std::string& left, const std::string& right) {
   Skeleton body;
@@ -170,14 +170,14 @@ TEST_CASE("skeleton roles: limbs by the names of many programs") {
   }
 }
 
-TEST_CASE("skeleton roles: by the tree where names say nothing") {
+TEST_CASE("skeleton roles: by the tree where names carry no information") {
   const std::vector<std::string> trunk{"j1", "j2", "j3", "j4"};
   const auto numbered = [&](const std::string& left, const std::string& right) {
     return body_named("base", trunk, {{"a%", "b%", "c%", "d%"}, {"e%", "f%", "g%", "h%"}}, left,
                       right);
   };
   check_limbs(numbered("1", "2"));
-  // Turned half round and laid on its side: feet and head say which side is left.
+  // Turned half round and laid on its side: feet and head show which side is left.
   Skeleton turned = numbered("1", "2");
   const Eigen::Matrix3d turn = (Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ()) *
                                 Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()))

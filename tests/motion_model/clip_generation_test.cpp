@@ -84,7 +84,7 @@ TEST_CASE("generate_clips: what the network makes of the seed at the model's rat
   });
 }
 
-TEST_CASE("generate_clips: the root goes on from the seed's end, as height and velocity say") {
+TEST_CASE("generate_clips: the root goes on from the seed's end, by height and velocity") {
   const Scene scene;
   on_every_device([&](Device& device) {
     const Model model = scene.model(device);
@@ -238,7 +238,7 @@ TEST_CASE("generate_clips: samples are seen from the directions that the model l
     const std::vector<SeedClip> seeds{{"one", other_person(90, 30)},
                                       {"other", swinging(small_body(), 60)}};
     GenerationOptions options = some_options();
-    options.temperature = 0;  // nothing else tells samples apart
+    options.temperature = 0;  // nothing else distinguishes samples
     options.samples = 5;
     GenerationHealth health;
     const auto got = generate_clips(model, seeds, options, &health);

@@ -31,7 +31,7 @@ Modalities modalities_of(const Motion& clip) {
           view};
 }
 
-/// A walk, and its track with an arm out of sight in the middle.
+/// A walk, and its track with an arm hidden in the middle.
 struct Scene {
   Motion truth = synthesize({.seconds = 3});
   Modalities modalities = modalities_of(truth);
@@ -81,7 +81,7 @@ TEST_CASE("gaps are filled with what the answer shows there, and what is seen st
 TEST_CASE("gaps are filled anew from the answer to the filled track") {
   const Scene scene;
   std::vector<bool> gaps;
-  // Who is asked about a gap knows nothing; who sees everything knows everything.
+  // The answer to a track with a gap is the mean, otherwise the truth.
   const auto answer = [&](const MatrixF& seen) -> MatrixF {
     gaps.push_back(has_gap(seen));
     return gaps.back() ? MatrixF::Zero(scene.pose.rows(), scene.pose.cols()) : scene.pose;
@@ -94,7 +94,7 @@ TEST_CASE("gaps are filled anew from the answer to the filled track") {
   CHECK(off_in_gap(filled, scene.whole, scene.features) < 1e-5F);
 }
 
-TEST_CASE("without a gap nobody is asked") {
+TEST_CASE("without a gap no answer is asked for") {
   const Scene scene(0);
   const auto answer = [](const MatrixF& seen) -> MatrixF {
     FAIL("asked");
@@ -104,7 +104,7 @@ TEST_CASE("without a gap nobody is asked") {
         scene.features);
 }
 
-TEST_CASE("a joint that is never seen, without a camera and without a skeleton; nobody in sight") {
+TEST_CASE("a joint that is never seen, without a camera and without a skeleton; no joint at all") {
   Scene scene;
   const int hand = scene.hidden.find("LeftHand");
   REQUIRE(hand >= 0);

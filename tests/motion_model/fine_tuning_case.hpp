@@ -18,11 +18,11 @@ struct SmallClip {
 };
 
 /// A small run of fine-tuning, on the device and in double precision. Everything that either needs
-/// is set here, so that both are told the same.
+/// is set here, so that both get the same.
 class FineTuningCase {
  public:
   static constexpr std::size_t kTrack = 5;
-  /// What the network that is started from says, and nobody may take over.
+  /// The setting of the network that is started from, which must not be taken over.
   static constexpr std::size_t kOtherMeanFieldSteps = 9;
 
   FineTuningCase(const std::vector<SmallClip>& clips,
@@ -84,12 +84,12 @@ class FineTuningCase {
     settings.mean_field_steps = static_cast<int>(config.fine_tuning.mean_field_steps);
     return settings;
   }
-  /// @param held_out who takes no part; nobody where it is nobody's number
+  /// @param held_out who takes no part; everyone does if no person has the number
   reference::FineTuningData data_without(std::size_t held_out) const {
     return data([=](std::size_t person) { return person != held_out; });
   }
-  reference::FineTuningData data_of(std::size_t somebody) const {
-    return data([=](std::size_t person) { return person == somebody; });
+  reference::FineTuningData data_of(std::size_t one) const {
+    return data([=](std::size_t person) { return person == one; });
   }
   PoseJudge judge() const {
     return {

@@ -33,7 +33,7 @@ FineTuningCase case_with_other_stranger() {
   return small;
 }
 
-/// What the rule says for the held-out losses that were seen, one every 25 mini-batches.
+/// What the rule gives for the held-out losses that were seen, one every 25 mini-batches.
 struct Kept {
   std::size_t steps = 0, reports = 0;
   double loss = 0;
@@ -129,7 +129,7 @@ TEST_CASE("fine-tuning waits at least a hundred mini-batches for the stranger to
 }
 
 TEST_CASE("a stranger who fares better later is waited for") {
-  // Wiggles: the rule alone says which of many parameters are kept.
+  // Wiggles: the rule alone decides which of many parameters are kept.
   FineTuningCase small = case_with_stranger();
   for (std::size_t i = 0; i < small.views.poses.size(); ++i)
     if (small.views.people[i] == kStranger) small.views.poses[i] *= 0.5F;
@@ -145,7 +145,7 @@ TEST_CASE("a stranger who fares better later is waited for") {
   });
 }
 
-TEST_CASE("nobody is held out of fewer people than was asked for") {
+TEST_CASE("no person is held out of fewer than was asked for") {
   FineTuningCase small = case_with_stranger();
   small.config.fine_tuning.steps = 2;
   small.config.hold_out_among = 4;

@@ -123,7 +123,7 @@ TEST_CASE("fine-tuning is the reference's schedule: nothing dropped, decayed, av
   });
 }
 
-TEST_CASE("each part of the loss and each direction weighs as its setting says") {
+TEST_CASE("each part of the loss and each direction weighs as its setting specifies") {
   FineTuningCase small(kClips, {{{{3, 1}}, {{4, 1}}}}, 5);
   small.config.fine_tuning.steps = 2;
   const auto check = [&](const std::function<void(TrainingConfig&)>& change) {
@@ -137,7 +137,7 @@ TEST_CASE("each part of the loss and each direction weighs as its setting says")
   check([](TrainingConfig& config) { config.fine_tuning.reverse = 1.1; });
 }
 
-TEST_CASE("fine-tuning that blows up is stopped and says what to lower") {
+TEST_CASE("fine-tuning that diverges is stopped, and the message names what to lower") {
   FineTuningCase small(kClips, {{{{3, 1}}, {{4, 1}}}}, 5);
   small.config.fine_tuning.steps = 100;
   small.config.fine_tuning.rate = 20;

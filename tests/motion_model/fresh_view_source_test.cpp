@@ -104,7 +104,7 @@ TEST_CASE("of several people one is held out of them, and judges by the same vie
   REQUIRE(source.strangers());
   const TrainingSet& strangers = *source.strangers();
   for (const TrainingClip& clip : strangers.clips)
-    CHECK(clip.path == scene.clips.record(1).clip.path);  // who is missed least
+    CHECK(clip.path == scene.clips.record(1).clip.path);  // the person with the least data
   REQUIRE(strangers.poses.size() == again.strangers()->poses.size());
   CHECK(strangers.poses[3] == again.strangers()->poses[3]);
   CHECK(strangers.tracks[3] == again.strangers()->tracks[3]);

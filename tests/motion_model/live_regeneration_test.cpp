@@ -1,4 +1,4 @@
-// A track frame by frame: what comes back, when, and how near it is to what the whole clip tells.
+// A track frame by frame: what comes back, when, and how near it is to the whole clip's answer.
 
 #include "mcdbn/motion_model/live_regeneration.hpp"
 
@@ -126,7 +126,7 @@ double joint_apart_mm(const Motion& one, const Motion& other, const std::string&
 
 }  // namespace
 
-TEST_CASE("live: every frame comes back once, in order, no later than is said") {
+TEST_CASE("live: every frame comes back once, in order, no later than the latency given") {
   on_every_device([](Device& device) {
     for (const double fps : {30.0, 60.0, 47.0, 20.0})
       for (const std::size_t look_ahead : {0U, 2U}) {
@@ -153,7 +153,7 @@ TEST_CASE("live: every frame comes back once, in order, no later than is said") 
 }
 
 TEST_CASE(
-    "live: what comes back is near what the whole clip tells, no further from truth and track") {
+    "live: what comes back is near the whole clip's answer, no further from truth and track") {
   on_every_device([](Device& device) {
     const Scene scene;
     const Model model = scene.model(device);
@@ -166,7 +166,7 @@ TEST_CASE(
     CAPTURE(apart);
     CAPTURE(off);
     CAPTURE(whole_off);
-    // A prior that says so little leaves the whole clip's fit, too, some way off the truth.
+    // A prior this uncertain leaves the whole clip's fit, too, some way off the truth.
     CHECK(apart < 15);
     CHECK(off < whole_off + 5);
     const auto off_track_px = [&](const Motion& motion) {
@@ -215,7 +215,7 @@ TEST_CASE("live: a detector's keypoints as the whole clip has them, exchanged si
   });
 }
 
-TEST_CASE("live, and the whole clip: keypoints are a detector's, whether somebody says so or not") {
+TEST_CASE("live, and the whole clip: keypoints are a detector's, whether that is given or not") {
   on_every_device([](Device& device) {
     Scene scene;
     const Model model = scene.model(device);
@@ -228,10 +228,11 @@ TEST_CASE("live, and the whole clip: keypoints are a detector's, whether somebod
       return std::vector{followed(live, scene.track),
                          regenerate_clip(model, scene.track, placement, {}).front()};
     };
-    const std::vector<Motion> unsaid = answers();
+    const std::vector<Motion> not_given = answers();
     placement.detected = true;
-    const std::vector<Motion> said = answers();
-    for (std::size_t i = 0; i < said.size(); ++i) CHECK(said[i].channels == unsaid[i].channels);
+    const std::vector<Motion> given = answers();
+    for (std::size_t i = 0; i < given.size(); ++i)
+      CHECK(given[i].channels == not_given[i].channels);
   });
 }
 
@@ -349,7 +350,7 @@ TEST_CASE("live: memory does not grow with the frames") {
   });
 }
 
-TEST_CASE("live: a camera that nobody knows: the first frame stands at the origin") {
+TEST_CASE("live: with an unknown camera the first frame stands at the origin") {
   on_every_device([](Device& device) {
     const Scene scene;
     const Model model = scene.model(device);
@@ -367,7 +368,7 @@ TEST_CASE("live: a camera that nobody knows: the first frame stands at the origi
   });
 }
 
-TEST_CASE("live: what cannot be followed is said") {
+TEST_CASE("live: what cannot be followed is reported") {
   on_every_device([](Device& device) {
     const Scene scene;
     const Model model = scene.model(device);

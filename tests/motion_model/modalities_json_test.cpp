@@ -41,7 +41,7 @@ TEST_CASE("pose features: JSON keeps every bit, and damage is noticed") {
   CHECK_THROWS_AS(pose_features_from({damaged, "file"}), InputError);
 }
 
-TEST_CASE("modalities: JSON keeps the level view; a model that does not speak of it has none") {
+TEST_CASE("modalities: JSON keeps the level view; a file that does not give it has none") {
   const Motion motion = swinging(small_body(), 20);
   Modalities modalities = modalities_of({motion}, {});
   for (const bool level : {true, false}) {
@@ -53,7 +53,7 @@ TEST_CASE("modalities: JSON keeps the level view; a model that does not speak of
   }
 }
 
-TEST_CASE("modalities: JSON keeps the directions; a model that does not say them has one") {
+TEST_CASE("modalities: JSON keeps the directions; a file that does not give them has one") {
   Modalities modalities = modalities_of({swinging(small_body(), 20)}, {});
   modalities.directions = 7;
   nlohmann::json json = modalities_json(modalities);

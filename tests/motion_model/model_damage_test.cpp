@@ -1,4 +1,4 @@
-// A model file that is not whole is refused, and the message says what is missing.
+// A model file that is not whole is refused, and the message names what is missing.
 
 #include <doctest/doctest.h>
 
@@ -30,7 +30,7 @@ class File {
   std::string path() const { return path_.string(); }
   json about() const { return json::parse(whole_.metadata.at("mcdbn")); }
 
-  /// What loading says of this content; empty if it loads.
+  /// The message of loading this content; empty if it loads.
   std::string complaint(const Safetensors& content) const {
     write_safetensors(path_, content);
     try {
@@ -64,7 +64,7 @@ class File {
   Safetensors whole_;
 };
 
-bool says(const std::string& text, const std::string& part) {
+bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
@@ -78,8 +78,8 @@ TEST_CASE("a model of another format version is refused, by loading and by descr
     for (const json& version : {json(0), json(2), json("1"), json(nullptr), json(-1)}) {
       json about = file.about();
       about["format_version"] = version;
-      CHECK(says(file.complaint(about), file.path() + ": model format " + version.dump()));
-      CHECK(says(file.describing(about), "format " + version.dump()));
+      CHECK(contains(file.complaint(about), file.path() + ": model format " + version.dump()));
+      CHECK(contains(file.describing(about), "format " + version.dump()));
     }
   });
 }
@@ -92,17 +92,17 @@ TEST_CASE("every tensor of a model is needed, in its shape; a missing one is nam
       CAPTURE(name);
       Safetensors without = file.whole();
       without.tensors.erase(name);
-      CHECK(says(file.complaint(without), file.path() + ": no tensor " + name + " "));
+      CHECK(contains(file.complaint(without), file.path() + ": no tensor " + name + " "));
 
       Safetensors longer = file.whole();
       auto& changed = longer.tensors[name];
       changed.shape[1] += 1;
       changed.values.resize(changed.shape[0] * changed.shape[1]);
-      CHECK(says(file.complaint(longer), name + " "));
+      CHECK(contains(file.complaint(longer), name + " "));
 
       Safetensors turned = file.whole();
       std::swap(turned.tensors[name].shape[0], turned.tensors[name].shape[1]);
-      if (tensor.shape[0] != tensor.shape[1]) CHECK(says(file.complaint(turned), name + " "));
+      if (tensor.shape[0] != tensor.shape[1]) CHECK(contains(file.complaint(turned), name + " "));
     }
   });
 }
@@ -113,13 +113,13 @@ TEST_CASE("every field of a model's description is needed; a missing one is name
     const std::vector<std::string> optional{"sampling", "fills_gaps", "early_stopping"};
     // Every field of the description and of what it holds, one at a time.
     const auto check_without = [&](const json::json_pointer& where, const std::string& name) {
-      // Earlier models do not say these.
+      // Earlier models do not have these.
       if (name == "always" || name == "level_view" || name == "directions") return;
       json about = file.about();
       CAPTURE(where.to_string());
       CAPTURE(name);
       REQUIRE(about.at(where).erase(name) == 1);
-      CHECK(says(file.complaint(about), "'" + name + "'"));
+      CHECK(contains(file.complaint(about), "'" + name + "'"));
     };
     const json about = file.about();
     for (const auto& [name, value] : about.items())
@@ -220,9 +220,9 @@ TEST_CASE("every number of a model's description has a range; file and field are
       const std::string message = file.complaint(about);
       CAPTURE(message);
       CHECK(message.starts_with(file.path() + ": "));
-      CHECK(
-          says(message, one.named ? std::string(one.named) : ": " + std::string(one.field) + ": "));
-      CHECK_FALSE(says(message, "json"));
+      CHECK(contains(message,
+                     one.named ? std::string(one.named) : ": " + std::string(one.field) + ": "));
+      CHECK_FALSE(contains(message, "json"));
     }
   });
 }
@@ -235,9 +235,9 @@ TEST_CASE("a tensor with a number that is none is refused by its name") {
         CAPTURE(name);
         Safetensors content = file.whole();
         content.tensors[name].values.back() = odd;
-        CHECK(says(file.complaint(content),
-                   file.path() + ": tensor " + name +
-                       " holds a number that is not finite or beyond 1000000"));
+        CHECK(contains(file.complaint(content),
+                       file.path() + ": tensor " + name +
+                           " holds a number that is not finite or beyond 1000000"));
       }
   });
 }
@@ -247,18 +247,18 @@ TEST_CASE("what is no model, and a model without layers, are refused") {
     const File file(device);
     Safetensors nameless = file.whole();
     nameless.metadata.clear();
-    CHECK(says(file.complaint(nameless), file.path() + ": not a model"));
+    CHECK(contains(file.complaint(nameless), file.path() + ": not a model"));
     Safetensors garbled = file.whole();
     garbled.metadata["mcdbn"] = "{";
-    CHECK(says(file.complaint(garbled), "damaged"));
+    CHECK(contains(file.complaint(garbled), "damaged"));
     for (const char* name : {"track", "pose"}) {
       json about = file.about();
       about[name] = json::array();
-      CHECK(says(file.complaint(about), "without layers"));
+      CHECK(contains(file.complaint(about), "without layers"));
     }
     json about = file.about();
     about["mrbm_hidden"] = 12;  // has 11
-    CHECK(says(file.complaint(about), "mrbm."));
+    CHECK(contains(file.complaint(about), "mrbm."));
   });
 }
 

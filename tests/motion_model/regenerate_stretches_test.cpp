@@ -106,7 +106,7 @@ TEST_CASE("regenerate stretches: they have the body and the camera of the longes
   }
 }
 
-TEST_CASE("regenerate stretches: strays are left out, and what is said is of the whole track") {
+TEST_CASE("regenerate stretches: strays are left out, and findings are of the whole track") {
   Scene scene;
   scene.known.uncertainty_draws.count = 2;
   Track2d track = scene.keypoints();

@@ -1,4 +1,4 @@
-// Sides of limbs that come back into sight, with an energy of the test's own.
+// Sides of limbs that are seen again, with an energy of the test's own.
 
 #include "motion_model/returned_sides.hpp"
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kFrames = 400;
 
-/// Left joints at 1 px and right ones at 2, knees and ankles out of sight now and then.
+/// Left joints at 1 px and right ones at 2, knees and ankles hidden now and then.
 Track2d with_gaps(const std::vector<int>& gaps) {
   Track2d track;
   add_sides(track.keypoints, "knee", JointRole::left_knee);
@@ -79,7 +79,7 @@ TEST_CASE("returned sides: where too little of a person is seen they stay") {
   Track2d track = with_gaps({100});
   exchange(track, 0, 100);
   CHECK(
-      swapped_spells(track, [](const Track2d&) -> double { throw InputError("nobody"); }).empty());
+      swapped_spells(track, [](const Track2d&) -> double { throw InputError("no fit"); }).empty());
 }
 
 }  // namespace returned_sides_test

@@ -135,7 +135,7 @@ TEST_CASE("what is no run folder is refused, and so is what is no text") {
   struct Case {
     const char* field;
     json value;
-    const char* said;
+    const char* wanted;
   };
   for (const Case& one : std::vector<Case>{{"/skeleton", 3, ": skeleton: "},
                                            {"/skeleton", -1, ": skeleton: "},
@@ -154,7 +154,7 @@ TEST_CASE("what is no run folder is refused, and so is what is no text") {
     } catch (const InputError& error) {
       message = error.what();
     }
-    CHECK(message.starts_with((folder / "unfinished/run.json").string() + one.said));
+    CHECK(message.starts_with((folder / "unfinished/run.json").string() + one.wanted));
   }
   for (const ListedClip& clip :
        {ListedClip{"/a\xFF.bvh"}, ListedClip{"/a.bvh", "\xFF"}, ListedClip{"/a.bvh", "", "\xFF"}})
@@ -163,7 +163,7 @@ TEST_CASE("what is no run folder is refused, and so is what is no text") {
 }
 
 TEST_CASE(
-    "a model that cannot be written where it belongs is not lost, and it is said where it is") {
+    "a model that cannot be written where it belongs is not lost, and its place is reported") {
   test::on_every_device([](Device& device) {
     const Model model = test::ExampleModel(false).on(device);
     const test::ScratchFolder folder, temporary;
@@ -182,11 +182,11 @@ TEST_CASE(
       }
       return std::string();
     };
-    const std::string said = failure((temporary / "").string()), lies = "the model lies in ";
-    const auto at = said.find(lies);
+    const std::string message = failure((temporary / "").string()), lies = "the model lies in ";
+    const auto at = message.find(lies);
     REQUIRE(at != std::string::npos);
     const auto begin = at + lies.size();
-    const fs::path model_file = said.substr(begin, said.find(": make room", begin) - begin);
+    const fs::path model_file = message.substr(begin, message.find(": make room", begin) - begin);
     CHECK(model_file.parent_path().parent_path() == (temporary / "").parent_path());
     CHECK(load_model(device, model_file).training_clips.size() == model.training_clips.size());
     CHECK(test::entries_of(folder / "run/unfinished") ==

@@ -67,7 +67,7 @@ TEST_CASE("seen clips: a track of the model's joints is taken as it is") {
   CHECK(seen.joints.x_px.col(0) == track.x_px.col(0));
   CHECK(seen.filled.missing == 20);
   CHECK(seen.filled.unseen.empty());
-  // Whatever its columns are said to show besides.
+  // Whatever else its columns are given as.
   track.keypoints = {keypoint("Hips", JointRole::head)};
   CHECK(scene.see(track).features == seen.features);
 }
@@ -80,7 +80,7 @@ TEST_CASE("seen clips: a detector's keypoints, the answer's own pose takes off w
     CHECK(scene.asked == 2);
     for (const std::string& name : seen.joints.joint_names) {
       CAPTURE(name);
-      // Hips and shoulders are told; what they tell of pelvis and neck is nothing new to the fit.
+      // Pelvis and neck follow from hips and shoulders: they are nothing new to the fit.
       const bool derived = name == "Hips" || name == "Neck";
       CHECK((seen.joints.confidence.col(seen.joints.find(name)).array() == 0).all() == derived);
       // Of a figure some 900 px tall; the fit stands between the true answer and the joints.
@@ -97,7 +97,7 @@ TEST_CASE("seen clips: a detector's keypoints, the answer's own pose takes off w
   }
 }
 
-TEST_CASE("seen clips: roles said by hand come to their use") {
+TEST_CASE("seen clips: roles given by hand are used") {
   Scene scene;
   const Track2d track = scene.seen(coco_keypoints());
   scene.placement.joint_map = {{JointRole::left_knee, "LeftFoot"}};
@@ -155,7 +155,7 @@ TEST_CASE("seen clips: the view of an unknown camera is found as the clip is see
           scene.modalities.assumed_camera(seen.view, track.width_px, track.height_px);
       if (track.keypoints.empty())
         CHECK(seen.features == scene.modalities.encode_track(smooth_track(track), found));
-      scene.placement.view.pitch_deg = 2;  // said, however wrong
+      scene.placement.view.pitch_deg = 2;  // given, however wrong
       CHECK(scene.see(track).view.pitch_deg == 2);
     }
   }
@@ -217,7 +217,7 @@ TEST_CASE(
   CHECK(described(scene.see(track).swaps) == "legs swapped in frames 27-34");
 }
 
-TEST_CASE("seen clips: sides that were looked at again are told in the track's own frames") {
+TEST_CASE("seen clips: sides that were looked at again are reported in the track's own frames") {
   const Motion fast = synthesize({.fps = 60, .seconds = 3});
   Scene scene;
   scene.pose = scene.modalities.encode_pose(resample(fast, 30), scene.camera.camera_from_world);

@@ -26,10 +26,10 @@ TrainingConfig all_changed() {
   return config;
 }
 
-std::string error_of(const std::vector<SaidSetting>& said) {
+std::string error_of(const std::vector<GivenSetting>& given) {
   TrainingConfig config;
   try {
-    assign_settings(config, said);
+    assign_settings(config, given);
   } catch (const ConfigError& error) {
     return error.what();
   }
@@ -64,10 +64,10 @@ TEST_CASE("settings record: the TOML of all settings is read back") {
   config.augment.mirror = false;
   config.fps = 24;
   const ScratchFolder folder;
-  const auto said = read_settings_file(folder.write("all.toml", settings_toml(config)));
-  CHECK(said.size() == values_of(config).size());
+  const auto given = read_settings_file(folder.write("all.toml", settings_toml(config)));
+  CHECK(given.size() == values_of(config).size());
   TrainingConfig read;
-  assign_settings(read, said);
+  assign_settings(read, given);
   CHECK(values_of(read) == values_of(config));
 }
 

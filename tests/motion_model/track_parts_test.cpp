@@ -106,7 +106,7 @@ TEST_CASE("track parts: five minutes and what they share with their neighbours")
   CHECK(parts[0].share(0) == 1);
 }
 
-TEST_CASE("track parts: where nobody is seen a part is one with its neighbour") {
+TEST_CASE("track parts: where no person is seen a part is one with its neighbour") {
   const auto sizes = [](const Track2d& track) {
     std::vector<int> frames;
     for (const TrackPart& part : parts_of(track, {0, track.frames()}))

@@ -41,7 +41,7 @@ TEST_CASE("training config: its settings are its parts' and the loss's, with the
     CHECK(text_of(own.member(config)) == "7");
     CHECK(changed_by(config) == Values{{own.name, "7"}});
   }
-  // What the loss weighs the others by, and which feet count as planted, nobody sets.
+  // What the loss weighs the others by, and which feet count as planted, is no setting.
   CHECK(member_count<PoseLossWeights>() == own_settings().size() - 1 + 2);
 }
 

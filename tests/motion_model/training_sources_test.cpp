@@ -9,7 +9,7 @@ namespace training_sources_test {
 using namespace mcdbn;
 using namespace mcdbn::test;
 
-TEST_CASE("a training set's clips say what was seen of the tracks, and of nothing else") {
+TEST_CASE("a training set's clips hold what was seen of the tracks, and of nothing else") {
   const SmallFigure figure;
   TrainingSet set{figure.modalities(), {MatrixF::Zero(4, 3)}, {MatrixF::Ones(4, 2)}, {}, {}, {}};
   CHECK(ClipSource(set).sequences().modalities[kTrack].seen.empty());
@@ -23,7 +23,7 @@ TEST_CASE("a training set's clips say what was seen of the tracks, and of nothin
 }
 
 TEST_CASE(
-    "a training set's clips are grouped by person and action, by person where none are said") {
+    "a training set's clips are grouped by person and action, by person where none are given") {
   const SmallFigure figure;
   TrainingSet set{figure.modalities(),
                   {MatrixF::Zero(4, 3), MatrixF::Zero(4, 3)},

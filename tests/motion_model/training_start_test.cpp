@@ -63,7 +63,7 @@ TEST_CASE("a training from a model begins with its parameters, in its features a
   const Scene scene;
   on_every_device([&](Device& device) {
     const Model start = scene.model(device);
-    // Nothing to speak of is learnt in one mini-batch of such a rate.
+    // Next to nothing is learnt in one mini-batch of such a rate.
     const TrainingConfig still = with(scene.config, [](TrainingConfig& config) {
       config.fine_tuning.steps = 1;
       config.fine_tuning.rate = 1e-12;
@@ -141,7 +141,7 @@ TEST_CASE("what has to be as in the model is named where it is not") {
   });
 }
 
-TEST_CASE("a run folder keeps the model that its training starts from, and the model says so") {
+TEST_CASE("a run folder keeps the model that its training starts from, and the model records it") {
   const Scene scene;
   const ScratchFolder folder;
   on_every_device([&](Device& device) {
@@ -153,7 +153,7 @@ TEST_CASE("a run folder keeps the model that its training starts from, and the m
       REQUIRE(begun.started_from());
     }
     const std::string bytes = read_text_file(file);
-    std::filesystem::remove(file);  // nobody needs it any more
+    std::filesystem::remove(file);  // it is no longer needed
     RunFolder run = RunFolder::resume(run_folder);
     REQUIRE(run.started_from());
     CHECK(run.started_from()->model == file.string());

@@ -1,9 +1,8 @@
-// Programs that cannot call the layer say in the environment what is to happen:
+// Programs that cannot call the layer set in the environment what is to happen:
 //   MCDBN_LAYER_FAIL=clEnqueueNDRangeKernel,500,-2,lost   as fail()
-//   MCDBN_LAYER_LIMITS=1,32768,1                          as limit(): group, local bytes, vector
-//   width MCDBN_LAYER_KERNELS=FILE                              the kernels that run, one a line,
-//   with
-//                                                         "in groups" where work-items share one
+//   MCDBN_LAYER_LIMITS=1,32768,1   as limit(): group, local bytes, vector width
+//   MCDBN_LAYER_KERNELS=FILE       the kernels that run, one a line, with "in groups" where
+//                                  work-items share one
 #include "opencl_layer/opencl_layer.hpp"
 
 #pragma GCC diagnostic ignored "-Wignored-attributes"
@@ -154,8 +153,8 @@ struct Between<Result(CL_API_CALL*)(Arguments...)> {
   static Result CL_API_CALL made(Arguments... arguments) {
     if (const cl_int code = failure_of(name); code != CL_SUCCESS) {
       if constexpr (std::is_pointer_v<Result>) {
-        cl_int* said = std::get<sizeof...(Arguments) - 1>(std::tuple(arguments...));
-        if (said) *said = code;
+        cl_int* error = std::get<sizeof...(Arguments) - 1>(std::tuple(arguments...));
+        if (error) *error = code;
         return nullptr;
       } else {
         return code;
@@ -185,9 +184,9 @@ constexpr auto between =
         call, name>;
 
 cl_int CL_API_CALL device_info(cl_device_id device, cl_device_info what, std::size_t size,
-                               void* value, std::size_t* size_said) {
+                               void* value, std::size_t* size_ret) {
   const cl_int code =
-      between<&cl_icd_dispatch::clGetDeviceInfo, kDeviceInfo>(device, what, size, value, size_said);
+      between<&cl_icd_dispatch::clGetDeviceInfo, kDeviceInfo>(device, what, size, value, size_ret);
   if (code != CL_SUCCESS) return code;
   const Limits& limits = state().limits;
   if (what == CL_DEVICE_MAX_WORK_GROUP_SIZE) lower(value, size, limits.group);
@@ -248,12 +247,12 @@ cl_mem CL_API_CALL create_buffer(cl_context context, cl_mem_flags flags, std::si
 }
 
 cl_int CL_API_CALL build_info(cl_program program, cl_device_id device, cl_program_build_info what,
-                              std::size_t size, void* value, std::size_t* size_said) {
+                              std::size_t size, void* value, std::size_t* size_ret) {
   const std::string log = state().build_log;
   if (what != CL_PROGRAM_BUILD_LOG || log.empty())
     return between<&cl_icd_dispatch::clGetProgramBuildInfo, kBuildInfo>(program, device, what, size,
-                                                                        value, size_said);
-  if (size_said) *size_said = log.size() + 1;
+                                                                        value, size_ret);
+  if (size_ret) *size_ret = log.size() + 1;
   if (value) std::memcpy(value, log.c_str(), std::min(size, log.size() + 1));
   return CL_SUCCESS;
 }
@@ -288,7 +287,7 @@ void fail_once(const std::string& call, std::size_t after, int code) {
   state().faults[call] = {after, code, false, true};
 }
 
-void say_in_build_log(const std::string& text) {
+void set_build_log(const std::string& text) {
   state().build_log = text;
 }
 
@@ -328,16 +327,16 @@ void limit(const Limits& limits) {
 extern "C" {
 
 cl_int CL_API_CALL clGetLayerInfo(cl_layer_info what, std::size_t size, void* value,
-                                  std::size_t* size_said) {
+                                  std::size_t* size_ret) {
   if (what != CL_LAYER_API_VERSION) return CL_INVALID_VALUE;
   const cl_layer_api_version version = CL_LAYER_API_VERSION_100;
   if (value && size >= sizeof version) std::memcpy(value, &version, sizeof version);
-  if (size_said) *size_said = sizeof version;
+  if (size_ret) *size_ret = sizeof version;
   return CL_SUCCESS;
 }
 
-cl_int CL_API_CALL clInitLayer(cl_uint entries, const cl_icd_dispatch* driver,
-                               cl_uint* entries_said, const cl_icd_dispatch** table) {
+cl_int CL_API_CALL clInitLayer(cl_uint entries, const cl_icd_dispatch* driver, cl_uint* entries_ret,
+                               const cl_icd_dispatch** table) {
   using namespace mcdbn::test::layer;
   constexpr cl_uint kEntries = sizeof(cl_icd_dispatch) / sizeof(void*);
   if (entries < kEntries) return CL_INVALID_VALUE;
@@ -354,7 +353,7 @@ cl_int CL_API_CALL clInitLayer(cl_uint entries, const cl_icd_dispatch* driver,
   all.table.clGetProgramBuildInfo = build_info;
   all.table.clCreateBuffer = create_buffer;
   read_environment();
-  *entries_said = kEntries;
+  *entries_ret = kEntries;
   *table = &all.table;
   return CL_SUCCESS;
 }

@@ -15,8 +15,8 @@ namespace mcdbn::test::layer {
 void fail(const std::string& call, std::size_t after, int code, bool loses_device = false);
 /// The same for that one call alone.
 void fail_once(const std::string& call, std::size_t after, int code);
-/// What clGetProgramBuildInfo tells as the log; empty: the driver's own.
-void say_in_build_log(const std::string& text);
+/// What clGetProgramBuildInfo gives as the log; empty: the driver's own.
+void set_build_log(const std::string& text);
 /// No call fails any longer; calls are counted from 0 again.
 void heal();
 
@@ -28,7 +28,7 @@ std::map<std::string, long> objects();
 /// Of the largest buffer that was asked for since heal().
 std::size_t largest_buffer_bytes();
 
-/// What every device says that it takes, and takes no more of.
+/// The limits that every device reports and keeps to.
 struct Limits {
   std::size_t group = SIZE_MAX;            ///< work-items
   std::uint64_t local_bytes = UINT64_MAX;  ///< of a group

@@ -31,7 +31,7 @@ struct CrbmBatch {
   MatrixD visible;  ///< v^t [batch x D]
   MatrixD history;  ///< H^t [batch x n·D]
   /// What was seen of `visible`, 1 or 0; the rest is 0 in the data and stays so. Empty: all of it.
-  /// CdTraining knows it.
+  /// Only CdTraining uses it.
   MatrixD seen = {};
 };
 

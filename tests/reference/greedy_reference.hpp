@@ -8,7 +8,7 @@
 #include "reference/mrbm_reference.hpp"
 
 /// Algorithm 1 from its first random number to its last parameter, in double precision on the host:
-/// which windows, in which order, with which rates and draws. Says nothing about devices.
+/// which windows, in which order, with which rates and draws. Nothing here is about devices.
 namespace mcdbn::reference {
 
 /// One kind of CRBM layer (Algorithm 2).

@@ -146,7 +146,7 @@ class ReportPage(unittest.TestCase):
             self.assertGreater(self.picture(canvas)[0], 300, canvas)
         self.shoot("light")
 
-    def test_cards_say_who_is_ahead_by_the_figures_they_show(self):
+    def test_cards_name_who_is_ahead_by_the_figures_they_show(self):
         cards = self.all(".card:has(em)")
         self.assertEqual(len(cards), 4)
         for card in cards:
@@ -155,8 +155,8 @@ class ReportPage(unittest.TestCase):
             lead = float(re.match("[-.0-9]+", figure)[0]) - float(theirs)
             if "PCC" not in figure:
                 lead = -lead
-            said = "level with" if lead == 0 else "beats" if lead > 0 else "behind"
-            self.assertEqual(word, said, f"{figure} {comparison}")
+            wanted = "level with" if lead == 0 else "beats" if lead > 0 else "behind"
+            self.assertEqual(word, wanted, f"{figure} {comparison}")
 
     def test_play_advances_and_pauses(self):
         play = self.find("#play")
@@ -228,7 +228,7 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(len(seen), 4)
         self.assertTrue(self.find("#legend").is_displayed())
 
-    def test_intervals_are_shaded_where_the_answer_says_how_sure_it_is(self):
+    def test_intervals_are_shaded_where_the_answer_has_its_uncertainty(self):
         sure, motions = self.find("#sure"), Select(self.find("#motion"))
         self.assertEqual(self.viewer("motion"), "mean field")
         self.assertTrue(sure.is_enabled() and sure.is_selected())
@@ -248,7 +248,7 @@ class ReportPage(unittest.TestCase):
           };""")
         sure.click()
         self.assertGreater(self.pixels_that_change_with("#sure"), changed + 300)
-        motions.select_by_index(1)  # a sample does not say it
+        motions.select_by_index(1)  # a sample has none
         self.assertFalse(sure.is_enabled())
 
     def test_an_interval_is_the_ellipse_that_its_deviations_make(self):
@@ -267,9 +267,9 @@ class ReportPage(unittest.TestCase):
         self.assertAlmostEqual(turned["wide"], 40)
         self.assertAlmostEqual(turned["narrow"], 0)
 
-    def test_decoded_intervals_hold_as_many_truths_as_the_program_says(self):
+    def test_decoded_intervals_hold_as_many_truths_as_the_program_reports(self):
         # The page has whole millimetres: four rounded coordinates, and a deviation, are off by half of one each.
-        least, most, told = self.browser.execute_script("""
+        least, most, reported = self.browser.execute_script("""
           const share = rounding => {
             const shares = report.clips.map(data => {
               const clip = new Clip(data), motion = clip.motion(0);
@@ -286,8 +286,8 @@ class ReportPage(unittest.TestCase):
             return shares.reduce((a, b) => a + b) / shares.length;
           };
           return [share(-1), share(1), report.summary.model_mean_field.within_90];""")
-        self.assertLessEqual(least, told)
-        self.assertLessEqual(told, most)
+        self.assertLessEqual(least, reported)
+        self.assertLessEqual(reported, most)
         self.assertGreater(least, 0)
         self.assertLess(most, 1)
 
@@ -312,10 +312,10 @@ class ReportPage(unittest.TestCase):
 
     def test_decoded_motion_scores_as_the_program_does(self):
         # Not the same mean: the page holds whole millimetres.
-        shown, told = self.browser.execute_script("""
+        shown, reported = self.browser.execute_script("""
           const clip = new Clip(report.clips[1]), motion = clip.motion(1);
           return [motion.errors.reduce((a, b) => a + b) / clip.frames, motion.mpjpe_mm];""")
-        self.assertLess(abs(shown - told), 1.0)
+        self.assertLess(abs(shown - reported), 1.0)
 
     def test_figures_and_tables(self):
         self.assertEqual(len(self.all("#figure-list svg")), 8)

@@ -1,4 +1,4 @@
-"""scripts/check_device says what a device is and that its kernels are right, and names the case where one is not.
+"""scripts/check_device reports what a device is and that its kernels are right, and names the case where one is not.
 
 usage: check_device_test.py BUILD
 """

@@ -32,14 +32,14 @@ FOCAL, DEPTH = 1000.0, 5.0
 # Does what the program would: hands out the answer laid ready for a folder and a camera.
 PROGRAM = """#!/usr/bin/env python3
 import json, pathlib, shutil, sys
-said = dict(zip(sys.argv[2::2], sys.argv[3::2]))
+options = dict(zip(sys.argv[2::2], sys.argv[3::2]))
 here = pathlib.Path(__file__).parent
 with (here / "calls.jsonl").open("a") as calls:
     calls.write(json.dumps(sys.argv[1:]) + "\\n")
-known = "known" if "--camera" in said else "unknown"
-shutil.copy(here / f"{pathlib.Path(said['--input']).name}_{known}.bvh", said["-o"])
-if "--write-camera" in said:
-    shutil.copy(here / "camera.json", said["--write-camera"])
+known = "known" if "--camera" in options else "unknown"
+shutil.copy(here / f"{pathlib.Path(options['--input']).name}_{known}.bvh", options["-o"])
+if "--write-camera" in options:
+    shutil.copy(here / "camera.json", options["--write-camera"])
 """
 # The camera that it found: to the person's left, along -x, and 20 degrees down. Rows are right, down, ahead.
 SIN, COS = math.sin(math.radians(20)), math.cos(math.radians(20))
@@ -238,7 +238,7 @@ class RealTrial(unittest.TestCase):
         self.assertEqual(rows["RTMPose", "yes"], ["0", "0", "0", "0", "2", "4.0", "4.0", ""])
         self.assertEqual(rows["OpenPose", "yes"], ["0", "0", "0", "0", "2", "3.0", "3.0", ""])
 
-    def test_without_data_it_says_so(self):
+    def test_missing_data_is_reported(self):
         done = subprocess.run([sys.executable, SCRIPT, self.model, "--data", self.folder / "none"],
                               capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)

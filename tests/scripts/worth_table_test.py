@@ -18,7 +18,7 @@ sys.dont_write_bytecode = True
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/worth_table"
 PROGRAM = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else None
-# Says of a model how many settings it was trained with, and how many clips it is scored on.
+# Reports how many settings a model was trained with, and how many clips it is scored on.
 STAND_IN = """#!/usr/bin/env python3
 import json, pathlib, sys
 here = pathlib.Path(__file__).parent
@@ -91,8 +91,8 @@ class WorthTable(unittest.TestCase):
         script = load_script()
 
         def settings(row):
-            said = ["--preset", "general", *script.flags(row)]
-            return subprocess.run([PROGRAM, "train", "--print-settings", *said], check=True,
+            flags = ["--preset", "general", *script.flags(row)]
+            return subprocess.run([PROGRAM, "train", "--print-settings", *flags], check=True,
                                   capture_output=True, text=True).stdout
 
         usual = settings({})

@@ -178,7 +178,7 @@ TEST_CASE("walking looks like walking") {
   }
 }
 
-TEST_CASE("each action does what its name says") {
+TEST_CASE("each action does what its name means") {
   const auto reach_over_head = [](const Motion& motion, const char* hand) {
     const MatrixD positions = joint_positions(motion);
     const int wrist = motion.skeleton.find(hand), head = motion.skeleton.find("Head");

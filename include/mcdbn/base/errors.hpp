@@ -40,13 +40,13 @@ class ConfigError : public Error {
   using Error::Error;
 };
 
-/// Training stopped by the divergence guard; the text says what to lower.
+/// Training stopped by the divergence guard; the text names what to lower.
 class DivergenceError : public Error {
  public:
   using Error::Error;
 };
 
-/// Stopped by whoever watched the work, by throwing this.
+/// Thrown by an observer of the work to stop it.
 class Interrupted : public Error {
  public:
   using Error::Error;

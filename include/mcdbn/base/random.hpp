@@ -6,7 +6,7 @@
 namespace mcdbn {
 
 /// Names one family of draws: every (row, column) below it has its own Philox number. The same on
-/// host, CPU and GPU (kernels/philox.clh says how the counter is filled).
+/// host, CPU and GPU (kernels/philox.clh defines how the counter is filled).
 struct RandomKey {
   std::uint64_t seed = 0;
   std::uint32_t step = 0;    ///< mini-batch number, or frame

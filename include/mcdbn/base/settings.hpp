@@ -16,7 +16,7 @@ struct Range {
   std::string text() const;           ///< "at least 0 and below 1"
 };
 
-/// The upper end of what says no other: far beyond any use, and floats still multiply it.
+/// The upper end where none is given: far beyond any use, and floats still multiply it.
 inline constexpr double kLargest = 1e9;
 
 /// Of no setting; without an end, any finite number.
@@ -50,7 +50,7 @@ constexpr Range on_or_off() {
   return {};
 }
 
-/// All that there is to say about a setting but its value.
+/// The description of a setting: everything but its value.
 ///
 /// A struct of settings has one static function that names each of its members once:
 ///

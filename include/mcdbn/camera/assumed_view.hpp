@@ -6,7 +6,7 @@
 
 namespace mcdbn {
 
-/// What somebody says of a camera that nobody calibrated; what is not said is assumed
+/// What is given of a camera without calibration; what is not given is assumed
 /// (Modalities::assumed_camera).
 struct AssumedView {
   static constexpr Range kPitch_deg = within(-89, 89), kRoll_deg = within(-180, 180);

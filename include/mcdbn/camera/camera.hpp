@@ -53,7 +53,7 @@ struct CameraPlacement {
     visit(Setting{"azimuth", within(-360, 360), "degrees",
                   "around the figure, to its left (+x); 0 is in front of one that faces +z"},
           self.azimuth_deg);
-    // From right above a figure nothing says which way it faces.
+    // From right above a figure nothing shows which way it faces.
     visit(Setting{"elevation", within(-89, 89), "degrees", "above the horizon"},
           self.elevation_deg);
     visit(Setting{"fov", kFieldOfView_deg, "degrees", "vertical field of view"},

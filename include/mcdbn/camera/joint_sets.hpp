@@ -27,8 +27,8 @@ const JointSet& joint_set(std::string_view name);
 /// The set with these names in this order, or none.
 const JointSet* joint_set_of(std::span<const std::string> names);
 
-/// What a name in a file says about its column, in any of the usual spellings: "LShoulder",
-/// "left_shoulder", "shoulder-left", "Left Shoulder". Without a role where it says nothing.
+/// The keypoint of a column, from its name in a file in any of the usual spellings: "LShoulder",
+/// "left_shoulder", "shoulder-left", "Left Shoulder". Without a role where the name is unknown.
 Keypoint keypoint_of(const std::string& name);
 
 /// keypoint_of of every name, if they are a human's: both sides of two kinds of limb joints at

@@ -9,8 +9,8 @@
 
 namespace mcdbn {
 
-/// What a column of a detector's track shows: a place on the body, said by the joint that carries
-/// it.
+/// What a column of a detector's track shows: a place on the body, relative to the joint that
+/// carries it.
 struct Keypoint {
   std::string name;  ///< as the detector's documents spell it
   /// The joint that carries the place; none where nothing is known of it (an animal's tail).
@@ -19,7 +19,7 @@ struct Keypoint {
   /// stands upright: x to its left, y up, z forward. It turns with the joint.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   /// Where the detector defines the place as halfway between two joints, as OpenPose does its
-  /// MidHip: those two. `role` and `offset` then say about where that is.
+  /// MidHip: those two. `role` and `offset` then give its approximate place.
   std::optional<std::pair<JointRole, JointRole>> halfway;
 };
 

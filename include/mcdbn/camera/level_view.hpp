@@ -21,8 +21,8 @@ Camera level_camera(const Camera& camera, double field_of_view_deg);
 
 /// The track of one camera as another one at the same place would have it: along the same rays. A
 /// joint is missing where it is missing in the track or lies so far to the side of the other view
-/// (within 6 degrees of its image plane, or behind it) that pixels say nothing. Names, confidence
-/// and rate stay; the image has the size of the other camera's.
+/// (within 6 degrees of its image plane, or behind it) that its pixels carry no information. Names,
+/// confidence and rate stay; the image has the size of the other camera's.
 Track2d turn_track(const Track2d& track, const Camera& from, const Camera& to);
 
 }  // namespace mcdbn

@@ -28,8 +28,7 @@ struct SideSwapSettings {
                 "begin or end"},
         self.switch_cost);
     visit(Setting{"surprise", above(0, 1000), "body heights",
-                  "a joint that is off by more than so much from going on as it went says no more "
-                  "for it"},
+                  "a joint's distance from where its velocity puts it counts up to so much"},
           self.most_surprise);
     visit(
         Setting{"swapped", within(0, 1000), "body heights/s",

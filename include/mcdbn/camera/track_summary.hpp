@@ -16,7 +16,7 @@ struct TrackSummary {
   std::vector<double> joint_seen_share;   ///< [joints] of the frames
   double height_px = 0;                   ///< of the box around all joints; median over seen frames
   /// Standard deviation of what changes from frame to frame, in x and y alike: the median of second
-  /// differences over all joints, as for white noise. Fast motion adds to it. NaN: nothing to tell.
+  /// differences over all joints, as for white noise. Fast motion adds to it. NaN: there are none.
   double jitter_px = 0;
 };
 

@@ -10,7 +10,7 @@
 namespace mcdbn {
 
 /// How far a view of a clip may be from the clip as it was captured: other people, other cameras,
-/// other ways to hold oneself. Deviations are of normal draws, one a view unless it says otherwise.
+/// other ways to hold oneself. Deviations are of normal draws, one a view unless stated otherwise.
 struct AugmentationSettings {
   std::size_t views = 20;
   bool mirror = true;
@@ -63,7 +63,7 @@ struct AugmentationSettings {
                   "trackers are no better"},
           self.noise_px);
     visit(Setting{"missing", within(0, 1), "",
-                  "share of the views in which limbs go out of sight for a while"},
+                  "share of the views in which limbs are hidden for a while"},
           self.missing);
     visit(Setting{"detector", within(0, 1), "",
                   "share of the views that a detector sees (OpenPose, MediaPipe or RTMPose, as "
@@ -71,7 +71,7 @@ struct AugmentationSettings {
           self.detector);
     visit(Setting{"limbs-exchanged", within(0, 1), "",
                   "share of the views with the legs of one clip, the upper body of another and an "
-                  "arm of a third: poses that nobody held"},
+                  "arm of a third: poses that no clip holds"},
           self.limbs_exchanged);
     visit(Setting{"limbs-turned", within(0, 1), "",
                   "share of the views in which limbs and trunk are turned smoothly at random, "
@@ -107,13 +107,13 @@ struct AugmentedView {
   Track2d track;
 };
 
-/// The clip seen otherwise. The same key gives the same view. What a detector saw are the
-/// skeleton's own joints all the same, as far as its keypoints tell of them.
+/// A changed view of the clip. The same key gives the same view. A detector's track, too, is of the
+/// skeleton's own joints, as far as its keypoints show them.
 /// @param raw at its own rate
-/// @param all_in_sight no limb is hidden; what a detector loses is lost all the same
+/// @param hide_no_limb no limb is hidden; what a detector loses is missing all the same
 /// @param pool what new poses are made of; none: there are no new poses
 AugmentedView augmented_view(const Motion& raw, double fps, const CameraPlacement& placement,
                              const AugmentationSettings& settings, const RandomKey& key,
-                             bool all_in_sight = false, const PosePool* pool = nullptr);
+                             bool hide_no_limb = false, const PosePool* pool = nullptr);
 
 }  // namespace mcdbn

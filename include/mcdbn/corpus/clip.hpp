@@ -43,7 +43,7 @@ bool is_among(const std::vector<TrainingClip>& clips, const TrainingClip& clip);
 struct LoadedClip {
   TrainingClip clip;
   Motion motion;                         ///< at the file's own rate
-  std::string person = {}, action = {};  ///< where somebody said who does what
+  std::string person = {}, action = {};  ///< who does what; empty where not given
 };
 
 /// @param notices as load_clip collects them, but what is the same of several clips once

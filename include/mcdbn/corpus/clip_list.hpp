@@ -6,9 +6,9 @@
 
 namespace mcdbn {
 
-/// A clip's file, and who does what in it where that is said.
+/// A clip's file, and who does what in it where that is given.
 struct ListedClip {
-  // NOLINTNEXTLINE(google-explicit-constructor): a file is a clip of which nothing is said.
+  // NOLINTNEXTLINE(google-explicit-constructor): a file is a clip without either.
   ListedClip(std::filesystem::path path, std::string who = {}, std::string what = {})
       : file(std::move(path)), person(std::move(who)), action(std::move(what)) {}
 

@@ -10,10 +10,11 @@
 
 namespace mcdbn {
 
-/// Reads clips to train on by several threads, all of one skeleton or, as settings.skeleton says,
-/// on the canonical humanoid.
+/// Reads clips to train on by several threads, all of one skeleton or, by settings.skeleton, on
+/// the canonical humanoid.
 /// @param notices as load_clip collects them, and what is lost on the humanoid
-/// @throws InputError as load_clip does; naming the file whose skeleton lacks joints or is nobody's
+/// @throws InputError as load_clip does; naming the file whose skeleton lacks joints or is
+/// not a person's
 std::vector<LoadedClip> load_training_clips(const std::vector<ListedClip>& files,
                                             const CorpusSettings& settings,
                                             std::vector<std::string>* notices = nullptr);
@@ -28,7 +29,7 @@ ClipStore cached_training_clips(const std::vector<ListedClip>& files,
 
 /// The clip as a model of that skeleton takes it: brought onto the canonical humanoid if that is
 /// the model's and the clip's is another.
-/// @param joint_map roles of the clip's joints, said by hand
+/// @param joint_map roles of the clip's joints, given by hand
 /// @throws InputError if it cannot be brought onto it
 Motion for_skeleton(Motion clip, const Skeleton& model, const JointMap& joint_map = {});
 

@@ -30,7 +30,7 @@ struct CorpusSettings {
   std::size_t directions = 1;
   bool keep_first_frame = false;
   SkeletonUse skeleton = SkeletonUse::shared;  ///< no number: a choice of load_training_clips
-  JointMap joint_map = {};                     ///< no number: roles of clips' joints, said by hand
+  JointMap joint_map = {};                     ///< no number: roles of clips' joints, given by hand
   AugmentationSettings augment;
   CameraPlacement camera;
 
@@ -43,7 +43,7 @@ struct CorpusSettings {
           self.fps);
     visit(Setting{"phases", within(1, 1000), "grids",
                   "times that each clip is sampled, shifted, where its own rate allows: a fast "
-                  "clip's other frames say something, too"},
+                  "clip's other frames add information"},
           self.phases);
     visit(
         Setting{"directions", Modalities::kDirections, "directions",
@@ -69,8 +69,8 @@ struct TrainingSet {
   /// What was seen of each of `tracks`, 1, and what was not, 0, where the track is at its mean;
   /// empty where everything was.
   std::vector<MatrixF> tracks_seen;
-  /// Who does what in each of `poses`, a number for each person and action; empty where nobody said
-  /// actions.
+  /// Who does what in each of `poses`, a number for each person and action; empty where no
+  /// actions are given.
   std::vector<std::size_t> groups = {};
   /// What views of the clips need for poses that no clip holds, if there are to be such.
   std::shared_ptr<const PosePool> new_poses = {};

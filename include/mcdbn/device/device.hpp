@@ -35,7 +35,7 @@ struct DeviceInfo {
 /// Empty where there is none.
 std::vector<DeviceInfo> list_devices();
 
-/// The list as people read it, one device a line; says what to install where there is none.
+/// The list as text, one device a line; where there is none, what to install.
 std::string describe_devices(const std::vector<DeviceInfo>& devices);
 
 /// What the user asked for: an index or part of a name (case-insensitive), empty for any.

@@ -37,7 +37,7 @@ struct RenderOptions {
 /// Clips of any skeletons (+y up) as stick figures over a ground grid: left limbs blue, right ones
 /// red, paler with depth. Clips run by time; a shorter one holds its last frame.
 /// A `.mp4` shows the clips side by side. A `.png` is a contact sheet of frames at even times: two
-/// rows of one clip, or one row a clip (the first, say the truth, on top). Written atomically.
+/// rows of one clip, or one row a clip (the first, e.g. the truth, on top). Written atomically.
 /// Over a film nothing else is drawn, and of a sheet both rows show the film.
 /// @throws InputError if there is no frame, the ending is another one, the film cannot be read, or
 ///         the file cannot be written; ConfigError if an option is out of range, or a film is to be

@@ -52,8 +52,8 @@ struct Modalities {
   /// The inverse of encode_track: pixels of that camera's image.
   Track2d decode_track(const MatrixF& standardized, const Camera& seen_by) const;
 
-  /// A camera at the world's origin, for a track of which nobody knows more. What the view does not
-  /// say is assumed: no pitch, no roll and usual_field_of_view_deg; without a level view the
+  /// A camera at the world's origin, for a track of which no more is known. What the view does not
+  /// give is assumed: no pitch, no roll and usual_field_of_view_deg; without a level view the
   /// elevation and field of view of the model's own camera. Its heading is always that one's.
   /// @throws ConfigError if the view is not a camera's
   Camera assumed_camera(const AssumedView& view, int width_px, int height_px) const;

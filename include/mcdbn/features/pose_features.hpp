@@ -30,7 +30,7 @@ class PoseFeatures {
   /// The joints of skeleton() that have a 6D block, in the blocks' order.
   const std::vector<int>& joints() const { return joints_; }
   /// Which of a block's two axes is kept where they are not at right angles, 0: x, 1: y. It is the
-  /// one that is more along the joint's longest bone, so that this axis alone says where the bone
+  /// one that is more along the joint's longest bone, so that this axis alone shows where the bone
   /// ends, and the other how the bone is turned about its length.
   int leading_axis(int block) const { return leading_axes_[static_cast<std::size_t>(block)]; }
   /// What the channels of joints without features are, [1 x channels]; see decode.
@@ -53,7 +53,7 @@ class PoseFeatures {
   Motion decode(const MatrixD& features, const Eigen::Matrix3d& camera_from_world,
                 const Skeleton& skeleton, double fps, const MatrixD& root_position) const;
 
-  /// Root height and velocity as the features say them. @return [frames x 4]: height_m, v_x, v_y,
+  /// Root height and velocity of the features. @return [frames x 4]: height_m, v_x, v_y,
   /// v_z (camera's frame, m/s on a 1.7 m body)
   MatrixD root_features(const MatrixD& features) const;
 

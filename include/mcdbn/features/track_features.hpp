@@ -43,7 +43,7 @@ class TrackFeatures {
   /// what is longer stays NaN, and so do all of a frame without its root joint and a joint that is
   /// in no column.
   /// @param filled if given, what was interpolated and what stays missing
-  /// @param usual_squares as usual_squares() tells them, for the size of a body of which joints are
+  /// @param usual_squares as usual_squares() gives them, for the size of a body of which joints are
   ///        never seen; empty: they then make up nothing of it
   /// @return [frames x dimension]
   /// @throws InputError if the root, or all but one other joint of the model, are in no column

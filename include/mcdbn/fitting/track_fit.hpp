@@ -21,8 +21,8 @@ namespace mcdbn {
 /// [frames x Modalities::pose_scale.output_dimension()] both.
 struct PosePrior {
   MatrixF mean;
-  /// Standard deviation, finite and not negative; 0 x 0: nobody knows it, and the settings' typical
-  /// ones are taken. Height and the root's position are not asked.
+  /// Standard deviation, finite and not negative; 0 x 0: not known, and the settings' typical
+  /// ones are taken. Those of height and the root's position are not used.
   MatrixF deviation;
 
   PosePrior() = default;
@@ -49,7 +49,7 @@ struct KnownOfClip {
   Camera camera_of(const Track2d& track, const Modalities& modalities) const {
     return camera ? *camera : modalities.assumed_camera(assumed(), track.width_px, track.height_px);
   }
-  /// What was said of the view, and what was found where nothing was.
+  /// What was given of the view, and what was found where nothing was.
   AssumedView assumed() const {
     AssumedView all = view;
     if (!all.pitch_deg) all.pitch_deg = found.pitch_deg;
@@ -102,7 +102,7 @@ struct TrackFitSettings {
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     visit(Setting{"turn", above(0), "degrees",
-                  "standard deviation of an orientation about each axis where the prior says none "
+                  "standard deviation of an orientation about each axis where the prior gives none "
                   "or less"},
           self.turn_deg);
     // At 1 a joint would turn with its parent and no other way.
@@ -110,7 +110,7 @@ struct TrackFitSettings {
                   "correlation of what is wrong with an orientation with its parent's"},
           self.likeness);
     visit(Setting{"lasting", above(0), "seconds",
-                  "how long the prior's errors last: frames so near are one witness"},
+                  "how long the prior's errors last: frames so near are one observation"},
           self.lasting_s);
     visit(Setting{"measured-lasting", above(0), "seconds",
                   "the same where a solution measured the noise: of a known body that no detector "
@@ -122,7 +122,7 @@ struct TrackFitSettings {
                 "how much the prior's mean counts where rays are exact, of what it does elsewhere"},
         self.exact);
     visit(Setting{"exact-likeness", share_below_one(), "",
-                  "the likeness where a track of a known body tells no noise itself"},
+                  "the likeness where a track of a known body shows no noise itself"},
           self.exact_likeness);
     visit(Setting{"exact-noise", above(0), "px",
                   "noise that even exact rays are taken to have: what is left of rounding"},
@@ -134,7 +134,7 @@ struct TrackFitSettings {
     visit(
         Setting{
             "root", above(0), "m/s2",
-            "deviation of the root's acceleration from the prior's, where that says none or less"},
+            "deviation of the root's acceleration from the prior's, where that has none or less"},
         self.root_m_s2);
     visit(Setting{"detector", above(0), "",
                   "how far off detectors are for longer than a frame, as a share of the body's "
@@ -168,7 +168,7 @@ struct TrackFitSettings {
     visit(
         Setting{"solutions", at_least(0), "",
                 "of all frames at most, after that one; each with the noise and the standing feet "
-                "that the one before tells"},
+                "that the one before found"},
         self.solutions);
     visit(Setting{"alternatives", at_least(0), "",
                   "rounds at most in which limbs are tried on other sides in depth, where rays are "
@@ -184,10 +184,11 @@ struct TrackFitSettings {
     visit(Setting{"ground", above(0), "m",
                   "deviation of a standing foot's height above the clip's ground"},
           self.ground_m);
-    visit(Setting{"step", above(0), "seconds", "of which all heights of a foot are one witness"},
-          self.step_s);
+    visit(
+        Setting{"step", above(0), "seconds", "in which all heights of a foot are one observation"},
+        self.step_s);
     visit(Setting{"pitch", above(0), "degrees",
-                  "deviation of a camera's pitch where nobody says it: by hand, from a stand, a "
+                  "deviation of a camera's pitch where it is not given: by hand, from a stand, a "
                   "ceiling"},
           self.pitch_deg);
     visit(Setting{"roll", above(0), "degrees",
@@ -199,7 +200,7 @@ struct TrackFitSettings {
     visit(
         Setting{
             "focal", above(0), "",
-            "deviation of the logarithm of a camera's focal length where nobody says it; cameras "
+            "deviation of the logarithm of a camera's focal length where it is not given; cameras "
             "differ by more, but one that gives way further follows the pose's errors"},
         self.focal);
   }
@@ -230,14 +231,13 @@ struct FittedClip {
 /// clip's orientations, its root, and, without `known.skeleton`, the lengths of its bones, left and
 /// right alike (docs/concepts.md, The fit). Without settings only the root is put where the track
 /// shows it. Without a camera only the path's shape is known: it
-/// starts above the origin, at the height that the features say.
+/// starts above the origin, at the features' height.
 /// @param features what decodes features to poses, and the joints to look at
 /// @param track at the model's rate, as many frames as the prior; joined by name
 /// @param settings unset: orientations stay as the prior's mean has them, and draws are what the
 ///        prior alone leaves open
-/// @param draws for these an orientation's deviation is what the prior says, and a detector's
-///        lasting error lasts throughout: what is likeliest and how sure it is are not told by the
-///        same settings
+/// @param draws for these an orientation's deviation is the prior's, and a detector's lasting
+///        error lasts throughout: the likeliest motion and its uncertainty take different settings
 /// @throws ShapeError; InputError if the skeleton lacks a joint of the model, no frame shows enough
 ///         joints, or a deviation is negative or not finite
 FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, const Track2d& track,

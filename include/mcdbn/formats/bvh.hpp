@@ -13,11 +13,11 @@
 
 namespace mcdbn {
 
-/// Reads a BVH file; accepts what the wild holds: rotation orders mixed within a file, rotation
+/// Reads a BVH file; accepts the variants in use: rotation orders mixed within a file, rotation
 /// before position, position channels on any joint, tabs and spaces after `Frames:`, blank lines,
 /// exponents, CRLF, no final newline.
 /// @param warnings if given, collects one line for each thing that was accepted but odd
-///        (`file:line: what`), such as more frame lines than `Frames:` says.
+///        (`file:line: what`), such as more frame lines than `Frames:` gives.
 /// @throws InputError `file:line: what`
 Motion read_bvh(const std::filesystem::path& path, std::vector<std::string>* warnings = nullptr);
 

@@ -12,7 +12,7 @@ namespace mcdbn {
 /// One of the cameras of a file, in a world with +y up.
 struct NamedCamera {
   std::string name;
-  Camera camera;  ///< its unit_m is set where the format says how long its units are
+  Camera camera;  ///< its unit_m is set where the format defines the length of its units
 };
 
 /// The cameras of a file, and what was taken for granted on reading them: a line each.
@@ -27,7 +27,7 @@ struct CameraSource {
   std::string text;
 };
 
-/// What tools call a calibration.
+/// A format of camera files.
 struct CameraFormat {
   std::string_view name;                    ///< "pose2sim"
   std::string_view about;                   ///< a sentence for help and docs
@@ -38,7 +38,7 @@ struct CameraFormat {
 /// All that are read, in the order in which they are tried.
 const std::vector<CameraFormat>& camera_formats();
 
-/// The format that a file is told to be by its content; null if it is no camera file that is read.
+/// The format of a file, recognised by its content; null if it is no camera file that is read.
 const CameraFormat* camera_format_of(const std::filesystem::path& path);
 
 /// All cameras of a file. @throws InputError with file and line; also where it is larger than 4 MB

@@ -6,7 +6,7 @@
 
 namespace mcdbn {
 
-/// Roles said by hand, for skeletons whose names and shape tell too little: TOML with a line
+/// Roles given by hand, for skeletons whose names and shape do not suffice: TOML with a line
 /// `role = "joint name"` for each, roles as name_of(JointRole) spells them.
 /// @throws InputError `file:line: what`
 JointMap read_joint_map(const std::filesystem::path& path);

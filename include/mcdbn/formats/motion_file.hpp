@@ -14,7 +14,7 @@ bool is_motion_file(const std::filesystem::path& path);
 
 /// Reads BVH, or Acclaim's AMC by the ending .amc. An AMC's skeleton is the ASF beside it: 16.asf
 /// (or 16_15.asf) of 16_15.amc, else the only one in the folder. Its lengths become centimetres,
-/// its rate is taken to be CMU's 120 Hz, for the file says none.
+/// its rate is taken to be CMU's 120 Hz, for the file gives none.
 /// @param warnings if given, collects a line for each thing that was odd or taken for granted
 /// @throws InputError `file:line: what`
 Motion read_motion(const std::filesystem::path& path, std::vector<std::string>* warnings = nullptr);

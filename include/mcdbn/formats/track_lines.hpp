@@ -14,8 +14,8 @@ namespace mcdbn {
 /// Reads a 2D track line by line, as it is written: JSON, the value of one frame in each line as
 /// any of the JSON formats has it, or our own CSV, whose header line stands before the frames. What
 /// reading a whole file finds from all of it is found here from what has come so far: joints and
-/// whether coordinates are shares of the image by the first frame that shows somebody, rate and
-/// image size by `options` or the file's own words. Of several people the largest of that frame, or
+/// whether coordinates are shares of the image by the first frame that shows a person, rate and
+/// image size by `options` or the file itself. Of several people the largest of that frame, or
 /// the one of that number, is followed. Confidences beyond 1 are 1.
 class TrackLines {
  public:
@@ -27,7 +27,7 @@ class TrackLines {
   TrackLines& operator=(TrackLines&&) noexcept;
 
   /// @return the frame that the line holds, none if it holds none (empty, a comment, the header);
-  ///         of no joints while nobody was seen and the joints are not known
+  ///         of no joints while no person was seen and the joints are not known
   /// @throws InputError `name:line: what`; the lines that follow can be read all the same
   std::optional<TrackFrame> read(std::string_view line);
 

@@ -31,10 +31,10 @@ struct FineTuned {
 /// their modality was seen (ModalityClips::seen; the last one's loss counts everything). The result
 /// is the moving average of the parameters: the last one or, where clips are held out, the last one
 /// before those fared worse. The observer may throw to stop.
-/// @param held_out sequences that are not learnt from and say when to stop, or none
+/// @param held_out sequences that are not learnt from and decide when to stop, or none
 /// @param make_loss of the last modality
 /// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
-/// @throws DivergenceError saying what to lower, ShapeError
+/// @throws DivergenceError naming what to lower, ShapeError
 FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& source,
                     const SequenceSource* held_out, const LearningSettings& settings,
                     const SequenceLossMaker& make_loss, const EpochObserver& observer = {},

@@ -19,9 +19,9 @@ class Checkpoints;
 /// Algorithm 1: the last modality's CDBN layer by layer (3D), those before it, then the MRBM on
 /// their codes. Two modalities or more.
 /// The observer may throw to stop.
-/// @param start weights to start from; nothing: small random ones, as the settings' deviations say
+/// @param start weights to start from; nothing: small random ones, of the settings' deviations
 /// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
-/// @throws DivergenceError saying what to lower
+/// @throws DivergenceError naming what to lower
 Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningSettings& learning,
                    const EpochObserver& observer = {}, const Mcdbn* start = nullptr,
                    Checkpoints* checkpoints = nullptr);
@@ -31,13 +31,13 @@ struct TrainedCdbn {
   Sequences code;  ///< of what it was trained on
 };
 
-/// The layers that the settings say, as wide and with as long a history each.
+/// The layers that the settings specify, as wide and with as long a history each.
 /// @param kind of the lowest layer's visible units
 std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings& learning,
                                     VisibleKind kind = VisibleKind::gaussian);
 
-/// A CDBN layer by layer, each on the code of the one beneath. Gaussian layers learn as
-/// `learning.gaussian` says, binary ones as `learning.binary`.
+/// A CDBN layer by layer, each on the code of the one beneath. Gaussian layers learn by
+/// `learning.gaussian`, binary ones by `learning.binary`.
 /// @param layers from below, any width and order each: layer_shapes(), or the caller's own
 /// @param first_stream of the lowest layer's random numbers; the others' follow
 /// @param start weights to start from; nothing: small random ones
@@ -60,7 +60,7 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
 MrbmParameters small_weights(const MrbmShape& shape, std::span<const Sequences> codes,
                              const LearningSettings& learning);
 
-/// The MRBM, by the rule that the settings say, on codes of each modality whose rows belong to the
+/// The MRBM, by the settings' rule, on codes of each modality whose rows belong to the
 /// same frames, the first modality's look_ahead frames later.
 Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
                 const LearningSettings& learning, std::uint16_t stream,

@@ -9,7 +9,7 @@
 
 namespace mcdbn {
 
-/// What tells early that a layer goes wrong. Computed on the host, from a few windows.
+/// Early signs that a layer goes wrong. Computed on the host, from a few windows.
 struct LayerHealth {
   double hidden_activity = 0;  ///< mean hidden probability
   double saturation = 0;       ///< fraction of hidden probabilities below 0.01 or above 0.99

@@ -10,7 +10,7 @@
 
 namespace mcdbn {
 
-/// How a machine of its own is fitted, whatever it is: what does not concern it says nothing.
+/// How a machine of its own is fitted, whatever it is: settings that do not concern it are ignored.
 struct MachineSettings {
   std::uint64_t seed = 1;
   std::size_t order = 3;
@@ -56,14 +56,14 @@ struct LayerSize {
 /// CRBM, orders of 0 make it a DBN. Stages are called layer.0, layer.1 …
 /// @param kind of the lowest layer's visible units; those above see the code, which is binary
 /// @param layers from below; they stand in place of the settings' order, hidden and layers
-/// @param observer hears of each epoch; may throw to stop
-/// @throws DivergenceError saying what to lower; ShapeError if no row has a history, or there is
+/// @param observer is called after each epoch; may throw to stop
+/// @throws DivergenceError naming what to lower; ShapeError if no row has a history, or there is
 /// no layer
 Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind,
                const std::vector<LayerSize>& layers, const MachineSettings& settings,
                const EpochObserver& observer = {});
 
-/// An MRBM, fitted by the rule that the settings say on rows that belong together.
+/// An MRBM, fitted by the settings' rule on rows that belong together.
 /// @param modalities name and kind of each  @param data of each, as many rows in all
 /// @throws DivergenceError, ShapeError
 Mrbm fit_mrbm(Device& device, const std::vector<Modality>& modalities,

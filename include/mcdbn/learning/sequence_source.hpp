@@ -28,7 +28,7 @@ struct ModalityClips {
 /// Synchronized sequences of all modalities: clip i has as many frames in each.
 struct SynchronizedClips {
   std::vector<ModalityClips> modalities;
-  /// Which clips belong together (of one person, say), counted from 0; empty: all alike.
+  /// Which clips belong together (e.g. of one person), counted from 0; empty: all alike.
   std::span<const std::size_t> groups;
 
   std::size_t count() const { return modalities.front().clips.size(); }

@@ -47,7 +47,7 @@ struct CdSettings {
                   "no momentum in so many first epochs, whose gradients still turn"},
           self.momentum_from_epoch);
     visit(Setting{"weight-decay", within(0, 1000), "",
-                  "decay of W, A and B, times the rate: keeps weights that say little small"},
+                  "decay of W, A and B, times the rate: keeps weights of little effect small"},
           self.weight_decay);
     visit(Setting{"initial-deviation", within(0, 100), "",
                   "spread of the first weights where no fine-tuning follows, which has its own"},
@@ -68,7 +68,7 @@ struct CdSettings {
                   "rate of fast weights, which keep persistent chains moving; 0: none"},
           self.fast_rate);
     visit(Setting{"sample-visible", on_or_off(), "",
-                  "draws visible units in the chain, as the model says, where their means do"},
+                  "draws visible units in the chain, as the model defines them, not their means"},
           self.sample_visible);
     visit(Setting{"sparsity-target", between(0, 1), "",
                   "how often a hidden unit should be on, where sparsity-strength counts"},
@@ -116,7 +116,7 @@ struct MrbmSettings {
     visit(
         Setting{
             "weight-decay", within(0, 1000), "",
-            "decoupled decay of the weights, times the rate: keeps those small that say little"},
+            "decoupled decay of the weights, times the rate: keeps those of little effect small"},
         self.weight_decay);
     visit(Setting{"initial-deviation", within(0, 100), "",
                   "spread of the first weights where no fine-tuning follows, which has its own"},
@@ -140,7 +140,7 @@ struct MrbmSettings {
                   "joint-likelihood: chains go on from one mini-batch to the next"},
           self.persistent);
     visit(Setting{"sample-visible", on_or_off(), "",
-                  "draws the codes in those chains, as the model says, where their means do"},
+                  "draws the codes in those chains, as the model defines them, not their means"},
           self.sample_visible);
     visit(Setting{"adam", on_or_off(), "", "Adam; off: gradient descent with momentum"}, self.adam);
     visit(Setting{"momentum", share_below_one(), "",
@@ -184,7 +184,7 @@ struct FineTuningSettings {
     visit(Setting{"windows", within(1, 1e5), "windows", "of a mini-batch"}, self.windows);
     visit(Setting{"people-power", within(0, 1), "",
                   "windows are drawn from people as their frames to this power: 1: every frame "
-                  "counts alike; 0: every person, told by their bones"},
+                  "counts alike; 0: every person, identified by their bones"},
           self.people_power);
     // The loss judges steps from frame to frame, too.
     visit(Setting{"window-frames", within(2, 1000), "frames", "judged frames of a window"},
@@ -197,7 +197,7 @@ struct FineTuningSettings {
     visit(
         Setting{
             "weight-decay", within(0, 1000), "",
-            "decoupled decay of the weights, times the rate: keeps those small that say little"},
+            "decoupled decay of the weights, times the rate: keeps those of little effect small"},
         self.weight_decay);
     visit(Setting{"dropout", share_below_one(), "",
                   "share of hidden units that are left out, the same throughout a window"},
@@ -261,7 +261,7 @@ struct LearningSettings {
   static LearningSettings greedy();
   /// The paper's own figures (Table 2, section V.C): rate 0.1 and momentum 0.9 throughout, weights
   /// from N(0, 1), MRBM of 150, no look-ahead, k = 5 sampled steps in training and 3 in
-  /// regeneration. Diverges: the guard says so.
+  /// regeneration. Diverges, which the guard reports.
   static LearningSettings paper();
   /// The nearest to it that trains: rates and first weights that do not diverge, all else the same.
   static LearningSettings paper_stable();

@@ -4,7 +4,7 @@
 
 namespace mcdbn {
 
-/// How far an answer of an MCDBN may be off, told from the code that it was decoded from: a normal
+/// How far an answer of an MCDBN may be off, given the code that it was decoded from: a normal
 /// distribution's standard deviation for every frame and value, σ = exp(c + h·C). The paper has
 /// none: its visible units have variance 1 whatever the code.
 struct AnswerDeviation {

@@ -15,7 +15,7 @@ struct GenerationHealth {
   /// Of each sequence, RMS change of a channel from frame to frame over the last kLateFrames: next
   /// to nothing where it came to a stop.
   std::vector<double> late_speed;
-  /// Of each sequence, mean_speed of what it went on from; empty where nobody said.
+  /// Of each sequence, mean_speed of what it went on from; empty where not given.
   std::vector<double> seed_speed = {};
   /// Of each sequence, the shortest lag in frames after which it comes back to where it was
   /// (shortest_cycle).

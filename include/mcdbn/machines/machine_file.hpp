@@ -27,7 +27,7 @@ void save_machine(const std::filesystem::path& path, const SavedMachine& saved);
 /// @throws InputError
 SavedMachine load_machine(Device& device, const std::filesystem::path& path);
 
-/// Whether a .safetensors file holds a machine of its own (and not a model of motion, say).
+/// Whether a .safetensors file holds a machine of its own (and not e.g. a model of motion).
 /// @throws InputError
 bool is_machine_file(const std::filesystem::path& path);
 /// The file's own account of itself, for people: kind, sizes, settings. Needs no device.

@@ -41,7 +41,7 @@ struct Mcdbn {
   /// The CDBN itself fills in missing values of what is present. Else they are left at their mean,
   /// as a network that was trained as a whole has learnt to see them.
   bool fills_gaps = true;
-  /// Of the last modality as the others tell it; unset where nobody learnt it.
+  /// Of the last modality given the others; unset where it was not learnt.
   std::optional<AnswerDeviation> deviation = {};
 
   std::size_t modality_count() const { return cdbns.size(); }

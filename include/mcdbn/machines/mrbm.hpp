@@ -74,7 +74,7 @@ class Mrbm : public MrbmMatrices {
   /// Mean-field inference of the absent modalities (eq 32, 33), started from zeros, `steps` times.
   /// With `doubled` the first pass counts the present modalities twice in place of the absent ones'
   /// zeros (Sohn et al.). Sampled inference is MrbmChain's.
-  /// @param modalities [rows x visible] for each: what `present` says is there, the others are the
+  /// @param modalities [rows x visible] for each: those `present` are given, the others are the
   /// result  @throws ShapeError
   void infer(const std::vector<Rows>& modalities, const std::vector<bool>& present,
              std::size_t steps, bool doubled = false) const;

@@ -9,7 +9,7 @@ namespace mcdbn {
 
 struct RegenerationOptions {
   std::size_t samples = 1;
-  /// 0: mean field throughout (the best single answer). Above: draws as `sampling` says, each
+  /// 0: mean field throughout (the best single answer). Above: draws by `sampling`, each
   /// pulled towards its mean as mean + temperature · (draw − mean).
   double temperature = 0.0;
   SamplingRule sampling;  ///< Algorithm 5's; a network's own is Mcdbn::sampling
@@ -50,8 +50,8 @@ struct CodedAnswer {
   MatrixF code;  ///< hidden units of the top layer [frames x code]
 };
 
-/// The second modality from the first with the codes: AnswerDeviation::of them says how sure the
-/// answers are. @return as regenerate does
+/// The second modality from the first with the codes: AnswerDeviation::of them is how far off
+/// the answers may be. @return as regenerate does
 std::vector<CodedAnswer> coded_answers(const Mcdbn& network, const std::vector<MatrixF>& first,
                                        const RegenerationOptions& options = {});
 

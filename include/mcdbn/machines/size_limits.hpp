@@ -2,7 +2,7 @@
 
 #include "mcdbn/base/settings.hpp"
 
-/// How large machines may be: of settings, and of what a file says before memory is taken for it.
+/// How large machines may be: for settings, and for sizes in a file before memory is allocated.
 /// Products of three of them still fit into 64 bits.
 namespace mcdbn::size_limits {
 

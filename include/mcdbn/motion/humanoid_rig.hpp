@@ -16,9 +16,9 @@ namespace mcdbn {
 /// (fingers, twist bones) and roles without a joint stay as they rest on their parents.
 class HumanoidRig {
  public:
-  /// @param motion tells how the joints are turned where the rest pose is nobody's
+  /// @param motion shows how the joints are turned where the rest pose is not a person's
   ///        (docs/joints.md); one without frames has its rest pose alone
-  /// @throws InputError if nothing tells the pelvis
+  /// @throws InputError if no joint is known to be the pelvis
   HumanoidRig(const Motion& motion, const SkeletonRoles& roles);
   explicit HumanoidRig(const Motion& motion);
 
@@ -66,10 +66,9 @@ class HumanoidRig {
   std::vector<Eigen::Vector3d> local_;
 };
 
-/// The rig of a motion that is a person's, whose joints' names tell their roles.
-/// @param joint_map roles said by hand, of one skeleton or of several: those of joints that this
-/// one
-///        has not are left out
+/// The rig of a person's motion; the joints' roles follow from their names.
+/// @param joint_map roles given by hand, of one skeleton or of several: those of joints that this
+///        one has not are left out
 /// @throws InputError as the rig does; or naming the joints of a person that the skeleton has not:
 ///         hips, knees, ankles, shoulders, elbows and wrists of both sides, neck or head
 HumanoidRig rig_of_person(const Motion& motion, const JointMap& joint_map = {});

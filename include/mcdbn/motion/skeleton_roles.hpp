@@ -11,7 +11,7 @@
 
 namespace mcdbn {
 
-/// Roles said by hand: the name of the joint that plays each.
+/// Roles given by hand: the name of the joint that plays each.
 using JointMap = std::map<JointRole, std::string>;
 
 /// Which joint of a skeleton plays which role.
@@ -35,11 +35,11 @@ class SkeletonRoles {
 
 /// The roles of a skeleton's joints: those of `given`; then by names, as CMU's files (`LeftUpLeg`,
 /// `lfemur`), Bandai, Mixamo, Berkeley MHAD, Xsens, LAFAN, Biped, SMPL, Unreal, Blender and others
-/// spell them; then, for limbs that no name tells, by the tree: legs are the longest pair of like
+/// spell them; then, for limbs without known names, by the tree: legs are the longest pair of like
 /// chains nearest the root, arms the longest pair above, and the two longest bones in a row are
-/// thigh and shank, upper arm and forearm. Left is then told by marks in names, else by the rest
+/// thigh and shank, upper arm and forearm. Left is then found by marks in names, else by the rest
 /// pose: up is from legs to arms, forward as the feet point, or along +z;
-/// where the rest pose is nobody's, as in a BVH made of ASF, give the sides by hand.
+/// where the rest pose is not a person's, as in a BVH made of ASF, give the sides by hand.
 /// A joint that only leads to a limb (CMU's LHipJoint) plays no role.
 /// @throws InputError if the skeleton has no joint, or more than one, of a name in `given`, or a
 ///         joint is given two roles

@@ -21,8 +21,8 @@ struct SeedClip {
 /// Motion that goes on where each clip ends, or from moments all over it, `samples` times each
 /// (Algorithm 4 on the model's 3D CDBN).
 /// The person is the clip's own, seen as the model's camera would see it, in each sample from the
-/// next of the directions that the model was trained on; the root keeps the height that the
-/// features say and travels by their velocity.
+/// next of the directions that the model was trained on; the root keeps the features'
+/// height and travels by their velocity.
 /// @param health if given, of the standardized features of all samples of all clips; their speed is
 ///        compared with the whole clip's
 /// @return the new frames alone, at the model's rate, result[moment · samples + sample], the

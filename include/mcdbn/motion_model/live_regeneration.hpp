@@ -12,14 +12,14 @@ namespace mcdbn {
 /// One frame of regenerated motion.
 struct LiveFrame {
   RowVectorD channels;  ///< of LiveRegeneration::skeleton(), degrees and file units
-  bool seen = true;     ///< false: nobody has been seen yet, and this is the model's mean pose
+  bool seen = true;     ///< false: no person has been seen yet, and this is the model's mean pose
 };
 
 /// 3D motion from a 2D track that is still growing: regenerate_clip for those who cannot wait for
 /// the end. Frames come back in order, each once, at most latency_frames() frames of the model's
 /// rate after they were pushed; memory and time of a frame do not grow beyond what the last 15 s
 /// take. The past is settled: what has come back is not changed any more, so that it differs a
-/// little from what the whole clip tells (docs/concepts.md, Live). Body and camera are looked for
+/// little from the whole clip's answer (docs/concepts.md, Live). Body and camera are looked for
 /// on a thread of its own. Clips are independent: one object each.
 class LiveRegeneration {
  public:

@@ -52,7 +52,7 @@ class RunFolder {
 
   /// The model is there: everything is put where it belongs. On a full disk the checkpoint before
   /// the last makes room; if that will not do the model goes to the folder for temporary files.
-  /// @throws InputError saying where what was trained lies
+  /// @throws InputError naming the place of what was trained
   void complete(const Model& model);
 
  private:

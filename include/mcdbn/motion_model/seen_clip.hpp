@@ -15,11 +15,11 @@ namespace mcdbn {
 struct ClipPlacement : KnownOfClip {
   std::optional<TrackFitSettings> fit =
       TrackFitSettings{};   ///< unset: the network's answer as it is
-  JointMap joint_map = {};  ///< roles of the skeleton's joints, said by hand
-  /// Channels of a clip of that skeleton, if there is one: they tell how its joints are turned
-  /// where its rest pose is nobody's (HumanoidRig).
+  JointMap joint_map = {};  ///< roles of the skeleton's joints, given by hand
+  /// Channels of a clip of that skeleton, if there is one: they show how its joints are turned
+  /// where its rest pose is not a person's (HumanoidRig).
   MatrixD skeleton_channels = {};
-  /// Motions that are drawn to tell how sure the fit is; none: it is not asked.
+  /// Motions that are drawn for the fit's uncertainty; none: it is not computed.
   PosteriorDraws uncertainty_draws = {};
 };
 
@@ -27,8 +27,8 @@ struct ClipPlacement : KnownOfClip {
 /// the poses, or standardized poses alone.
 using PoseAnswer = std::function<PosePrior(const MatrixF& features)>;
 
-/// The features of a track of which parts are out of sight for long, with what an answer to the
-/// rest shows there in place of NaN; the answer to that fills them anew, in rounds.
+/// The features of a track of which parts are hidden for long, with what an answer to the rest
+/// shows there in place of NaN; the answer to these fills them anew, in rounds.
 /// @param features standardized 2D of `track` [frames x dimension], NaN where joints are missing
 /// @param answer to such features, its own guess for NaN
 /// @return the same where nothing is missing
@@ -36,8 +36,8 @@ using PoseAnswer = std::function<PosePrior(const MatrixF& features)>;
 MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const Track2d& track,
                   const ClipPlacement& placement, const PoseAnswer& answer);
 
-/// Whether the clip is asked how its camera looks: none is known, pitch or roll is not said either,
-/// and the model knows what it sees through others than its own (Modalities::level_view).
+/// Whether the view is estimated from the clip: no camera is known, the view is not fully given and
+/// the model takes cameras other than its own (Modalities::level_view).
 bool finds_view(const Modalities& modalities, const KnownOfClip& known);
 
 /// A track as a model sees it.
@@ -45,8 +45,8 @@ struct SeenClip {
   MatrixF features;  ///< standardized 2D, nothing missing
   Track2d joints;    ///< the model's joints by name, for fit_to_track
   TrackFeatures::FillCount filled;
-  /// Of the camera that is assumed where none is known: what was said, and what the clip tells of
-  /// pitch and roll where nobody said them: feet stand on level ground.
+  /// Of the camera that is assumed where none is known: what was given, and what was found from
+  /// the clip where nothing was given: feet stand on level ground.
   AssumedView view;
   /// What was exchanged besides what find_side_swaps finds, in frames of the model's rate.
   std::vector<SideSwap> swaps = {};
@@ -54,10 +54,10 @@ struct SeenClip {
 
 /// What a model sees of a track. Where the columns are the model's joints by name, that is the
 /// track, its gaps filled (fill_gaps). Where they are a detector's, or another skeleton's, the
-/// joints are told from them by their roles, and what lies between a place and its joint is taken
+/// joints follow from them by their roles, and the offset between a place and its joint is taken
 /// off as the answer has it, in the rounds that fill the gaps. In these the view is found, too.
-/// Before them, limbs that come back into sight after a while are tried with their sides exchanged,
-/// if there is a fit: the likelier answer tells which they are.
+/// Before them, limbs that reappear after a while are tried with their sides exchanged, if there is
+/// a fit: the likelier answer decides.
 /// @param track at the model's rate  @param answer as of fill_gaps
 /// @throws InputError if the track shows too little of the model's joints; as fill_gaps
 SeenClip see_clip(const Modalities& modalities, const Track2d& track,

@@ -5,18 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "mcdbn/base/said_setting.hpp"
+#include "mcdbn/base/given_setting.hpp"
 #include "mcdbn/motion_model/training_config.hpp"
 
 namespace mcdbn {
 
 /// Sets them in their order.
 /// @throws ConfigError for a setting that does not exist, a value of another kind or out of range
-void assign_settings(TrainingConfig& config, const std::vector<SaidSetting>& said);
+void assign_settings(TrainingConfig& config, const std::vector<GivenSetting>& given);
 
 /// The settings of a TOML file, in which groups are tables.
-/// @throws ConfigError `file:line: what` if it is missing or no TOML; what it says is not checked
-std::vector<SaidSetting> read_settings_file(const std::filesystem::path& file);
+/// @throws ConfigError `file:line: what` if it is missing or no TOML; its values are not checked
+std::vector<GivenSetting> read_settings_file(const std::filesystem::path& file);
 
 /// All settings as a TOML file that read_settings_file reads.
 std::string settings_toml(const TrainingConfig& config);

@@ -13,7 +13,7 @@ namespace mcdbn {
 struct PoseLossWeights {
   double features = 1.0;  ///< of squared standardized features: what the others are weighed by
   double positions = 0.0, velocities = 0.0, contacts = 0.0;
-  /// Of the contacts: feet are told by their speed alone, on a 1.7 m body; see PlantedFoot.
+  /// Of the contacts: a foot's speed alone decides, on a 1.7 m body; see PlantedFoot.
   double planted_below_m_s = kPlantedInCapture.below_m_s;
 
   template <typename Self, typename Visit>
@@ -37,7 +37,7 @@ struct PoseLossWeights {
 struct TrainingConfig : CorpusSettings, LearningSettings {
   /// Of fine-tuning's loss on the 3D modality.
   PoseLossWeights pose_loss{.positions = 0.5, .velocities = 0.2, .contacts = 0.1};
-  /// Of few nobody can be spared: without one of nine CMU walkers the error on strangers is 28.7
+  /// Of few people none is held out: without one of nine CMU walkers the error on strangers is 28.7
   /// instead of 23.6 mm, and the one held out did better to the end.
   std::size_t hold_out_among = 20;
   bool half_precision = false;

@@ -34,7 +34,7 @@ struct CheckpointSettings {
   }
 };
 
-/// Who hears of a training while it runs.
+/// The observers of a training while it runs.
 struct TrainingWatch {
   EpochObserver epoch = {};  ///< after its line is written; may throw to stop
   std::function<void(const std::string&)> warning = {};  ///< what went wrong and is no end

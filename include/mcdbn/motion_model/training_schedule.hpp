@@ -18,7 +18,7 @@ struct TrainedNetwork {
   std::optional<EarlyStopping> early_stopping;  ///< if one person was held out
 };
 
-/// make_training_set as a training run's settings say.
+/// make_training_set as a training run's settings specify.
 TrainingSet make_training_set(const ClipStore& clips, const TrainingConfig& config);
 /// The same with a model's features and scaling, for a training that starts from it.
 TrainingSet make_training_set(const ClipStore& clips, const Modalities& modalities,
@@ -28,14 +28,14 @@ TrainingSet make_augmented_views(const ClipStore& clips, const Modalities& modal
                                  const TrainingConfig& config);
 
 /// Fine-tuning with the loss on poses (PoseLoss). Of at least config.hold_out_among people one is
-/// held out (person_to_hold_out) and says when to stop.
+/// held out (person_to_hold_out) and decides when to stop.
 /// @param views augmented ones  @throws DivergenceError
 TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& views,
                          const TrainingConfig& config, const EpochObserver& observer = {},
                          Checkpoints* checkpoints = nullptr);
 
 /// The greedy stages (Algorithm 1) on the clips as they are, or on augmented views of them and then
-/// fine-tuning, or that alone, as config.fine_tuning says.
+/// fine-tuning, or that alone, as config.fine_tuning specifies.
 /// @param data of those clips (make_training_set)
 /// The observer may throw to stop.
 /// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)

@@ -17,7 +17,7 @@ inline constexpr std::size_t kTrack = 0, kPose = 1;  // 2D, 3D
 inline constexpr std::array<const char*, 2> kModalityNames{"track", "pose"};
 
 /// A training set's clips; the set must live on. Those of one person and action belong together, or
-/// of one person where nobody said actions.
+/// of one person where no actions are given.
 class ClipSource : public SequenceSource {
  public:
   explicit ClipSource(const TrainingSet& set) : set_(set) {}
@@ -53,11 +53,11 @@ class ViewLoader;
 
 /// Views of pieces of clips (FreshViews) that give way to fresh ones while they are learnt from,
 /// one after config.fine_tuning.view_uses windows of it. Threads of its own make them ahead. Which
-/// views a mini-batch is drawn from hangs on its number alone. So does its cost, whatever the
+/// views a mini-batch is drawn from depends on its number alone. So does its cost, whatever the
 /// corpus.
 class FreshViewSource : public SequenceSource {
  public:
-  /// One person is held out as config.hold_out_among says.
+  /// One person is held out as config.hold_out_among specifies.
   FreshViewSource(const ClipStore& clips, const TrainingSet& data, const TrainingConfig& config);
   ~FreshViewSource() override;
   FreshViewSource(const FreshViewSource&) = delete;

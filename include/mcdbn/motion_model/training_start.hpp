@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mcdbn/base/said_setting.hpp"
+#include "mcdbn/base/given_setting.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
 #include "mcdbn/motion_model/training_config.hpp"
 
@@ -12,7 +12,7 @@ namespace mcdbn {
 // new ones. The greedy stages are left out: they would train them anew.
 
 /// What is the model's own and no training's choice: rate, sizes, camera.
-std::vector<SaidSetting> settings_of_start(const Model& start);
+std::vector<GivenSetting> settings_of_start(const Model& start);
 
 /// Whether those settings are the model's, the skeleton is, and there is fine-tuning and nothing
 /// before it.

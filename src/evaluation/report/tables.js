@@ -52,7 +52,7 @@ function tableView(table, open) {
                  element("summary", {}, table.title, element("span", {}, table.file)),
                  element("div", {class: "scroll", tabindex: "0"},
                          element("table", {}, element("thead", {}, head), body)));
-  // Rows are made when somebody looks: thousands of them would slow the page down.
+  // Rows are made when the table is opened: thousands of them would slow the page down.
   const fill = () => { if (view.open && !body.hasChildNodes()) body.replaceChildren(...tableBody(table)); };
   view.addEventListener("toggle", fill);
   fill();

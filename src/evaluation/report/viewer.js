@@ -44,7 +44,7 @@ class Viewer {
     on("farther", "click", () => this.zoom(1 / 1.15));
     for (const radio of this.root.querySelectorAll("[name=layout]")) radio.addEventListener("change", () => this.draw());
     const canvas = this.part("scene");
-    let held = null;  // where the pointer was last: not every browser tells how far it moved
+    let held = null;  // where the pointer was last: not every browser reports how far it moved
     canvas.addEventListener("pointerdown", e => {
       canvas.setPointerCapture(e.pointerId);
       held = {x: e.clientX, y: e.clientY};

@@ -23,8 +23,8 @@ class JointPlace {
   /// @param unknowns by block
   Eigen::Vector3d at(double const* const* unknowns) const;
 
-  /// Writes of_place · d place / d block for every block that is asked for. A null in `jacobians`
-  /// is not asked for. @param of_place [rows x 3]
+  /// Writes of_place · d place / d block for every block whose pointer in `jacobians` is not null.
+  /// @param of_place [rows x 3]
   template <int kRows>
   void differentiate(const Eigen::Matrix<double, kRows, 3>& of_place, double const* const* unknowns,
                      double** jacobians) const;

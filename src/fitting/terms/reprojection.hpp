@@ -11,7 +11,7 @@ namespace mcdbn {
 /// where focal is, if the camera is unknown, one more block (1): the logarithm of the camera's
 /// focal length over the one that ray and deviation were made with; else 0. Nearer to the camera
 /// than nearest_m, or behind it, a joint is seen as if it were so near: else whole bodies would be
-/// likeliest where no ray is missed, behind the camera.
+/// likeliest where all residuals are 0, behind the camera.
 class Reprojection : public ceres::CostFunction {
  public:
   /// @param ray x/z and y/z, lens taken out  @param deviation of each of both, in the same unit

@@ -64,7 +64,7 @@ inline void print(const std::string& variant, double median) {
   std::cout << "{\"" << variant << "\": " << median << "}" << std::endl;
 }
 
-/// Answers whoever asks, until the input ends.
+/// Answers requests until the input ends.
 inline void serve(const std::string& variant, double seconds, const std::function<void()>& step,
                   const std::function<void()>& wait) {
   step();

@@ -1,4 +1,4 @@
-// Trains a Gaussian CRBM on a matrix, one frame a row: two waves that the past tells much about.
+// Trains a Gaussian CRBM on a matrix, one frame a row: two waves that follow largely from the past.
 #include <cmath>
 #include <iostream>
 #include <mcdbn/base/errors.hpp>

@@ -1,4 +1,4 @@
-// An MRBM of three modalities on matrices: what two of them tell of the third.
+// An MRBM of three modalities on matrices: the third is inferred from the other two.
 #include <iostream>
 #include <mcdbn/base/errors.hpp>
 #include <mcdbn/learning/greedy_schedule.hpp>
