@@ -8,7 +8,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <ranges>
 #include <utility>
 
 #include "base/counted.hpp"
@@ -118,22 +117,28 @@ void report_assumed(const Camera& camera, bool found) {
       2 * std::atan(0.5 * camera.height_px / camera.fy_px) * 180 / EIGEN_PI);
 }
 
+/// "0-11, 30, 40-52"
+std::string listed(const std::vector<FrameRange>& ranges) {
+  std::string list;
+  for (const FrameRange& range : ranges) {
+    if (!list.empty()) list += ", ";
+    list += range.frames == 1 ? fmt::format("{}", range.first)
+                              : fmt::format("{}-{}", range.first, range.end() - 1);
+  }
+  return list;
+}
+
 /// Warns what was missing in the track and what was wrong with it.
 void report(const std::filesystem::path& path, const TrackFindings& findings) {
   const TrackFeatures::FillCount& filled = findings.filled;
   const std::vector<FrameRange>& stretches = findings.stretches.stretches;
-  const auto frames = [](const FrameRange& range) {
-    return range.frames == 1 ? fmt::format("{}", range.first)
-                             : fmt::format("{}-{}", range.first, range.end() - 1);
-  };
   if (stretches.size() > 1)
     spdlog::warn(
         "{}: jumps to another place, as if to another person: frames {} are regenerated each by "
         "themselves, with one body",
-        path.string(), fmt::join(stretches | std::views::transform(frames), ", "));
+        path.string(), listed(stretches));
   if (const auto& strays = findings.stretches.strays; !strays.empty())
-    spdlog::warn("{}: another person in frames {}: left out", path.string(),
-                 fmt::join(strays | std::views::transform(frames), ", "));
+    spdlog::warn("{}: another person in frames {}: left out", path.string(), listed(strays));
   if (!findings.swaps.empty())
     spdlog::warn("{}: {}; put right", path.string(), described(findings.swaps));
   if (!filled.unseen.empty())

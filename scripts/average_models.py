@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The mean of a model's parameters and of those that it came to: average_models.py MODEL FURTHER OUT
+"""The mean of several models' parameters: average_models.py OUT MODEL MODEL…
 
-FURTHER is what `train --from MODEL` made. Each forgot or overfitted something else, and between them lie
-parameters that do better than either (docs/corpus.md). All but the numbers is FURTHER's; the metadata
-name MODEL in `averaged_with`.
+Models that `train --from` made from one start, and that start. Each forgot or overfitted something else, and
+between them lie parameters that do better than any (docs/corpus.md). All but the numbers is the last model's;
+the metadata name the others in `averaged_with`.
 """
 
 import json
@@ -18,7 +18,7 @@ MAY_DIFFER = ("config", "sampling", "started_from", "training_clips")
 
 
 def network(header: dict) -> dict:
-    """What two models must have in common: features, scaling, camera, sizes."""
+    """What the models must have in common: features, scaling, camera, sizes."""
     about = json.loads(header["__metadata__"]["mcdbn"])
     return {name: value for name, value in about.items() if name not in MAY_DIFFER}
 
@@ -29,30 +29,34 @@ def numbers(tensor: dict, content: bytes) -> tuple[float, ...]:
                                                             content[begin:end]))
 
 
-def averaged(model: tuple[dict, bytes], further: tuple[dict, bytes]) -> bytes:
-    """The further model's numbers, each the mean of both models'."""
-    (header, content), (further_header, further_content) = model, further
-    if network(header) != network(further_header):
+def averaged(models: list[tuple[dict, bytes]]) -> bytes:
+    """The numbers of the last model's tensors, each the mean over the models."""
+    last_header, last_content = models[-1]
+    if any(network(header) != network(last_header) for header, _ in models):
         sys.exit("the models differ in features, scaling, camera or sizes")
-    result = bytearray(further_content)
-    for name, tensor in further_header.items():
+    result = bytearray(last_content)
+    for name, tensor in last_header.items():
         if name == "__metadata__":
             continue
-        other = header.get(name, {})
-        if (tensor["dtype"], tensor["shape"]) != (other.get("dtype"), other.get("shape")):
-            sys.exit(f"{name} is not of one type and shape in both models")
+        kinds = [(header.get(name, {}).get("dtype"), header.get(name, {}).get("shape"))
+                 for header, _ in models]
+        if any(kind != kinds[-1] for kind in kinds):
+            sys.exit(f"{name} is not of one type and shape in all models")
+        means = [sum(values) / len(models)
+                 for values in zip(*(numbers(header[name], content) for header, content in models))]
         begin, end = tensor["data_offsets"]
-        means = [(a + b) / 2
-                 for a, b in zip(numbers(other, content), numbers(tensor, further_content))]
         result[begin:end] = struct.pack(f"<{len(means)}{LETTERS[tensor['dtype']]}", *means)
     return bytes(result)
 
 
 def main() -> None:
-    model, further, out = sys.argv[1:]
-    header, content = read_model(further)
-    means = averaged(read_model(model), (header, content))
-    header["__metadata__"]["averaged_with"] = pathlib.Path(model).name
+    out, *paths = sys.argv[1:]
+    if len(paths) < 2:
+        sys.exit("average_models.py OUT MODEL MODEL…")
+    models = [read_model(path) for path in paths]
+    header = models[-1][0]
+    means = averaged(models)
+    header["__metadata__"]["averaged_with"] = ", ".join(pathlib.Path(path).name for path in paths[:-1])
     write_model(out, header, means)
 
 

@@ -307,7 +307,8 @@ TEST_CASE("sample: a modality of an MRBM, free or with others given, in its own 
   mcdbn::write_matrix(files.file("holes.npy"), holes);
   check_refused(call, 2, "--infer: wanted by an MRBM");
   check_refused(call + files.modality("v") + " --infer v", 2, "--infer v: it is given");
-  check_refused(call + " --infer v --given " + files.file("v.npy"), 2, "--given: what is given");
+  check_refused(call + " --infer v --given " + files.file("v.npy"), 2,
+                "--given: what is known of an MRBM");
   check_refused(call + " --infer v --modality a=" + files.file("holes.npy"), 3,
                 "holes.npy: not numbers throughout");
 }

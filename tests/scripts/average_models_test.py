@@ -1,4 +1,4 @@
-"""scripts/average_models.py: the mean of each number, all else the second model's, nothing of unlike models.
+"""scripts/average_models.py: the mean of each number, all else the last model's, nothing of unlike models.
 
     average_models_test.py
 """
@@ -30,30 +30,36 @@ class AverageModels(unittest.TestCase):
     def setUp(self):
         self.temporary = tempfile.TemporaryDirectory()
         self.folder = pathlib.Path(self.temporary.name)
-        self.model, self.further, self.out = (
-            self.folder / name for name in ("model.safetensors", "further.safetensors", "out"))
+        self.model, self.second, self.further, self.out = (
+            self.folder / name
+            for name in ("model.safetensors", "second.safetensors", "further.safetensors", "out"))
         write_model(self.model, [1.0, -2.0, 0.5], [10.0, 20.0], seed=1)
+        write_model(self.second, [2.0, -3.0, 0.75], [9.0, 3.0], seed=3)
 
     def tearDown(self):
         self.temporary.cleanup()
 
-    def average(self):
-        return subprocess.run([SCRIPT, self.model, self.further, self.out], capture_output=True,
-                              text=True, check=False)
+    def average(self, *models):
+        return subprocess.run([SCRIPT, self.out, *models], capture_output=True, text=True, check=False)
 
-    def test_means_and_the_rest_of_the_second(self):
+    def test_means_and_the_rest_of_the_last(self):
         write_model(self.further, [3.0, -4.0, 0.25], [11.0, -20.0], seed=2)
-        result = self.average()
+        result = self.average(self.model, self.second, self.further)
         self.assertEqual(result.returncode, 0, result.stderr)
         content = self.out.read_bytes()
         (length,) = struct.unpack_from("<Q", content)
         header = json.loads(content[8 : 8 + length])
         self.assertEqual(length % 8, 0)
-        self.assertEqual(struct.unpack_from("<3e", content, 8 + length), (2.0, -3.0, 0.375))
-        self.assertEqual(struct.unpack_from("<2f", content, 8 + length + 6), (10.5, 0.0))
+        self.assertEqual(struct.unpack_from("<3e", content, 8 + length), (2.0, -3.0, 0.5))
+        self.assertEqual(struct.unpack_from("<2f", content, 8 + length + 6), (10.0, 1.0))
         self.assertEqual(len(content), 8 + length + 14)
         self.assertEqual(json.loads(header["__metadata__"]["mcdbn"])["config"], {"seed": 2})
-        self.assertEqual(header["__metadata__"]["averaged_with"], "model.safetensors")
+        self.assertEqual(header["__metadata__"]["averaged_with"],
+                         "model.safetensors, second.safetensors")
+
+    def test_one_model_has_no_mean(self):
+        self.assertNotEqual(self.average(self.model).returncode, 0)
+        self.assertFalse(self.out.exists())
 
     def test_unlike_models_are_refused(self):
         for unlike, words in (({"fps": 25.0}, "features, scaling, camera or sizes"),
@@ -61,7 +67,7 @@ class AverageModels(unittest.TestCase):
                               ({"single": [1.0, 2.0, 3.0]}, "b is not of one type")):
             single = unlike.pop("single", [1.0, 2.0])
             write_model(self.further, [1.0, 2.0, 3.0], single, seed=2, **unlike)
-            result = self.average()
+            result = self.average(self.model, self.second, self.further)
             self.assertNotEqual(result.returncode, 0)
             self.assertIn(words, result.stderr)
             self.assertFalse(self.out.exists())
