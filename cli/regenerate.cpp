@@ -19,6 +19,7 @@
 #include "fit_option.hpp"
 #include "follow.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/track_stretches.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/joint_map.hpp"
@@ -117,17 +118,6 @@ void report_assumed(const Camera& camera, bool found) {
       2 * std::atan(0.5 * camera.height_px / camera.fy_px) * 180 / EIGEN_PI);
 }
 
-/// "0-11, 30, 40-52"
-std::string listed(const std::vector<FrameRange>& ranges) {
-  std::string list;
-  for (const FrameRange& range : ranges) {
-    if (!list.empty()) list += ", ";
-    list += range.frames == 1 ? fmt::format("{}", range.first)
-                              : fmt::format("{}-{}", range.first, range.end() - 1);
-  }
-  return list;
-}
-
 /// Warns what was missing in the track and what was wrong with it.
 void report(const std::filesystem::path& path, const TrackFindings& findings) {
   const TrackFeatures::FillCount& filled = findings.filled;
@@ -136,9 +126,9 @@ void report(const std::filesystem::path& path, const TrackFindings& findings) {
     spdlog::warn(
         "{}: jumps to another place, as if to another person: frames {} are regenerated each by "
         "themselves, with one body",
-        path.string(), listed(stretches));
+        path.string(), described(stretches));
   if (const auto& strays = findings.stretches.strays; !strays.empty())
-    spdlog::warn("{}: another person in frames {}: left out", path.string(), listed(strays));
+    spdlog::warn("{}: another person in frames {}: left out", path.string(), described(strays));
   if (!findings.swaps.empty())
     spdlog::warn("{}: {}; put right", path.string(), described(findings.swaps));
   if (!filled.unseen.empty())

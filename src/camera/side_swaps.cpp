@@ -13,6 +13,7 @@
 #include "base/upper_median.hpp"
 #include "camera/keypoint_pairs.hpp"
 #include "camera/track_columns.hpp"
+#include "mcdbn/camera/track_stretches.hpp"
 
 namespace mcdbn {
 namespace {
@@ -187,11 +188,6 @@ void add_swaps(const std::vector<PlacePair>& pairs, LimbPair limbs, const Swappe
   }
 }
 
-std::string frames_of(const SideSwap& swap) {
-  if (swap.first_frame == swap.last_frame) return fmt::format("{}", swap.first_frame);
-  return fmt::format("{}-{}", swap.first_frame, swap.last_frame);
-}
-
 }  // namespace
 
 std::vector<SideSwap> find_side_swaps(const Track2d& track, const SideSwapSettings& settings) {
@@ -225,12 +221,14 @@ std::string described(const std::vector<SideSwap>& swaps) {
   std::optional<LimbPair> previous;
   for (const SideSwap& swap : swaps) {
     const char* limbs = swap.limbs == LimbPair::legs ? "legs" : "arms";
+    const std::string frames = described(
+        std::vector{FrameRange{swap.first_frame, swap.last_frame - swap.first_frame + 1}});
     if (!previous)
-      text = fmt::format("{} swapped in frames {}", limbs, frames_of(swap));
+      text = fmt::format("{} swapped in frames {}", limbs, frames);
     else if (*previous == swap.limbs)
-      text += fmt::format(", {}", frames_of(swap));
+      text += fmt::format(", {}", frames);
     else
-      text += fmt::format("; {} in {}", limbs, frames_of(swap));
+      text += fmt::format("; {} in {}", limbs, frames);
     previous = swap.limbs;
   }
   return text;

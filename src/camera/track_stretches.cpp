@@ -1,5 +1,7 @@
 #include "mcdbn/camera/track_stretches.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -97,6 +99,16 @@ std::vector<Run> runs_of(const std::vector<Observation>& observations, double fp
 }
 
 }  // namespace
+
+std::string described(const std::vector<FrameRange>& ranges) {
+  std::string text;
+  for (const FrameRange& range : ranges) {
+    if (!text.empty()) text += ", ";
+    text += range.frames == 1 ? fmt::format("{}", range.first)
+                              : fmt::format("{}-{}", range.first, range.end() - 1);
+  }
+  return text;
+}
 
 TrackStretches find_stretches(const Track2d& track) {
   TrackStretches result;

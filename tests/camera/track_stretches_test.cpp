@@ -98,6 +98,11 @@ TEST_CASE("stretches: some frames elsewhere are strays, and the others are one")
   CHECK(track.y_px.row(60).array().isNaN().all());
 }
 
+TEST_CASE("stretches: frames are described by the first and the last") {
+  CHECK(described(std::vector<FrameRange>{}).empty());
+  CHECK(described(std::vector<FrameRange>{{0, 12}, {30, 1}, {40, 13}}) == "0-11, 30, 40-52");
+}
+
 TEST_CASE("stretches: of a detector's joints those of the limbs decide") {
   Track2d track = walking(90);
   track.keypoints.resize(5);

@@ -20,14 +20,14 @@ namespace {
 
 /// Another value than the default for each setting, with its flag as it is given: a setting more is
 /// a row more.
-struct GivenSetting {
+struct ChangedSetting {
   std::string name, flag;
   json value;
   bool is_switch;
 };
 
-std::vector<GivenSetting> given_settings() {
-  std::vector<GivenSetting> given;
+std::vector<ChangedSetting> changed_settings() {
+  std::vector<ChangedSetting> changed;
   const mcdbn::MachineSettings usual;
   mcdbn::visit_settings(usual, [&](const mcdbn::Setting& setting, const auto& value) {
     std::string flag = setting.name;
@@ -38,16 +38,16 @@ std::vector<GivenSetting> given_settings() {
       flag = (value ? "--no-" : "--") + flag;
     } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
       const double more =
-          value == 0 ? 1e-3 : value * (1.0 + 1e-3 * static_cast<double>(given.size()));
+          value == 0 ? 1e-3 : value * (1.0 + 1e-3 * static_cast<double>(changed.size()));
       other = setting.range.contains(more) ? more : 0.5 * value;
       flag = fmt::format("--{} {}", flag, other.get<double>());
     } else {
       other = setting.name == "hidden" ? 5 : setting.name.ends_with("epochs") ? 2 : value + 1;
       flag = fmt::format("--{} {}", flag, other.template get<std::size_t>());
     }
-    given.push_back({setting.name, flag, other, other.is_boolean()});
+    changed.push_back({setting.name, flag, other, other.is_boolean()});
   });
-  return given;
+  return changed;
 }
 
 /// One run has all of them (but for what only a machine without history learns), and its file
@@ -59,17 +59,17 @@ std::vector<OptionRow> setting_option_rows() {
     output_of("fit " + FittedMachines::instance().values() + " -o " + file + " --quiet" + options);
     return mcdbn::describe_machine(file).at("config");
   };
-  const auto without_history = [](const GivenSetting& one) {
+  const auto without_history = [](const ChangedSetting& one) {
     return one.name.ends_with("deviation-rate");
   };
   std::string flags, other_flags;
-  for (const GivenSetting& one : given_settings())
+  for (const ChangedSetting& one : changed_settings())
     (without_history(one) ? other_flags : flags) += " " + one.flag;
   const json config = config_of(" --machine cdbn" + flags),
              other =
                  config_of(" --machine gaussian-rbm --hidden 5 --gaussian-epochs 2" + other_flags);
   std::vector<OptionRow> rows;
-  for (const GivenSetting& one : given_settings()) {
+  for (const ChangedSetting& one : changed_settings()) {
     std::string pointer = "/" + one.name;
     std::replace(pointer.begin(), pointer.end(), '.', '/');
     const json recorded = (without_history(one) ? other : config).at(json::json_pointer(pointer));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mcdbn/camera/track.hpp"
@@ -11,6 +12,9 @@ struct FrameRange {
   int end() const { return first + frames; }
   bool operator==(const FrameRange&) const = default;
 };
+
+/// First and last frames as text: "0-11, 30, 40-52".
+std::string described(const std::vector<FrameRange>& ranges);
 
 /// A track in parts, each of which can be one person's motion.
 struct TrackStretches {
