@@ -89,7 +89,7 @@ double body_height_px(const Track2d& track) {
 
 /// The distance of both places of a pair from motion at constant velocity, given which of the three
 /// frames up to `t` are swapped; 0 where one of them is unknown.
-double surprise(const PlacePair& pair, std::size_t t, const std::array<int, 3>& swapped,
+double residual(const PlacePair& pair, std::size_t t, const std::array<int, 3>& swapped,
                 double most) {
   double sum = 0;
   for (const int side : {0, 1}) {
@@ -105,13 +105,13 @@ double surprise(const PlacePair& pair, std::size_t t, const std::array<int, 3>& 
 
 /// The same of all pairs. Where a swap begins or ends a pair may stay on its sides: a detector may
 /// exchange the ankles alone.
-double surprise(const std::vector<PlacePair>& pairs, std::size_t t,
+double residual(const std::vector<PlacePair>& pairs, std::size_t t,
                 const std::array<int, 3>& swapped, double most) {
   const bool switches = swapped[0] != swapped[1] || swapped[1] != swapped[2];
   double sum = 0;
   for (const PlacePair& pair : pairs) {
-    const double staying = surprise(pair, t, {0, 0, 0}, most);
-    sum += switches ? std::min(staying, surprise(pair, t, swapped, most)) : staying;
+    const double staying = residual(pair, t, {0, 0, 0}, most);
+    sum += switches ? std::min(staying, residual(pair, t, swapped, most)) : staying;
   }
   return sum;
 }
@@ -136,7 +136,7 @@ Swapped likeliest(const std::vector<PlacePair>& pairs, double fps,
       next[state] = kInfinity;
       for (const int first : {0, 1}) {
         const double total = cost[2 * first + before] +
-                             surprise(pairs, t, {first, before, now}, settings.most_surprise) +
+                             residual(pairs, t, {first, before, now}, settings.most_residual) +
                              cost_of(before, now);
         if (total >= next[state]) continue;
         next[state] = total;
@@ -164,8 +164,8 @@ bool belongs(const PlacePair& pair, const SideSwap& swap, double most) {
          ++t) {
       const auto frame = static_cast<std::size_t>(t);
       exchanged +=
-          surprise(pair, frame, {is_swapped(t - 2), is_swapped(t - 1), is_swapped(t)}, most);
-      left_alone += surprise(pair, frame, {0, 0, 0}, most);
+          residual(pair, frame, {is_swapped(t - 2), is_swapped(t - 1), is_swapped(t)}, most);
+      left_alone += residual(pair, frame, {0, 0, 0}, most);
     }
   }
   return exchanged <= left_alone;
@@ -198,7 +198,7 @@ std::vector<SideSwap> find_side_swaps(const Track2d& track, const SideSwapSettin
   for (const LimbPair limbs : {LimbPair::legs, LimbPair::arms}) {
     const std::vector<PlacePair> pairs = pairs_of(track, limbs, height_px, settings);
     if (pairs.empty()) continue;
-    add_swaps(pairs, limbs, likeliest(pairs, track.fps, settings), settings.most_surprise, swaps);
+    add_swaps(pairs, limbs, likeliest(pairs, track.fps, settings), settings.most_residual, swaps);
   }
   return swaps;
 }

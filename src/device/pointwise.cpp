@@ -34,7 +34,7 @@ void apply_epilogue(const Rows& c, const GemmOptions& options) {
 
 void gather(const Rows& rows, const Rows& out) {
   require(rows.index != nullptr && same_shape(rows, out),
-          "gather: wants an index, and an output of its shape");
+          "gather: needs an index, and an output of its shape");
   Device& device = out.matrix->device();
   launch(device, units_kernel(device, "gather_rows"), pointwise_size(out), rows.matrix->buffer(),
          rows.stride(), rows.index->buffer(), to_int(rows.index_first), rows.shift,
@@ -43,7 +43,7 @@ void gather(const Rows& rows, const Rows& out) {
 
 void scatter(const Matrix& in, const Rows& out) {
   require(out.index != nullptr && same_shape(in, out),
-          "scatter: wants an index, and an input of its shape");
+          "scatter: needs an index, and an input of its shape");
   Device& device = in.device();
   launch(device, units_kernel(device, "scatter_rows"), pointwise_size(in), in.buffer(),
          Rows(in).stride(), out.matrix->buffer(), out.stride(), out.index->buffer(),
@@ -56,7 +56,7 @@ void gather_two(const Rows& x, const Rows& y, const Matrix& buffer, std::size_t 
   require(x.index != nullptr && y.index != nullptr && x.count == y.count &&
               first + x.count * x_stride <= second &&
               second + y.count * y_stride <= buffer.element_count(),
-          "gather: wants indices, and room for the rows");
+          "gather: needs indices, and room for the rows");
   if (x.count == 0) return;
   Device& device = buffer.device();
   const std::size_t vectors =

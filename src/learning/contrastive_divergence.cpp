@@ -97,7 +97,7 @@ ContrastiveDivergence::ContrastiveDivergence(Crbm& crbm, std::size_t largest_bat
 
 void ContrastiveDivergence::learn(std::span<const Rows> visible, const LearningStep& step,
                                   LossAccumulator& losses) {
-  require(visible.size() == 1, "CD: wants one sequence");
+  require(visible.size() == 1, "CD: needs one sequence");
   this->step(visible.front(), cd_rule_for(settings_, step.epoch, step.progress), step.random,
              losses, step.seen);
 }
@@ -105,10 +105,10 @@ void ContrastiveDivergence::learn(std::span<const Rows> visible, const LearningS
 void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const RandomKey& key,
                                  LossAccumulator& losses, const Matrix* seen) {
   require(rows.index != nullptr && rows.columns == crbm_.shape().visible,
-          "CD: wants indexed frames, one each");
+          "CD: needs indexed frames, one each");
   require(rows.count > 0 && rows.count <= visible_data_.rows(),
           "CD: the mini-batch is larger than it was made for");
-  require(rule.gibbs_steps > 0, "CD: wants at least one Gibbs step");
+  require(rule.gibbs_steps > 0, "CD: needs at least one Gibbs step");
   require(!seen || (seen->rows() == rows.matrix->rows() && seen->columns() == rows.columns),
           "CD: what was seen has another shape than the frames");
   require(!seen || !crbm_.has_deviation || rule.deviation_rate == 0.0F,

@@ -29,7 +29,7 @@ class DeviceWindows {
 
  private:
   std::vector<Matrix> values_, seen_;
-  IndexBuffer index_;  ///< every row, for who wants rows named
+  IndexBuffer index_;  ///< every row, for those that name rows
 };
 
 /// Fine-tuning's mini-batches: all directions, the optimizer, the moving average of the parameters.

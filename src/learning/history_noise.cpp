@@ -26,7 +26,7 @@ HistoryNoise::HistoryNoise(Device& device, LearningRule& rule, const CrbmShape& 
 void HistoryNoise::learn(std::span<const Rows> visible, const LearningStep& step,
                          LossAccumulator& losses) {
   require(visible.size() == 1 && visible.front().index != nullptr,
-          "history noise: wants one sequence, indexed");
+          "history noise: needs one sequence, indexed");
   const Rows& rows = visible.front();
   require(rows.count <= current_.size(), "history noise: more rows than it was made for");
   const int past = to_int(frames_ - 1);

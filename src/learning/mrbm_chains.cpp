@@ -27,11 +27,11 @@ void MrbmChains::make_matrices() {
 
 void MrbmChains::learn(std::span<const Rows> visible, const LearningStep& step,
                        LossAccumulator& losses) {
-  require(visible.size() == mrbm_.modality_count(), "MRBM: wants every modality");
+  require(visible.size() == mrbm_.modality_count(), "MRBM: needs every modality");
   for (std::size_t m = 0; m < visible.size(); ++m)
     require(visible[m].index != nullptr && visible[m].count == batch_ &&
                 visible[m].columns == mrbm_.visible(m),
-            "MRBM: wants indexed codes, as many as it was made for");
+            "MRBM: needs indexed codes, as many as it was made for");
   optimizer_.next_step();
   run_minibatch(visible, step, losses);
 }

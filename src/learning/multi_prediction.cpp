@@ -22,7 +22,7 @@ std::optional<RowTile> choose_tile(const Mrbm& mrbm, std::size_t batch) {
   return choose_chain_tile(mrbm.device(), shape, batch);
 }
 
-/// Parts as long as each other, but for the last. A GPU wants as many rows at once as there are.
+/// Parts as long as each other, but for the last. A GPU needs as many rows at once as there are.
 std::size_t rows_of_part(const Device& device, std::size_t batch, std::size_t most_on_cpu) {
   if (device.info().is_gpu) return batch;
   return ceil_divide(batch, std::max<std::size_t>(1, ceil_divide(batch, most_on_cpu)));
@@ -93,9 +93,9 @@ void MultiPrediction::learn(std::span<const Rows> visible, const LearningStep& s
 
 void MultiPrediction::step(const std::vector<Rows>& codes, const UpdateRule& rule,
                            LossAccumulator& losses) {
-  require(codes.size() == mrbm_.modality_count(), "multi-prediction: wants every modality");
+  require(codes.size() == mrbm_.modality_count(), "multi-prediction: needs every modality");
   for (const Rows& rows : codes) {
-    require(rows.index != nullptr, "multi-prediction: wants indexed codes");
+    require(rows.index != nullptr, "multi-prediction: needs indexed codes");
     require(rows.count == batch_,
             "multi-prediction: the mini-batch has another size than it was made for");
   }

@@ -25,7 +25,7 @@ MatrixF AnswerDeviation::of(const MatrixF& code) const {
 
 AnswerDeviation AnswerDeviation::fit(const MatrixF& code, const MatrixF& residuals) {
   if (code.rows() != residuals.rows() || code.rows() < 2)
-    throw ShapeError("answer deviation: wants two frames and more, as many codes as residuals");
+    throw ShapeError("answer deviation: needs two frames and more, as many codes as residuals");
   const MatrixD squares = residuals.cast<double>().array().square();
   const RowVectorD mean_square =
       squares.colwise().mean().cwiseMax(std::numeric_limits<float>::min());
@@ -54,7 +54,7 @@ AnswerDeviation AnswerDeviation::fit(const MatrixF& code, const MatrixF& residua
 void AnswerDeviation::calibrate(const MatrixF& residuals, const MatrixF& deviations) {
   if (residuals.rows() != deviations.rows() || residuals.cols() != deviations.cols() ||
       residuals.size() == 0)
-    throw ShapeError("answer deviation: calibration wants a deviation for each residual");
+    throw ShapeError("answer deviation: calibration needs a deviation for each residual");
   const double ratio = (residuals.array() / deviations.array()).cast<double>().square().mean();
   c.array() += static_cast<float>(0.5 * std::log(ratio));
 }

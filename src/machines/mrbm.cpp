@@ -50,7 +50,7 @@ Parameters uploaded(Device& device, const MrbmParameters& start) {
 }  // namespace
 
 void MrbmShape::check() const {
-  if (modalities.size() < 2) throw ShapeError("MRBM: wants two modalities or more");
+  if (modalities.size() < 2) throw ShapeError("MRBM: needs two modalities or more");
   for (auto one = modalities.begin(); one != modalities.end(); ++one)
     if (std::any_of(modalities.begin(), one,
                     [&](const Modality& other) { return other.name == one->name; }))

@@ -73,14 +73,14 @@ MrbmChain::MrbmChain(const Mrbm& mrbm, const std::vector<bool>& present, std::si
       tile_(tile),
       drive_(mrbm.device(), whole_blocks(largest_rows, tile), mrbm.hidden()) {
   require(present.size() == mrbm.modality_count() && !absent_.empty(),
-          "MRBM chain: wants to know of every modality whether it is there, and one that is not");
+          "MRBM chain: needs to know of every modality whether it is there, and one that is not");
   require(!tile_ || (present_.size() == 1 && absent_.size() == 1),
           "MRBM chain: only two modalities are fused");
   if (!tile_) hidden_ = Matrix::like(drive_);
 }
 
 void MrbmChain::check(const std::vector<Rows>& modalities, const MrbmChainOptions& options) const {
-  require(modalities.size() == mrbm_.modality_count(), "MRBM chain: wants every modality");
+  require(modalities.size() == mrbm_.modality_count(), "MRBM chain: needs every modality");
   for (std::size_t m = 0; m < modalities.size(); ++m) {
     require(modalities[m].columns == mrbm_.visible(m),
             "MRBM chain: the modalities do not fit the MRBM");
@@ -90,7 +90,7 @@ void MrbmChain::check(const std::vector<Rows>& modalities, const MrbmChainOption
   for (const std::size_t m : absent_)
     require(modalities[m].index == nullptr, "MRBM chain: the result may not be indexed");
   require(modalities[0].count <= largest_rows_, "MRBM chain: more rows than it was made for");
-  require(options.steps > 0, "MRBM chain: wants at least one step");
+  require(options.steps > 0, "MRBM chain: needs at least one step");
   require(options.sampling == Sampling::bernoulli || options.sampling == Sampling::concrete,
           "MRBM chain: its binary units are drawn as such");
 }

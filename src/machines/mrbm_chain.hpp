@@ -22,7 +22,7 @@ struct MrbmChainOptions {
   RandomKey random = {};
 };
 
-/// What mrbm_shape.clh wants but for STEPS.
+/// What mrbm_shape.clh needs but for STEPS.
 Defines shape_defines(const Mrbm& mrbm);
 
 /// The MRBM's chain with some modalities clamped to what is present (Algorithm 5's inference):

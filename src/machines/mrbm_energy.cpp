@@ -23,7 +23,7 @@ void launch_energy(const Mrbm& mrbm, std::size_t m, const Rows& units, const Mat
 
 /// Of the shared units, from all modalities. @return [rows x hidden]
 Matrix shared_input(const Mrbm& mrbm, const std::vector<Rows>& units) {
-  require(units.size() == mrbm.modality_count(), "free energy: wants every modality");
+  require(units.size() == mrbm.modality_count(), "free energy: needs every modality");
   for (std::size_t m = 0; m < units.size(); ++m)
     require(units[m].columns == mrbm.visible(m) && units[m].count == units[0].count &&
                 units[m].index == nullptr,
@@ -39,7 +39,7 @@ Matrix shared_input(const Mrbm& mrbm, const std::vector<Rows>& units) {
 
 void free_energy_given_others(const Mrbm& mrbm, std::size_t m, const std::vector<Rows>& units,
                               const Matrix& out) {
-  require(units[m].count == out.rows(), "free energy: wants one number a row");
+  require(units[m].count == out.rows(), "free energy: needs one number a row");
   launch_energy(mrbm, m, units[m], shared_input(mrbm, units), mrbm.hidden(), out, false);
 }
 
@@ -52,7 +52,7 @@ Matrix free_energy(const Mrbm& mrbm, const std::vector<Rows>& modalities) {
 }
 
 Sequences free_energy(const Mcdbn& network, const std::vector<Sequences>& modalities) {
-  require(modalities.size() == network.modality_count(), "free energy: wants every modality");
+  require(modalities.size() == network.modality_count(), "free energy: needs every modality");
   std::vector<Sequences> codes;
   Sequences result{Matrix(network.mrbm.device(), modalities[0].values.rows(), 1),
                    modalities[0].clips, 0};

@@ -14,7 +14,7 @@ namespace mcdbn {
 std::vector<Matrix> reconstruct(const Mrbm& mrbm, const std::vector<Rows>& modalities,
                                 std::size_t steps) {
   require(modalities.size() == mrbm.modality_count() && steps > 0,
-          "reconstruct: wants every modality, and at least one step");
+          "reconstruct: needs every modality, and at least one step");
   std::vector<std::size_t> all(modalities.size());
   std::iota(all.begin(), all.end(), 0);
   const Matrix hidden(mrbm.device(), modalities[0].count, mrbm.hidden());
@@ -34,7 +34,7 @@ std::vector<Matrix> sample(const Mrbm& mrbm, const std::vector<Matrix>& modaliti
                            const std::vector<bool>& given, std::size_t rows,
                            const ChainSettings& settings) {
   require(modalities.size() == mrbm.modality_count() && given.size() == modalities.size(),
-          "sample: wants every modality, and which are given");
+          "sample: needs every modality, and which are given");
   std::vector<Matrix> result;
   for (std::size_t m = 0; m < modalities.size(); ++m) {
     result.emplace_back(mrbm.device(), rows, mrbm.visible(m));

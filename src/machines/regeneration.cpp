@@ -159,7 +159,7 @@ std::size_t sequence_count(const Mcdbn& network, const std::vector<std::vector<M
                            std::size_t wanted) {
   if (present.size() != network.modality_count() || wanted >= present.size() ||
       !present[wanted].empty())
-    throw ShapeError("regenerate: wants sequences of every modality but the one asked for");
+    throw ShapeError("regenerate: needs sequences of every modality but the one asked for");
   std::size_t count = 0;
   const std::vector<MatrixF>* first = nullptr;
   for (const auto& sequences : present) {

@@ -55,7 +55,7 @@ void where_given(const Rows& given, const Rows& other, const Rows& out) {
 }
 
 Sequences reconstructed(Layers layers, const Sequences& visible, std::size_t steps) {
-  require(steps > 0, "reconstruct: wants at least one step");
+  require(steps > 0, "reconstruct: needs at least one step");
   const Matrix own = in_own_units(layers.front(), visible.values);
   std::vector<Sequences> codes{visible};
   for (const Crbm& layer : layers.first(layers.size() - 1))
@@ -128,7 +128,7 @@ class ClampedStack {
       : layers_(layers), settings_(settings), draws_(settings.seed) {
     require(given.values.columns() == layers.front().shape().visible,
             "sample: the frames do not fit the machine");
-    require(settings.steps > 0, "sample: wants at least one step");
+    require(settings.steps > 0, "sample: needs at least one step");
     for (const Crbm& layer : layers) grid_.lead = std::max(grid_.lead, layer.shape().order);
     const auto sequences = sequences_of(given, grid_.lead);
     grid_.sequences = sequences.size();
@@ -200,7 +200,7 @@ Matrix sampled(Layers layers, const Matrix& start, const ChainSettings& settings
     require(layer.shape().order == 0, "sample: a machine with a history generates sequences");
   require(start.columns() == layers.front().shape().visible,
           "sample: the start does not fit the machine");
-  require(settings.steps > 0, "sample: wants at least one step");
+  require(settings.steps > 0, "sample: needs at least one step");
   Sequences code{start, {{0, start.rows()}}, 0};
   for (const Crbm& layer : layers.first(layers.size() - 1)) code = up_pass(layer, code);
   Draws draws(settings.seed);

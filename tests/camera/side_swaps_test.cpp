@@ -112,7 +112,7 @@ TEST_CASE("side swaps: every setting counts, and a track without keypoints is le
   Track2d track = stepping();
   swap_legs(track, 20, 31);
   CHECK(find_side_swaps(track, {.switch_cost = 5}).empty());
-  CHECK(find_side_swaps(track, {.most_surprise = 0.001}).empty());
+  CHECK(find_side_swaps(track, {.most_residual = 0.001}).empty());
   CHECK(find_side_swaps(track, {.swapped_cost_per_s = 10}).empty());
   CHECK_THROWS_AS(find_side_swaps(track, {.switch_cost = 0}), ConfigError);
   // Seen in two frames of three only: no velocities without bridging.

@@ -16,7 +16,7 @@ namespace mcdbn {
 /// 95 % goes.
 struct SideSwapSettings {
   double switch_cost = 0.25;
-  double most_surprise = 0.1;
+  double most_residual = 0.1;
   double swapped_cost_per_s = 0.15;
   double longest_gap_s = 0.2;
 
@@ -27,9 +27,9 @@ struct SideSwapSettings {
                 "how much less the joints of a limb pair have to jump, all together, for a swap to "
                 "begin or end"},
         self.switch_cost);
-    visit(Setting{"surprise", above(0, 1000), "body heights",
+    visit(Setting{"residual", above(0, 1000), "body heights",
                   "a joint's distance from where its velocity puts it counts up to so much"},
-          self.most_surprise);
+          self.most_residual);
     visit(
         Setting{"swapped", within(0, 1000), "body heights/s",
                 "what a swap costs while it lasts: the sides that a clip has for longer are right"},
