@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cerrno>
 #include <fstream>
-#include <sstream>
 #include <system_error>
 
 #include "mcdbn/base/errors.hpp"
@@ -27,10 +27,12 @@ std::string read_text_file(const fs::path& path) {
     throw InputError(fmt::format("{}: cannot be opened, check its name and rights", path.string()));
   }
   note_input(path);
-  std::ostringstream text;
-  text << stream.rdbuf();
+  std::string text;
+  std::array<char, 1 << 16> block;
+  while (stream.read(block.data(), block.size()) || stream.gcount() > 0)
+    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
   if (stream.bad()) throw InputError(fmt::format("{}: cannot be read to its end", path.string()));
-  return std::move(text).str();
+  return text;
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {

@@ -15,8 +15,14 @@ namespace {
 namespace fs = std::filesystem;
 
 std::optional<fs::path> cache_folder() {
-  if (const char* folder = std::getenv("XDG_CACHE_HOME")) return fs::path(folder) / "mcdbn-cl";
-  if (const char* home = std::getenv("HOME")) return fs::path(home) / ".cache" / "mcdbn-cl";
+  // Unset, empty and relative are one, as freedesktop.org's rules have it.
+  const auto absolute = [](const char* variable) {
+    const char* folder = std::getenv(variable);
+    return folder == nullptr || !fs::path(folder).is_absolute() ? fs::path() : fs::path(folder);
+  };
+  if (const fs::path folder = absolute("XDG_CACHE_HOME"); !folder.empty())
+    return folder / "mcdbn-cl";
+  if (const fs::path home = absolute("HOME"); !home.empty()) return home / ".cache" / "mcdbn-cl";
   return std::nullopt;
 }
 
@@ -28,7 +34,8 @@ std::optional<fs::path> entry_path(const std::string& kind, const std::string& k
 
 /// What an entry of this key and value must begin with.
 std::string header(const std::string& key, const std::string& value) {
-  return fmt::format("mcdbn-cl cache 1 {:016x} {} {:016x}\n", fnv1a(key + '\n'), value.size(),
+  // What follows the same characters as the file's name would only repeat it.
+  return fmt::format("mcdbn-cl cache 2 {:016x} {} {:016x}\n", fnv1a('\n' + key), value.size(),
                      fnv1a(value));
 }
 

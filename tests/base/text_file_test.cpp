@@ -47,3 +47,13 @@ TEST_CASE("read_text_file gives every byte, and refuses what is no file") {
     CHECK_THROWS_AS(read_text_file(path), InputError);
   }
 }
+
+TEST_CASE("read_text_file refuses a file whose bytes cannot be read") {
+  // The first page of a process is never mapped, so that reading it is an error of the device.
+  try {
+    read_text_file("/proc/self/mem");
+    FAIL("was read");
+  } catch (const InputError& error) {
+    CHECK(std::string(error.what()) == "/proc/self/mem: cannot be read to its end");
+  }
+}

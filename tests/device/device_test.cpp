@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "device/scoped_variable.hpp"
+#include "base/scoped_variable.hpp"
 #include "mcdbn/base/errors.hpp"
 
 using namespace mcdbn;

@@ -8,13 +8,13 @@
 #include <functional>
 #include <sstream>
 
+#include "base/scoped_variable.hpp"
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
 #include "base/user_cache.hpp"
 #include "device/every_device.hpp"
 #include "device/launch.hpp"
 #include "device/pointwise.hpp"
-#include "device/scoped_variable.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace program_test {

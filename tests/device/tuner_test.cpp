@@ -5,11 +5,11 @@
 #include <chrono>
 #include <thread>
 
+#include "base/scoped_variable.hpp"
 #include "base/scratch_folder.hpp"
 #include "device/default_tuning.hpp"
 #include "device/every_device.hpp"
 #include "device/median_time.hpp"
-#include "device/scoped_variable.hpp"
 
 namespace tuner_test {
 

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/scoped_variable.hpp"
 #include "base/scratch_folder.hpp"
 #include "device/default_tuning.hpp"
 #include "device/every_device.hpp"
 #include "device/gemm.hpp"
 #include "device/row_tile.hpp"
-#include "device/scoped_variable.hpp"
 
 namespace tuning_test {
 

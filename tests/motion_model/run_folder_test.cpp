@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/scoped_variable.hpp"
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
-#include "device/scoped_variable.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "motion_model/example_model.hpp"
