@@ -3,9 +3,10 @@
 
 Models that `train --from` made from one start, and that start. Each forgot or overfitted something else, and
 between them lie parameters that do better than any (docs/corpus.md). All but the numbers is the last model's;
-the metadata name the others in `averaged_with`.
+the metadata name the models, with their SHA-256, in `mean_of`.
 """
 
+import hashlib
 import json
 import pathlib
 import struct
@@ -49,6 +50,10 @@ def averaged(models: list[tuple[dict, bytes]]) -> bytes:
     return bytes(result)
 
 
+def named(model: pathlib.Path) -> dict:
+    return {"model": model.name, "sha256": hashlib.sha256(model.read_bytes()).hexdigest()}
+
+
 def main() -> None:
     out, *paths = sys.argv[1:]
     if len(paths) < 2:
@@ -56,7 +61,7 @@ def main() -> None:
     models = [read_model(path) for path in paths]
     header = models[-1][0]
     means = averaged(models)
-    header["__metadata__"]["averaged_with"] = ", ".join(pathlib.Path(path).name for path in paths[:-1])
+    header["__metadata__"]["mean_of"] = json.dumps([named(pathlib.Path(path)) for path in paths])
     write_model(out, header, means)
 
 

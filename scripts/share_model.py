@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes a model ready to be passed on: share_model.py MODEL OUT ACKNOWLEDGEMENT
+"""Makes a model ready to be passed on: share_model.py MODEL OUT ACKNOWLEDGEMENT [START]
 
 Training clips, and the model that the training began with, keep their names and fingerprints and
 lose the folders that they lay in; the acknowledgement goes into the metadata. Numbers stay as they
-are.
+are. START is that model's file: which models it is a mean of (`mean_of`), if any, is put down, too.
 """
 
 import json
@@ -25,8 +25,11 @@ def shared(header: dict, acknowledgement: str) -> dict:
 
 
 def main() -> None:
-    source, target, acknowledgement = sys.argv[1:]
+    source, target, acknowledgement, *start = sys.argv[1:]
     header, numbers = read_model(source)
+    for path in start:
+        begun = read_model(path)[0]["__metadata__"]
+        header["__metadata__"].update({"mean_of": begun["mean_of"]} if "mean_of" in begun else {})
     write_model(target, shared(header, acknowledgement), numbers)
 
 

@@ -1,8 +1,10 @@
-"""scripts/average_models.py: the mean of each number, all else the last model's, nothing of unlike models.
+"""scripts/average_models.py: the mean of each number, all else the last model's, nothing of unlike models; and
+scripts/share_model.py: no folders, the acknowledgement, which models the start was a mean of.
 
     average_models_test.py
 """
 
+import hashlib
 import json
 import pathlib
 import struct
@@ -10,11 +12,17 @@ import subprocess
 import tempfile
 import unittest
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/average_models.py"
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 
 
-def write_model(path, half, single, seed, fps=30.0, dtype="F32"):
-    about = {"config": {"seed": seed}, "modalities": {"fps": fps}}
+def header_of(path):
+    content = path.read_bytes()
+    (length,) = struct.unpack_from("<Q", content)
+    return json.loads(content[8 : 8 + length])
+
+
+def write_model(path, half, single, seed, fps=30.0, dtype="F32", **more):
+    about = {"config": {"seed": seed}, "modalities": {"fps": fps}, **more}
     header = {
         "__metadata__": {"mcdbn": json.dumps(about)},
         "W": {"dtype": "F16", "shape": [1, len(half)], "data_offsets": [0, 2 * len(half)]},
@@ -40,7 +48,8 @@ class AverageModels(unittest.TestCase):
         self.temporary.cleanup()
 
     def average(self, *models):
-        return subprocess.run([SCRIPT, self.out, *models], capture_output=True, text=True, check=False)
+        return subprocess.run([SCRIPTS / "average_models.py", self.out, *models], capture_output=True,
+                              text=True, check=False)
 
     def test_means_and_the_rest_of_the_last(self):
         write_model(self.further, [3.0, -4.0, 0.25], [11.0, -20.0], seed=2)
@@ -54,8 +63,9 @@ class AverageModels(unittest.TestCase):
         self.assertEqual(struct.unpack_from("<2f", content, 8 + length + 6), (10.0, 1.0))
         self.assertEqual(len(content), 8 + length + 14)
         self.assertEqual(json.loads(header["__metadata__"]["mcdbn"])["config"], {"seed": 2})
-        self.assertEqual(header["__metadata__"]["averaged_with"],
-                         "model.safetensors, second.safetensors")
+        self.assertEqual(json.loads(header["__metadata__"]["mean_of"]),
+                         [{"model": model.name, "sha256": hashlib.sha256(model.read_bytes()).hexdigest()}
+                          for model in (self.model, self.second, self.further)])
 
     def test_one_model_has_no_mean(self):
         self.assertNotEqual(self.average(self.model).returncode, 0)
@@ -71,6 +81,27 @@ class AverageModels(unittest.TestCase):
             self.assertNotEqual(result.returncode, 0)
             self.assertIn(words, result.stderr)
             self.assertFalse(self.out.exists())
+
+    def test_what_is_passed_on(self):
+        write_model(self.further, [1.0], [2.0], seed=2,
+                    training_clips=[{"path": "/home/me/walk.bvh", "fingerprint": "1"}],
+                    started_from={"model": "/home/me/mean.safetensors", "fingerprint": "2"})
+        start = self.folder / "mean.safetensors"
+        for models, kept in (((self.model, self.second), True), ((), False)):
+            if models:
+                self.average(*models)
+                self.out.rename(start)
+            else:
+                start.write_bytes(self.model.read_bytes())
+            subprocess.run([SCRIPTS / "share_model.py", self.further, self.out, "thanks", start], check=True)
+            metadata = header_of(self.out)["__metadata__"]
+            self.assertEqual("mean_of" in metadata, kept)
+            if kept:
+                self.assertEqual(metadata["mean_of"], header_of(start)["__metadata__"]["mean_of"])
+            self.assertEqual(metadata["acknowledgement"], "thanks")
+            about = json.loads(metadata["mcdbn"])
+            self.assertEqual(about["training_clips"], [{"path": "walk.bvh", "fingerprint": "1"}])
+            self.assertEqual(about["started_from"], {"model": "mean.safetensors", "fingerprint": "2"})
 
 
 if __name__ == "__main__":
