@@ -15,8 +15,9 @@ std::optional<CameraDoubt> doubt_of(const KnownOfClip& known, const Modalities& 
   const Eigen::Vector3d up = usual.camera_from_world.col(1),
                         up_now = assumed.camera_from_world.col(1);
   CameraDoubt doubt;
-  doubt.usual = {pitch_rad(up) - pitch_rad(up_now), roll_rad(up) - roll_rad(up_now),
+  doubt.usual = {pitch_rad(up) - pitch_rad(up_now), roll_from_to_rad(up_now, up),
                  settings.pitch_deg * kRadiansPerDegree, settings.roll_deg * kRadiansPerDegree};
+  doubt.right = level_right(up_now);
   doubt.pitch_known = known.view.pitch_deg.has_value();
   doubt.roll_known = known.view.roll_deg.has_value();
   doubt.focal_known = known.view.field_of_view_deg.has_value();

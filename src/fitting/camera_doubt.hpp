@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 
 #include "mcdbn/fitting/track_fit.hpp"
@@ -15,8 +16,9 @@ struct ExpectedLean {
 
 /// What is not known of a camera.
 struct CameraDoubt {
-  ExpectedLean usual;     ///< as cameras stand
-  ExpectedLean balanced;  ///< as makes the body stand over its feet
+  ExpectedLean usual;              ///< as cameras stand
+  ExpectedLean balanced;           ///< as makes the body stand over its feet
+  Eigen::Vector3d right{1, 0, 0};  ///< level_right of the assumed camera
   bool pitch_known = false, roll_known = false, focal_known = false;
   double log_focal = 0;  ///< expected
   double log_focal_deviation = 1;

@@ -112,7 +112,7 @@ Eigen::VectorXd ClipEvidence::ground(const PosteriorPoint& point) const {
 
 ExpectedLean ClipEvidence::balanced(const Eigen::Vector3d& upright, double deviation_rad) const {
   const Eigen::Vector3d up = upright.normalized();
-  return {pitch_rad(up) - pitch_rad(clip.up), roll_rad(up) - roll_rad(clip.up), deviation_rad,
+  return {pitch_rad(up) - pitch_rad(clip.up), roll_from_to_rad(clip.up, up), deviation_rad,
           deviation_rad};
 }
 

@@ -91,7 +91,7 @@ class LimbInTime {
         place_of(clip_, point_, t, limb_.front().joint) - vector_of(t, limb_.front());
     for (std::size_t i = 0; i < limb_.size(); ++i) {
       const Bone& bone = limb_[i];
-      const Eigen::Vector3d expected = expected_turn(t, bone.turn, parent);
+      const Eigen::Vector3d expected = prior_.expected_turn(t, bone.turn, parent, point_.lean);
       const bool other = (set >> i & 1) != 0;
       const Eigen::Vector3d vector = on_side(t, bone, upper, other);
       const Eigen::Matrix3d as_expected = rotation_of(expected);
@@ -106,17 +106,6 @@ class LimbInTime {
       parent = sides.turn[i];
     }
     return sides;
-  }
-
-  /// As WindowProblem's terms expect it.
-  Eigen::Vector3d expected_turn(Eigen::Index t, int turn, const Eigen::Vector3d& parent) const {
-    const double share = prior_.share_of_parent(t, turn);
-    Eigen::Vector3d expected = share * parent;
-    if (clip_.camera) {
-      expected += (1 - share) * point_.lean;
-      if (clip_.mean_lean.rows() > 0) expected -= (1 - share) * clip_.mean_lean.row(t).transpose();
-    }
-    return expected;
   }
 
   /// Where the prior's mean has it.

@@ -49,11 +49,14 @@ class WindowPosterior {
     return normal.size() == 0 ? normal : lengths_.matrixU().solve(normal);
   }
 
-  /// @param normal [frames·(3·orientations + 3)], standard
-  Eigen::VectorXd draw(const Eigen::VectorXd& normal, const Eigen::VectorXd& lengths) const {
-    Eigen::VectorXd drawn = factor_.permutationPinv() * factor_.matrixU().solve(normal);
-    if (lengths.size() > 0) drawn -= of_lengths_ * lengths;
-    return drawn;
+  /// The window's own part. @param normal [frames·(3·orientations + 3)], standard
+  Eigen::VectorXd draw(const Eigen::VectorXd& normal) const {
+    return factor_.permutationPinv() * factor_.matrixU().solve(normal);
+  }
+  /// The part that follows from the body's lengths.
+  Eigen::VectorXd with_lengths(const Eigen::VectorXd& lengths) const {
+    if (of_lengths_.size() == 0) return Eigen::VectorXd::Zero(factor_.cols());
+    return -(of_lengths_ * lengths);
   }
 
  private:
@@ -71,21 +74,35 @@ Eigen::VectorXd normals(std::uint64_t seed, std::size_t draw, std::uint32_t row,
   });
 }
 
-/// Adds a window's draw to the point. Where windows overlap both count by the root of their share,
-/// so that a sum of two independent draws deviates as much as each.
-void add(PosteriorPoint& point, const ClipWindow& window, Eigen::Index known,
-         const PosteriorPoint& likeliest, const Eigen::VectorXd& drawn) {
+/// What a window adds to a draw, [frames·(3·orientations + 3)] each.
+struct WindowDraw {
+  Eigen::VectorXd own, of_body;
+};
+
+/// Adds a window's draw to the point. Where windows overlap their own parts count by the root of
+/// their share, so that a sum of two independent draws deviates as much as each. What follows from
+/// the body, which is the same for both, counts by the share itself.
+/// @param before the window before, and its part that follows from the body
+void add(PosteriorPoint& point, const ClipWindow& window, const ClipWindow& before,
+         const PosteriorPoint& likeliest, const WindowDraw& drawn,
+         const Eigen::VectorXd& body_before) {
   const Eigen::Index turns = point.turns.cols(), of_frame = turns + 3;
   for (Eigen::Index t = 0; t < window.frames; ++t) {
-    const double share = share_of_window(window, known, t);
-    const auto mix = [&](auto stands, auto centre, const auto& difference) {
-      stands = centre + std::sqrt(1 - share) * (stands - centre) + std::sqrt(share) * difference;
+    const double share = share_of_window(window, before.end(), t);
+    const Eigen::Index frame = window.first + t, first = t * of_frame,
+                       then = (frame - before.first) * of_frame;
+    const auto mix = [&](auto stands, const auto& centre, Eigen::Index at) {
+      using Row = Eigen::RowVectorXd;
+      const Eigen::Index count = stands.size();
+      const Row of_body = drawn.of_body.segment(first + at, count).transpose();
+      const Row body = frame < before.end() ? Row(body_before.segment(then + at, count).transpose())
+                                            : Row::Zero(count);
+      const Row own = stands - centre - body;
+      stands = centre + std::sqrt(1 - share) * own + (1 - share) * body + share * of_body +
+               std::sqrt(share) * drawn.own.segment(first + at, count).transpose();
     };
-    const Eigen::Index frame = window.first + t;
-    mix(point.turns.row(frame), likeliest.turns.row(frame),
-        drawn.segment(t * of_frame, turns).transpose());
-    mix(point.shift.row(frame), likeliest.shift.row(frame),
-        drawn.segment<3>(t * of_frame + turns).transpose());
+    mix(point.turns.row(frame), likeliest.turns.row(frame), 0);
+    mix(point.shift.row(frame), likeliest.shift.row(frame), turns);
   }
 }
 
@@ -116,7 +133,8 @@ std::vector<PosteriorPoint> posterior_draws(const PosteriorClip& clip, const Ray
       draws[i].log_lengths += bodies[i];
     }
   }
-  Eigen::Index known = 0;
+  std::vector<Eigen::VectorXd> before(count);  // by draw, of the window before
+  ClipWindow last{0, 0};
   for (std::size_t w = 0; w < windows.size(); ++w) {
     const WindowPosterior window = posterior_of(windows[w]);
     const Eigen::Index moving = windows[w].frames * (likeliest.turns.cols() + 3);
@@ -125,9 +143,11 @@ std::vector<PosteriorPoint> posterior_draws(const PosteriorClip& clip, const Ray
       const auto row = static_cast<std::uint32_t>(w + 1);
       // `bodies` are wider already.
       const Eigen::VectorXd normal = settings.spread * normals(seed, i, row, moving);
-      add(draws[i], windows[w], known, likeliest, window.draw(normal, bodies[i]));
+      const WindowDraw drawn{window.draw(normal), window.with_lengths(bodies[i])};
+      add(draws[i], windows[w], last, likeliest, drawn, before[i]);
+      before[i] = drawn.of_body;
     }
-    known = windows[w].end();
+    last = windows[w];
   }
   return draws;
 }

@@ -20,6 +20,18 @@ double PriorErrors::share_of_parent(Eigen::Index frame, int turn) const {
                           clip_.turn_deviation_rad(frame, parent);
 }
 
+Eigen::Vector3d PriorErrors::expected_turn_at_rest(Eigen::Index frame, int turn) const {
+  if (clip_.mean_lean.rows() == 0) return Eigen::Vector3d::Zero();
+  return (share_of_parent(frame, turn) - 1) * clip_.mean_lean.row(frame).transpose();
+}
+
+Eigen::Vector3d PriorErrors::expected_turn(Eigen::Index frame, int turn,
+                                           const Eigen::Vector3d& parent,
+                                           const Eigen::Vector3d& lean) const {
+  const double share = share_of_parent(frame, turn);
+  return share * parent + (1 - share) * lean + expected_turn_at_rest(frame, turn);
+}
+
 double PriorErrors::own_deviation_rad(Eigen::Index frame, int turn) const {
   const double own = parent_of(turn) < 0 ? 1 : std::sqrt(1 - likeness_ * likeness_);
   return own * clip_.turn_deviation_rad(frame, turn);

@@ -21,6 +21,15 @@ class PriorErrors {
   /// What a turn of its parent by one makes one expect of a turn; 0 without a parent.
   double share_of_parent(Eigen::Index frame, int turn) const;
 
+  /// What is expected of a turn: to turn with its parent, and for the rest with the world, as the
+  /// camera leans otherwise than the one that the prior's mean was seen by. Radians, camera axes.
+  /// @param parent its parent's turn; without a parent it does not count
+  /// @param lean PosteriorPoint::lean
+  Eigen::Vector3d expected_turn(Eigen::Index frame, int turn, const Eigen::Vector3d& parent,
+                                const Eigen::Vector3d& lean) const;
+  /// Of that, what neither parent nor lean changes.
+  Eigen::Vector3d expected_turn_at_rest(Eigen::Index frame, int turn) const;
+
   /// Deviation of a turn from what its parent makes one expect, about each axis.
   double own_deviation_rad(Eigen::Index frame, int turn) const;
 

@@ -87,7 +87,7 @@ void SlidingFit::take_prior(const PosePrior& prior) {
   if (prior.has_deviation()) replace_behind(rows_.prior.deviation, held_, prior.deviation);
   replace_behind(rows_.mean, held_,
                  modalities_.pose_in_camera(prior.mean, camera_.camera_from_world));
-  replace_behind(rows_.mean_lean, held_, MatrixD(point_.lean.transpose().replicate(open, 1)));
+  replace_behind(rows_.mean_lean, held_, MatrixD(camera_lean_.transpose().replicate(open, 1)));
 }
 
 /// Where the track shows the root of the body as the prior turns it.
@@ -282,6 +282,7 @@ void SlidingFit::take(const PosteriorPoint& point) {
 
 /// The world turns about the place where the first frame showed the root, which stays.
 void SlidingFit::look_as(const PosteriorPoint& point, const Eigen::Vector3d& first_root) {
+  camera_lean_ = point.lean;
   camera_.camera_from_world = rotation_of(point.lean) * assumed_.camera_from_world;
   camera_.fx_px = std::exp(point.log_focal) * assumed_.fx_px;
   camera_.fy_px = std::exp(point.log_focal) * assumed_.fy_px;

@@ -77,7 +77,8 @@ class SlidingFit {
   Skeleton skeleton_, body_;  ///< as it was given, and as it is estimated
   bool body_unknown_, may_be_exact_, camera_known_;
   double units_per_m_;
-  Camera assumed_, camera_;  ///< at first, and as it was found
+  Camera assumed_, camera_;               ///< at first, and as it was found
+  Eigen::Vector3d camera_lean_{0, 0, 0};  ///< of camera_; PosteriorPoint::lean may have gone on
   std::optional<CameraDoubt> doubt_;
   std::vector<std::string> names_;
   double lasting_noise_ = 1;       ///< as a share of a usual detector's

@@ -113,9 +113,10 @@ class ClipFit {
 
   /// After meet_track. The clip stays as it is.
   std::vector<Motion> drawn(const PosePrior& prior, TrackFitSettings settings,
-                            const PosteriorDraws& draws) {
+                            const PosteriorDraws& draws, bool body_given) {
     settings = settings_of_draws(settings);
     const PosteriorPoint likeliest = point_;
+    evidence_->clip.body_unknown = !body_given;
     evidence_->clip.turn_deviation_rad = fitted_turn_deviations_rad(prior, modalities_, settings);
     std::vector<Motion> motions;
     for (const PosteriorPoint& point :
@@ -128,14 +129,14 @@ class ClipFit {
   }
 
   /// Where no track is met. Before put_at_origin.
-  void keep_open(const PosePrior& prior, bool own_skeleton) {
+  void keep_open(const PosePrior& prior, bool body_given) {
     mean_ = features_;
     evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, camera_);
     evidence_->clip.turn_deviation_rad =
         turn_deviations_rad(prior, modalities_, settings_of_draws({}));
-    evidence_->clip.body_unknown = !own_skeleton;
+    evidence_->clip.body_unknown = !body_given;
   }
-  /// After keep_open. The clip stays as it is.
+  /// After keep_open. The clip stays as it is, and the root of each draw where it is.
   std::vector<Motion> drawn_by_prior(const PosteriorDraws& draws) {
     const MatrixD features = features_, root = root_;
     const Skeleton skeleton = skeleton_;
@@ -143,6 +144,7 @@ class ClipFit {
     for (const PosteriorPoint& point :
          prior_draws(evidence_->clip, TrackFitSettings{}, draws.count, draws.seed)) {
       take(point);
+      put_root(root);
       motions.push_back(motion());
     }
     features_ = features;
@@ -264,16 +266,17 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
   if (settings) check_settings(*settings);
   ClipFit clip(prior, features, track, known);
   clip.place_root();
-  const bool own_skeleton = known.skeleton.has_value(), draws_any = draws.count > 0;
+  const bool draws_any = draws.count > 0;
   if (settings)
     clip.meet_track(prior, track_noise_px(track), known, track, *settings);
   else if (draws_any)
-    clip.keep_open(prior, own_skeleton);
+    clip.keep_open(prior, known.body_given());
   FittedClip result;
   result.shown = clip.shown(track);
   if (!known.camera) clip.put_at_origin();
   if (draws_any)
-    result.draws = settings ? clip.drawn(prior, *settings, draws) : clip.drawn_by_prior(draws);
+    result.draws = settings ? clip.drawn(prior, *settings, draws, known.body_given())
+                            : clip.drawn_by_prior(draws);
   result.motion = clip.motion();
   result.camera = clip.camera();
   result.energy = clip.energy();

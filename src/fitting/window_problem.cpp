@@ -2,13 +2,13 @@
 
 #include <ceres/crs_matrix.h>
 #include <ceres/loss_function.h>
-#include <ceres/manifold.h>
 
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
 #include <utility>
 
+#include "fitting/free_axes.hpp"
 #include "fitting/robust_residuals.hpp"
 #include "fitting/terms/camera_lean.hpp"
 #include "fitting/terms/ground_contact.hpp"
@@ -135,6 +135,13 @@ void WindowProblem::find_used(Unknowns unknowns) {
       used_[static_cast<std::size_t>(clip_.parents[turn])] = true;
 }
 
+/// Whether what moves the joint is among the unknowns.
+bool WindowProblem::is_used(std::size_t joint) const {
+  return std::ranges::all_of(seen(0)[joint].levers, [&](const Lever& lever) {
+    return used_[static_cast<std::size_t>(lever.turn)];
+  });
+}
+
 JointPlace WindowProblem::place(Eigen::Index t, std::size_t joint) const {
   return {seen(t)[joint].levers, clip_.root.row(first_ + t).transpose(), clip_.body_unknown};
 }
@@ -190,15 +197,14 @@ void WindowProblem::add_turns() {
         blocks.push_back(turn_at(t, parent));
         shares.push_back(-share);
       }
-      Eigen::Vector3d expected = zero;
       if (clip_.camera) {
         blocks.push_back(x_.lean.data());
         shares.push_back(share - 1);
-        if (clip_.mean_lean.rows() > 0)
-          expected = (share - 1) * clip_.mean_lean.row(first_ + t).transpose();
       }
-      add(t, new LinearTerm(shares, expected, deviation / std::sqrt(process.point)), nullptr,
-          blocks);
+      add(t,
+          new LinearTerm(shares, prior_.expected_turn_at_rest(first_ + t, turn),
+                         deviation / std::sqrt(process.point)),
+          nullptr, blocks);
       if (t == 0 || t + 1 == x_.turns.rows()) continue;
       blocks = {turn_at(t - 1, turn), turn_at(t, turn), turn_at(t + 1, turn)};
       shares = {1, -2, 1};
@@ -227,6 +233,7 @@ void WindowProblem::add_root() {
 void WindowProblem::add_feet() {
   for (std::size_t f = 0; f < clip_.feet.size(); ++f) {
     const std::size_t foot = clip_.feet[f];
+    if (!is_used(foot)) continue;
     for (Eigen::Index t = 1; t < x_.turns.rows(); ++t) {
       const double surely = clip_.planted(first_ + t, static_cast<Eigen::Index>(f));
       if (surely < kHardlyStands) continue;
@@ -245,6 +252,7 @@ void WindowProblem::add_ground() {
   const double weight = std::min(1.0, clip_.frame_time_s / settings_.step_s);
   for (std::size_t f = 0; f < clip_.feet.size(); ++f) {
     const std::size_t foot = clip_.feet[f];
+    if (!is_used(foot)) continue;
     double* const height = &x_.ground_m[clip_.grounds[f]];
     for (Eigen::Index t = 1; t < x_.turns.rows(); ++t) {
       const double surely = clip_.planted(first_ + t, static_cast<Eigen::Index>(f));
@@ -263,15 +271,19 @@ void WindowProblem::add_ground() {
 void WindowProblem::add_camera() {
   const CameraDoubt& camera = *clip_.camera;
   problem_.AddParameterBlock(x_.lean.data(), 3);
-  std::vector<int> known{1};
-  if (camera.pitch_known) known.push_back(0);
-  if (camera.roll_known) known.push_back(2);
-  if (known.size() == 3)
+  Eigen::Matrix3Xd free(3, 0);
+  const auto set_free = [&](const Eigen::Vector3d& axis) {
+    free.conservativeResize(3, free.cols() + 1);
+    free.rightCols<1>() = axis;
+  };
+  if (!camera.pitch_known) set_free(camera.right);
+  if (!camera.roll_known) set_free(Eigen::Vector3d::UnitZ());
+  if (free.cols() == 0)
     problem_.SetParameterBlockConstant(x_.lean.data());
   else
-    problem_.SetManifold(x_.lean.data(), new ceres::SubsetManifold(3, known));
+    problem_.SetManifold(x_.lean.data(), new FreeAxes(std::move(free)));
   for (const ExpectedLean& expected : {camera.usual, camera.balanced})
-    problem_.AddResidualBlock(new CameraLean(expected), nullptr, x_.lean.data());
+    problem_.AddResidualBlock(new CameraLean(expected, camera.right), nullptr, x_.lean.data());
   problem_.AddResidualBlock(new LinearTerm({1}, Eigen::VectorXd::Constant(1, camera.log_focal),
                                            camera.log_focal_deviation),
                             nullptr, &x_.log_focal);

@@ -81,6 +81,7 @@ class WindowProblem {
   Eigen::Index numbers_of_frame() const;
   std::vector<UnknownBlock> blocks_of_frames(Eigen::Index first, Eigen::Index count);
   double* shift_at(Eigen::Index t) { return x_.shift.row(t).data(); }
+  bool is_used(std::size_t joint) const;
   JointPlace place(Eigen::Index t, std::size_t joint) const;
   std::vector<double*> moving_blocks(Eigen::Index t, std::size_t joint);
   std::vector<double*> length_blocks(std::size_t joint);

@@ -76,9 +76,11 @@ void WindowProblem::turn_unused() {
       if (used_[static_cast<std::size_t>(turn)]) continue;
       const int parent = clip_.parents[static_cast<std::size_t>(turn)];
       if (parent < 0) continue;
-      const double share = prior_.share_of_parent(first_ + t, turn);
       x_.turns.row(t).segment<3>(3 * turn) =
-          share * x_.turns.row(t).segment<3>(3 * parent) + (1 - share) * x_.lean.transpose();
+          prior_
+              .expected_turn(first_ + t, turn, x_.turns.row(t).segment<3>(3 * parent).transpose(),
+                             x_.lean)
+              .transpose();
     }
 }
 

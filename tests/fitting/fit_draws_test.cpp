@@ -96,6 +96,10 @@ TEST_CASE("without a fit draws are what the prior leaves open, bones turned with
   stranger.skeleton.reset();
   const FittedClip bodies =
       fit_to_track(prior, scene.modalities, scene.track, stranger, std::nullopt, kMany);
+  for (const Motion& draw : bodies.draws)
+    CHECK((joint_positions(draw).leftCols<3>() - joint_positions(bodies.motion).leftCols<3>())
+              .cwiseAbs()
+              .maxCoeff() < 1e-9);  // the root stays
   double sum = 0;
   // Each by a tenth, and the body as a whole no larger or smaller for it.
   const auto thigh_to_shank = [](const Skeleton& body) {
@@ -164,6 +168,28 @@ TEST_CASE("fit draws: an unknown body has one length of each bone a draw, and it
   for (const Motion& draw : clip.draws)
     for (int joint = 1; joint < draw.skeleton.joint_count(); ++joint)
       CHECK(length(draw, joint) <= five_deviations * length(clip.motion, joint));
+}
+
+TEST_CASE("fit draws: a body that was found elsewhere stays, and draws doubt it all the same") {
+  Scene scene = make_scene(0, 20);
+  const auto thigh = [&](const Motion& motion) {
+    return motion.skeleton.joints[static_cast<std::size_t>(motion.skeleton.find("LeftLeg"))]
+        .offset.norm();
+  };
+  for (const bool fitted : {false, true}) {
+    CAPTURE(fitted);
+    std::optional<TrackFitSettings> settings;
+    if (fitted) settings.emplace();
+    for (const bool found : {false, true}) {
+      CAPTURE(found);
+      scene.known.skeleton_found = found;
+      const FittedClip clip =
+          fit_to_track(scene.mean, scene.modalities, scene.track, scene.known, settings, kDraws);
+      CHECK(thigh(clip.motion) == doctest::Approx(thigh(scene.truth)));
+      for (const Motion& draw : clip.draws)
+        CHECK((std::abs(thigh(draw) / thigh(clip.motion) - 1) > 1e-6) == found);
+    }
+  }
 }
 
 TEST_CASE("fit draws: without a camera they lie about the motion at the origin") {

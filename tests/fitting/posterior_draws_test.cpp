@@ -231,4 +231,21 @@ TEST_CASE("posterior draws: in a long clip frames of two windows deviate as othe
   CHECK(with_length(370) < -0.15);
 }
 
+TEST_CASE("posterior draws: what follows from the body is the same in frames of two windows") {
+  constexpr Eigen::Index kFrames = 400, kDraws = 100;
+  const std::vector<ClipWindow> windows = windows_of(kFrames);
+  REQUIRE(windows.size() == 2);
+  PosteriorClip clip = clip_of(kFrames, true);
+  clip.turn_deviation_rad /= 100;  // so that it is nearly all
+  const MatrixD draws = drawn(clip, {}, kDraws);
+  const auto height_over_length = [&](Eigen::Index t) {
+    const Eigen::VectorXd length = draws.col(draws.cols() - 3);
+    return draws.col(t * kOfFrame + 3 * kTurns + 1).dot(length) / length.squaredNorm();
+  };
+  const double alone = height_over_length(60);
+  CHECK(std::abs(alone) > 0.1);
+  for (Eigen::Index t = windows[1].first + 5; t < windows[0].end(); t += 10)
+    CHECK(std::abs(height_over_length(t) / alone - 1) < 0.15);
+}
+
 }  // namespace posterior_draws_test

@@ -155,11 +155,16 @@ TEST_CASE("terms: a foot on the ground") {
 }
 
 TEST_CASE("terms: how a camera leans") {
-  const CameraLean cost({0.1, -0.2, 0.05, 0.02});
-  const Unknowns at(cost, 3, 0.3);
-  check_jacobians(cost, at);
-  DOCTEST_CHECK(residuals(cost, at)[0] == doctest::Approx((at.blocks[0][0] - 0.1) / 0.05));
-  DOCTEST_CHECK(residuals(cost, at)[1] == doctest::Approx((-at.blocks[0][2] + 0.2) / 0.02));
+  for (const double roll : {0.0, 0.7, -2.5}) {
+    CAPTURE(roll);
+    const Eigen::Vector3d right(std::cos(roll), -std::sin(roll), 0);
+    const CameraLean cost({0.1, -0.2, 0.05, 0.02}, right);
+    const Unknowns at(cost, 3, 0.3);
+    check_jacobians(cost, at);
+    const double about_right = at.blocks[0][0] * right.x() + at.blocks[0][1] * right.y();
+    DOCTEST_CHECK(residuals(cost, at)[0] == doctest::Approx((about_right - 0.1) / 0.05));
+    DOCTEST_CHECK(residuals(cost, at)[1] == doctest::Approx((-at.blocks[0][2] + 0.2) / 0.02));
+  }
 }
 
 TEST_CASE("terms: a standing foot") {

@@ -7,6 +7,7 @@
 
 #include "camera/track_noise.hpp"
 #include "features/clip_modalities.hpp"
+#include "fitting/camera_angles.hpp"
 #include "mcdbn/fitting/track_fit.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/foot_joints.hpp"
@@ -59,6 +60,36 @@ TEST_CASE("unknown camera: pitch and roll are those that make an upright walker"
       CHECK(std::abs(*view.pitch_deg - pitch_deg) < 2 + 0.15 * std::abs(pitch_deg));
       CHECK(std::abs(*view.roll_deg - roll_deg) < 1.5);
       CHECK(*view.field_of_view_deg == doctest::Approx(40));
+    }
+}
+
+TEST_CASE(
+    "unknown camera: its pitch is found as well where it lies on its side or is upside down") {
+  const auto found = [](double roll_deg) {
+    const Scene scene(12, roll_deg);
+    const AssumedView view = scene.fit({{}, roll_deg, scene.view.field_of_view_deg}).view;
+    CHECK(std::abs(std::remainder(*view.roll_deg - roll_deg, 360)) < 1e-6);
+    return *view.pitch_deg;
+  };
+  const double upright = found(0);
+  CHECK(std::abs(upright - 12) < 3.8);
+  for (const double roll_deg : {40.0, 90.0, -90.0, 180.0}) {
+    CAPTURE(roll_deg);
+    CHECK(std::abs(found(roll_deg) - upright) < 0.1);
+  }
+}
+
+TEST_CASE("unknown camera: rolls differ the short way round") {
+  const auto up = [](double roll_deg) {
+    const double roll = roll_deg * EIGEN_PI / 180;
+    return Eigen::Vector3d(-std::sin(roll), -std::cos(roll), 0);
+  };
+  for (const double from_deg : {0.0, 90.0, 179.0, -179.0})
+    for (const double by_deg : {-20.0, 2.0, 100.0}) {
+      CAPTURE(from_deg);
+      CAPTURE(by_deg);
+      CHECK(roll_from_to_rad(up(from_deg), up(from_deg + by_deg)) ==
+            doctest::Approx(by_deg * EIGEN_PI / 180));
     }
 }
 

@@ -41,7 +41,11 @@ struct KnownOfClip {
   AssumedView found = {};  ///< what was found out of it besides; `view` holds
   /// Whether the joints are a detector's keypoints: they are taken for no better than usual.
   bool detected = false;
+  /// Whether the skeleton is not given but was found, in another part of the clip: the fit keeps
+  /// it, and draws allow for other proportions.
+  bool skeleton_found = false;
 
+  bool body_given() const { return skeleton.has_value() && !skeleton_found; }
   /// Whether the track can be an exact projection: of a known body, and no detector's.
   bool may_be_exact() const { return skeleton.has_value() && !detected; }
 
@@ -236,8 +240,9 @@ struct FittedClip {
 /// @param track at the model's rate, as many frames as the prior; joined by name
 /// @param settings unset: orientations stay as the prior's mean has them, and draws are what the
 ///        prior alone leaves open
-/// @param draws for these an orientation's deviation is the prior's, and a detector's lasting
-///        error lasts throughout: the likeliest motion and its uncertainty take different settings
+/// @param draws for these a detector's lasting error lasts throughout, and without settings an
+///        orientation's deviation is the prior's, however small: the likeliest motion and its
+///        uncertainty take different settings
 /// @throws ShapeError; InputError if the skeleton lacks a joint of the model, no frame shows enough
 ///         joints, or a deviation is negative or not finite
 FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, const Track2d& track,

@@ -1,0 +1,92 @@
+// What a window's problem does with joints that nothing shows.
+
+#include "fitting/window_problem.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "fitting/prior_errors.hpp"
+
+namespace window_problem_test {
+
+using namespace mcdbn;
+
+namespace {
+
+constexpr Eigen::Index kFrames = 12;
+const RayNoise kNoise{0.002, 0.004};
+
+/// A thigh whose knee is seen as it swings, and a shank whose ankle no frame shows. The ankle
+/// stands.
+PosteriorClip hidden_ankle() {
+  PosteriorClip clip;
+  clip.parents = {-1, 0};
+  clip.lengths = {0, 1};
+  clip.root = MatrixD::Zero(kFrames, 3);
+  clip.root.col(2).setConstant(4);
+  clip.travelled = clip.root;
+  clip.feet = {1};
+  clip.grounds = {0};
+  clip.planted = MatrixD::Ones(kFrames, 1);
+  clip.frame_time_s = 1.0 / 30;
+  clip.turn_deviation_rad = MatrixD::Constant(kFrames, 2, 0.2);
+  clip.body_unknown = true;
+  for (Eigen::Index t = 0; t < kFrames; ++t) {
+    const double turn = 0.3 * std::sin(0.4 * static_cast<double>(t));
+    const Eigen::Vector2d knee(-0.4 * std::sin(turn) / 4, 0.4 * std::cos(turn) / 4);
+    clip.seen.push_back(
+        {{{{0, {0, 0.4, 0}}}, knee, 1}, {{{0, {0, 0.4, 0}}, {1, {0, 0.4, 0}}}, {0, 0}, 0}});
+  }
+  return clip;
+}
+
+PosteriorPoint solved(const PosteriorClip& clip, const PosteriorPoint& from) {
+  WindowProblem problem(clip, kNoise, {}, from, 0, kFrames);
+  problem.solve(true, 1e-6);
+  return problem.solution();
+}
+
+}  // namespace
+
+TEST_CASE("window problem: a foot that no frame shows changes nothing") {
+  PosteriorClip with = hidden_ankle(), without = with;
+  without.feet.clear();
+  without.grounds.clear();
+  without.planted = MatrixD::Zero(kFrames, 0);
+  const PosteriorPoint one = solved(with, PosteriorPoint::zero(with)),
+                       other = solved(without, PosteriorPoint::zero(without));
+  DOCTEST_CHECK(one.shift.norm() > 0.01);
+  DOCTEST_CHECK((one.turns - other.turns).norm() < 1e-9);
+  DOCTEST_CHECK((one.shift - other.shift).norm() < 1e-9);
+  DOCTEST_CHECK((one.log_lengths - other.log_lengths).norm() < 1e-9);
+  for (SeenJoint* ankle : {&with.seen[3][1], &with.seen[4][1]}) {
+    ankle->ray = {0, 0.2};
+    ankle->confidence = 1;
+  }
+  DOCTEST_CHECK((solved(with, PosteriorPoint::zero(with)).turns - one.turns).norm() > 1e-3);
+}
+
+TEST_CASE("window problem: what moves no seen joint leans with the camera no more than its mean") {
+  for (const double leant : {0.0, 0.1, 0.25}) {
+    CAPTURE(leant);
+    PosteriorClip clip = hidden_ankle();
+    clip.camera = CameraDoubt{};
+    clip.camera->pitch_known = clip.camera->roll_known = true;
+    clip.mean_lean = MatrixD::Zero(kFrames, 3);
+    clip.mean_lean.col(0).setConstant(leant);
+    PosteriorPoint from = PosteriorPoint::zero(clip);
+    from.lean.x() = 0.25;
+    const PosteriorPoint found = solved(clip, from);
+    const PriorErrors prior(clip, kNoise, {});
+    const double share = prior.share_of_parent(0, 1);
+    for (Eigen::Index t = 0; t < kFrames; ++t) {
+      const Eigen::Vector3d parent = found.turns.row(t).head<3>().transpose(),
+                            own = found.turns.row(t).tail<3>().transpose();
+      DOCTEST_CHECK(
+          (own - share * parent - (1 - share) * Eigen::Vector3d(0.25 - leant, 0, 0)).norm() < 1e-9);
+    }
+  }
+}
+
+}  // namespace window_problem_test
