@@ -9,8 +9,6 @@
 namespace mcdbn {
 namespace {
 
-constexpr double kSameRate = 1e-6;
-
 /// The joint at source time `at` (frames): weighted mean over the frames closer than `reach`.
 void resample_joint(const Track2d& track, Eigen::Index joint, double at, double reach,
                     Track2d& result, Eigen::Index frame) {

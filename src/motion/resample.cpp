@@ -14,8 +14,6 @@
 namespace mcdbn {
 namespace {
 
-/// Rates closer than this are the same one: files print their frame time rounded.
-constexpr double kSameRate = 0.005;
 /// Cut-off (−6 dB) as a fraction of the new rate, and half the filter's length in new frames:
 /// a Hann-windowed sinc of this length falls off within ±0.1 of the new rate.
 constexpr double kCutoff = 0.4;
@@ -201,17 +199,17 @@ int frames_at_rate(int frames, double rate_hz, double target_hz, double phase, d
   return std::max(1, static_cast<int>(last) + 1);
 }
 
-Motion resample(const Motion& motion, double target_hz, double phase) {
+Motion resample(const Motion& motion, double target_hz, double phase, double same_rate) {
   check_arguments(motion, phase);
   // The last frame is kept although a printed frame time puts it a little past the end.
   constexpr double kSlack = 1e-3;
   const int frames = frames_at_rate(motion.frames(), motion.fps(), target_hz, phase, kSlack);
   const double step = motion.fps() / target_hz;
-  const bool same_rate = std::abs(step - 1) <= kSameRate;
-  if (same_rate && phase == 0) return motion;
+  const bool is_same = std::abs(step - 1) <= same_rate;
+  if (is_same && phase == 0) return motion;
 
   MatrixD signals = to_signals(motion);
-  if (step > 1 && !same_rate) signals = low_pass(signals, step);
+  if (step > 1 && !is_same) signals = low_pass(signals, step);
 
   const double last_frame = motion.frames() - 1;
   Motion result{motion.skeleton, 1.0 / target_hz, MatrixD(frames, motion.channels.cols())};

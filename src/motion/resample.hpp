@@ -21,16 +21,22 @@ Motion without_first_frame(const Motion& motion);
 int frames_at_rate(int frames, double rate_hz, double target_hz, double phase, double slack);
 inline constexpr double kMostFrames = 1e7;
 
+/// Relative difference up to which two rates are the same one: of files, which print their frame
+/// time rounded, and of rates that are exact.
+inline constexpr double kPrintedRate = 0.005, kSameRate = 1e-6;
+
 /// Resamples a clip to `target_hz`: low-pass below the new Nyquist rate first when going down
 /// (zero phase, so nothing is delayed; flat to 0.3 of the new rate, −6 dB at 0.4, nothing from
 /// 0.5 on), then interpolation. Rotations are filtered and interpolated
 /// as rotations, not as angles, and come back as continuous angles in the file's own order.
 /// @param phase shifts the sampling grid by `phase` target frames, 0 <= phase < 1: other phases of
 ///        the same clip are free augmentation.
-/// @return the clip as it is where its rate is within 0.5 % of `target_hz` and phase is 0. Else as
+/// @param same_rate kPrintedRate or kSameRate
+/// @return the clip as it is where its rate is `target_hz` to `same_rate` and phase is 0. Else as
 ///         many frames as fit into its duration, at least one. Channels that never change keep
 ///         their exact value.
 /// @throws ConfigError if target_hz or phase is out of range, ShapeError for a clip without frames
-Motion resample(const Motion& motion, double target_hz, double phase = 0.0);
+Motion resample(const Motion& motion, double target_hz, double phase = 0.0,
+                double same_rate = kPrintedRate);
 
 }  // namespace mcdbn

@@ -161,13 +161,14 @@ class PartRegeneration {
     ClipPlacement placement = placement_;
     if (reference == nullptr) return placement;
     placement.camera = reference->bodies[answer].camera;
-    if (!placement.skeleton) placement.detected = true;  // a body that was found is not exact
+    // A body that was found is not exact.
+    if (!placement.skeleton) placement.detected = placement.skeleton_found = true;
     placement.skeleton = reference->bodies[answer].skeleton;
     return placement;
   }
 
   Motion at_tracks_rate(const Motion& motion, const FrameRange& range) const {
-    return other_.moved(with_frames(resample(motion, track_.fps), range.frames));
+    return other_.moved(with_frames(resample(motion, track_.fps, 0, kSameRate), range.frames));
   }
 
   const Modalities& modalities_;

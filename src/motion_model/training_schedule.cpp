@@ -81,10 +81,11 @@ void check_before(const DeviceInfo& device, const TrainingSet& data, const ClipS
   for (const ModalityClips& modality : ClipSource(data).sequences().modalities)
     dimensions.push_back(modality.dimension());
   const auto frames = static_cast<double>(data.frames());
-  const double kept = !tunes ? frames
-                      : learns_from_fresh_views(clips, config)
-                          ? kPieceFrames * static_cast<double>(fresh_views_at_once(clips, config))
-                          : frames_of_views(frames, config);
+  const double kept =
+      !tunes ? frames
+      : learns_from_fresh_views(clips, config)
+          ? frames_of_pieces(config) * static_cast<double>(fresh_views_at_once(clips, config))
+          : frames_of_views(frames, config);
   check_memory(memory_need(dimensions, kept, config), device, config);
 }
 

@@ -17,13 +17,6 @@ namespace {
 /// Of a view of a corpus that is too large to be asked.
 constexpr std::size_t kUsesOfMany = 16;
 
-/// Frames of a piece: windows begin and end at more than a few places of it.
-int frames_of_pieces(const TrainingConfig& config) {
-  const std::size_t window = config.layers * config.order + config.fine_tuning.settle_frames +
-                             config.fine_tuning.window_frames + config.look_ahead;
-  return std::max(kPieceFrames, static_cast<int>(3 * window));
-}
-
 PieceChoice pieces_of(const TrainingConfig& config) {
   return {.frames = frames_of_pieces(config), .groups_power = config.fine_tuning.people_power};
 }
@@ -34,6 +27,12 @@ std::uint64_t seed_of_strangers(const TrainingConfig& config) {
 }
 
 }  // namespace
+
+int frames_of_pieces(const TrainingConfig& config) {
+  const std::size_t window = config.layers * config.order + config.fine_tuning.settle_frames +
+                             config.fine_tuning.window_frames + config.look_ahead;
+  return std::max(kPieceFrames, static_cast<int>(3 * window));
+}
 
 const TrainingSet& ViewSource::views() const {
   if (!views_)

@@ -107,6 +107,7 @@ TEST_CASE("clips at the rate asked for, and clips of one frame") {
   const auto ramp = [](int channel, double t) { return channel == 0 ? t : 371.0; };
   const Motion near = clip_of(29.97, 20, ramp);
   const Motion unchanged = resample(near, 30);
+  CHECK(resample(near, 30, 0, kSameRate).fps() == doctest::Approx(30).epsilon(1e-9));
   CHECK(unchanged.channels == near.channels);
   CHECK(unchanged.frame_time_s == near.frame_time_s);
 

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "camera/detector_track.hpp"
 #include "features/clip_modalities.hpp"
@@ -103,6 +104,28 @@ TEST_CASE("regenerate stretches: they have the body and the camera of the longes
     CHECK(found.camera.fx_px == of_longest.camera.fx_px);
     CHECK(found.camera.translation == of_longest.camera.translation);
     CHECK(off_px(got[0], found.camera, track) < 100);  // the jump is 2160
+  }
+}
+
+TEST_CASE("regenerate stretches: a body that was found is as little known in all of them") {
+  const Scene scene;
+  ClipPlacement placement;
+  placement.camera = scene.camera;
+  placement.uncertainty_draws = {20, 3};
+  const Eigen::Index head = 3 * scene.clip.skeleton.find("Head");
+  REQUIRE(head > 0);
+  for (const bool fitted : {false, true}) {
+    CAPTURE(fitted);
+    if (!fitted) placement.fit.reset();
+    if (fitted) placement.fit.emplace();
+    TrackFindings found;
+    scene.regenerated(scene.track, placement, &found);
+    const auto width = [&](int first, int frames) {
+      return found.uncertainty.block(first, head, frames, 3).norm() / std::sqrt(frames);
+    };
+    const double part = width(kFirst, kFrames - kFirst) / width(0, kFirst);
+    CHECK(part > 0.7);
+    CHECK(part < 2);  // it is shorter
   }
 }
 

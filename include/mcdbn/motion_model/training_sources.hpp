@@ -84,6 +84,10 @@ bool learns_from_fresh_views(const ClipStore& clips, const TrainingConfig& confi
 TrainingSet some_fresh_views(const ClipStore& clips, const Modalities& modalities,
                              const TrainingConfig& config);
 
+/// Frames of the pieces of clips that fresh views are of: windows begin and end at more than a few
+/// places of one.
+int frames_of_pieces(const TrainingConfig& config);
+
 /// Views that a FreshViewSource holds at a time: config.augment.views of each piece, but not more
 /// than some half an hour.
 std::size_t fresh_views_at_once(const ClipStore& clips, const TrainingConfig& config);
