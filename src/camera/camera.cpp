@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/numbers.hpp"
 #include "camera/lens.hpp"
@@ -52,6 +53,21 @@ double fitting_distance(const Camera& camera, const MatrixD& points,
   return distance > 0 ? distance : 1.0;
 }
 
+/// A camera whose size was guessed, as that of images of a known size.
+Camera of_images(Camera camera, int width_px, int height_px) {
+  constexpr double kAside = 0.2;  // of the image; calibrations are off by a few hundredths
+  if (std::abs(camera.cx_px / width_px - 0.5) > kAside ||
+      std::abs(camera.cy_px / height_px - 0.5) > kAside)
+    throw InputError(fmt::format(
+        "its images are {} x {} px, and the camera's principal point at {:.0f}, {:.0f} is far from "
+        "their middle: it was calibrated with images of another size",
+        width_px, height_px, camera.cx_px, camera.cy_px));
+  camera.width_px = width_px;
+  camera.height_px = height_px;
+  camera.size_is_guess = false;
+  return camera;
+}
+
 }  // namespace
 
 Eigen::Matrix3d camera_rotation(double azimuth_deg, double elevation_deg) {
@@ -82,6 +98,37 @@ Camera in_file_units(Camera camera, const Skeleton& skeleton) {
   if (camera.unit_m) camera.translation *= *camera.unit_m * file_units_per_metre(skeleton);
   camera.unit_m.reset();
   return camera;
+}
+
+Camera with_unit(Camera camera, const Skeleton& skeleton) {
+  if (!camera.unit_m) camera.unit_m = 1 / file_units_per_metre(skeleton);
+  return camera;
+}
+
+Camera scaled(Camera camera, int width_px, int height_px) {
+  const double x = static_cast<double>(width_px) / camera.width_px;
+  const double y = static_cast<double>(height_px) / camera.height_px;
+  camera.fx_px *= x;
+  camera.cx_px *= x;
+  camera.fy_px *= y;
+  camera.cy_px *= y;
+  camera.width_px = width_px;
+  camera.height_px = height_px;
+  return camera;
+}
+
+Camera of_scaled_images(Camera camera, int width_px, int height_px,
+                        std::vector<std::string>* notices) {
+  if (camera.size_is_guess) return of_images(std::move(camera), width_px, height_px);
+  if (camera.width_px == width_px && camera.height_px == height_px) return camera;
+  const std::string sizes = fmt::format("its images are {} x {} px, those of the camera {} x {} px",
+                                        width_px, height_px, camera.width_px, camera.height_px);
+  constexpr double kRounded = 0.01;  // of a side that was scaled to whole pixels
+  const double wider = static_cast<double>(width_px) / camera.width_px /
+                       (static_cast<double>(height_px) / camera.height_px);
+  if (std::abs(wider - 1) > kRounded) throw InputError(sizes + ", which is another shape");
+  if (notices != nullptr) notices->push_back(sizes + ": the camera is scaled to them");
+  return scaled(std::move(camera), width_px, height_px);
 }
 
 Camera camera_at_origin(const CameraPlacement& placement) {

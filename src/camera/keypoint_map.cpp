@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <utility>
 
 #include "base/numbers.hpp"
+#include "base/shown.hpp"
 #include "camera/keypoint_places.hpp"
 #include "camera/track_columns.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -51,6 +53,21 @@ Eigen::Vector2d middle(const Track2d& track, Eigen::Index frame, int left, int r
   if (left < 0 || right < 0 || !seen(track, frame, left) || !seen(track, frame, right))
     return {kNan, kNan};
   return 0.5 * (pixel_at(track, frame, left) + pixel_at(track, frame, right));
+}
+
+/// What to do where most columns have names that are not known; none otherwise.
+std::string advice_on_names(const std::vector<Keypoint>& keypoints) {
+  constexpr std::size_t kMost = 5;
+  std::vector<std::string> unknown;
+  for (const Keypoint& keypoint : keypoints)
+    if (!keypoint.role) unknown.push_back(shown(keypoint.name));
+  if (2 * unknown.size() <= keypoints.size()) return {};
+  const bool more = unknown.size() > kMost;
+  unknown.resize(std::min(kMost, unknown.size()));
+  return fmt::format(
+      "; its columns {}{} are no known joints: call them as the model's, or as in left_hip, LHip, "
+      "hip.L",
+      fmt::join(unknown, ", "), more ? ", …" : "");
 }
 
 void hide_column(Track2d& track, int column) {
@@ -100,9 +117,11 @@ KeypointMap::KeypointMap(const std::vector<Keypoint>& keypoints, const Skeleton&
   const bool has_pelvis = std::ranges::find(joints_, roles.joint(pelvis)) != joints_.end();
   if (joints_.size() < kFewestJoints || !has_pelvis)
     throw InputError(fmt::format(
-        "the 2D track shows too little of the body: {} of the model's joints ({}); at least {} are "
-        "needed, the pelvis or both hips among them",
-        joints_.size(), fmt::join(names_, ", "), kFewestJoints));
+        "the 2D track shows too little of the body: {} of the model's joints{}; at least {} are "
+        "needed, the pelvis or both hips among them{}",
+        joints_.size(),
+        names_.empty() ? std::string() : fmt::format(" ({})", fmt::join(names_, ", ")),
+        kFewestJoints, advice_on_names(keypoints)));
 
   const auto centre = [&](JointRole left) -> Eigen::Vector3d {
     return 0.5 * (rest.position[static_cast<std::size_t>(roles.joint(left))] +

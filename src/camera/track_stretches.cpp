@@ -110,6 +110,16 @@ std::string described(const std::vector<FrameRange>& ranges) {
   return text;
 }
 
+std::vector<FrameRange> frames_of_nobody(const Track2d& track) {
+  std::vector<FrameRange> ranges;
+  for (int t = 0; t < track.frames(); ++t) {
+    if ((track.confidence.row(t).array() > 0).any()) continue;
+    if (ranges.empty() || ranges.back().end() < t) ranges.push_back({t, 0});
+    ++ranges.back().frames;
+  }
+  return ranges;
+}
+
 TrackStretches find_stretches(const Track2d& track) {
   TrackStretches result;
   if (track.frames() == 0) return result;

@@ -43,7 +43,6 @@ class Cursor {
 };
 
 bool same_word(std::string_view a, std::string_view b);
-/// A word from the file as a message can show it: shortened, printable, in quotes.
 
 /// The name of a channel in a CHANNELS line.
 std::string_view channel_word(Channel channel);

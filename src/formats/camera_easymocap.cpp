@@ -47,6 +47,10 @@ CameraSource partner_of(const CameraSource& source, const std::string& from,
   return partner;
 }
 
+bool has_size(const std::string& name, const OpencvStorage& intrinsics) {
+  return intrinsics.has("W_" + name) && intrinsics.has("H_" + name);
+}
+
 Camera camera_of(const std::string& name, const OpencvStorage& intrinsics,
                  const OpencvStorage& poses) {
   Camera camera;
@@ -55,10 +59,11 @@ Camera camera_of(const std::string& name, const OpencvStorage& intrinsics,
                  intrinsics.where(matrix));
   if (intrinsics.has(lens))
     set_distortion(camera, intrinsics.matrix(lens).values, intrinsics.where(lens));
-  guess_size(camera);
-  if (intrinsics.has("W_" + name) && intrinsics.has("H_" + name)) {
+  if (has_size(name, intrinsics)) {
     camera.width_px = pixels_of(intrinsics.number("W_" + name), intrinsics.where("W_" + name));
     camera.height_px = pixels_of(intrinsics.number("H_" + name), intrinsics.where("H_" + name));
+  } else {
+    guess_size(camera);
   }
   const std::string rotation = (poses.has("Rot_" + name) ? "Rot_" : "R_") + name;
   set_pose(camera, rotation_of(poses.matrix(rotation).values, poses.where(rotation)),
@@ -80,6 +85,11 @@ CameraRig read(const CameraSource& source) {
     if (poses.has("T_" + name)) rig.cameras.push_back({name, camera_of(name, intrinsics, poses)});
   }
   rig.assumed = {"its world is z-up and in metres"};
+  if (!std::ranges::all_of(rig.cameras, [&](const NamedCamera& camera) {
+        return has_size(camera.name, intrinsics);
+      }))
+    rig.assumed.emplace_back(
+        "where it has no image size (W_NAME, H_NAME), twice the principal point is taken for it");
   return rig;
 }
 

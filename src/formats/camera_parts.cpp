@@ -95,6 +95,7 @@ void guess_size(Camera& camera) {
   };
   camera.width_px = around(camera.cx_px);
   camera.height_px = around(camera.cy_px);
+  camera.size_is_guess = true;
 }
 
 Eigen::Matrix3d rotation_of(const std::vector<double>& values, const std::string& where) {

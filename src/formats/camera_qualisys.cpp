@@ -51,19 +51,20 @@ class Element {
 Camera camera_of(const Element& element) {
   Camera camera;
   const auto lens = [&](const char* name) { return kUnit_px * element.number("intrinsic", name); };
+  const auto edge = [&](const char* name) { return element.number("fov_video", name); };
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
   matrix(0, 0) = lens("focalLengthU");
   matrix(1, 1) = lens("focalLengthV");
-  matrix(0, 2) = lens("centerPointU");
-  matrix(1, 2) = lens("centerPointV");
+  // They count from the corner of the sensor, of which the image may be a part.
+  matrix(0, 2) = lens("centerPointU") - edge("left");
+  matrix(1, 2) = lens("centerPointV") - edge("top");
   set_intrinsics(camera, matrix, element.where("intrinsic"));
   // Tangental is how the file spells it.
   camera.distortion = {lens("radialDistortion1"), lens("radialDistortion2"),
                        lens("tangentalDistortion1"), lens("tangentalDistortion2"),
                        lens("radialDistortion3")};
   const auto span = [&](const char* low, const char* high) {
-    return pixels_of(element.number("fov_video", high) - element.number("fov_video", low) + 1,
-                     element.where("fov_video"));
+    return pixels_of(edge(high) - edge(low) + 1, element.where("fov_video"));
   };
   camera.width_px = span("left", "right");
   camera.height_px = span("top", "bottom");

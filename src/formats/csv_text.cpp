@@ -35,6 +35,10 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
+std::string time_cell(double time_s) {
+  return fmt::format("{}", std::round(1e7 * time_s) / 1e7);
+}
+
 void require_csv_name(const std::string& name) {
   if (name.find_first_of(",;\t\n\r#\"") == std::string::npos && trimmed(name) == name) return;
   throw InputError(

@@ -29,7 +29,7 @@ class BvhStream : public FrameStream {
   BvhStream(std::ostream& out, double fps, bool rewritable)
       : out_(out), fps_(fps), rewritable_(rewritable) {}
 
-  void write(const Skeleton& skeleton, const RowVectorD& channels) override {
+  void write(const Skeleton& skeleton, const RowVectorD& channels, bool) override {
     std::string text;
     if (frames_ == 0) {
       start_ = out_.tellp();
@@ -92,7 +92,7 @@ class CsvStream : public NumberedStream {
  public:
   using NumberedStream::NumberedStream;
 
-  void write(const Skeleton& skeleton, const RowVectorD& channels) override {
+  void write(const Skeleton& skeleton, const RowVectorD& channels, bool) override {
     std::string text;
     if (frame() == 0) {
       text = "frame,time_s";
@@ -102,7 +102,7 @@ class CsvStream : public NumberedStream {
       }
       text += '\n';
     }
-    text += fmt::format("{},{:.6g}", frame(), time_s());
+    text += fmt::format("{},{}", frame(), time_cell(time_s()));
     for (const double place : places_of(skeleton, channels)) text += fmt::format(",{:.6g}", place);
     text += '\n';
     put_frame(text);
@@ -113,7 +113,7 @@ class JsonStream : public NumberedStream {
  public:
   using NumberedStream::NumberedStream;
 
-  void write(const Skeleton& skeleton, const RowVectorD& channels) override {
+  void write(const Skeleton& skeleton, const RowVectorD& channels, bool seen) override {
     const RowVectorD places = places_of(skeleton, channels);
     nlohmann::ordered_json joints = nlohmann::ordered_json::object();
     for (Eigen::Index j = 0; j < skeleton.joint_count(); ++j)
@@ -122,6 +122,7 @@ class JsonStream : public NumberedStream {
     const nlohmann::ordered_json line = {
         {"frame", frame()},
         {"time_s", time_s()},
+        {"seen", seen},
         {"channels", std::vector<double>(channels.begin(), channels.end())},
         {"joints", std::move(joints)}};
     put_frame(line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");

@@ -10,6 +10,7 @@
 #include "camera/body_places.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
+#include "mcdbn/motion/skeleton_roles.hpp"
 
 namespace mcdbn {
 namespace {
@@ -109,7 +110,27 @@ std::size_t joint_count(const SeenPeople& people, const std::string& file) {
   return count;
 }
 
+/// Whether the names are those of a skeleton's joints: as such they are all of a person's limbs,
+/// and more are known than as places that detectors see (whose `LeftFoot` are the toes).
+bool are_a_skeletons(const std::vector<std::string>& names) {
+  if (are_a_detectors(names)) return false;
+  const SkeletonRoles roles = roles_by_name(names);
+  constexpr std::array kLimbs{JointRole::left_hip,   JointRole::left_knee,
+                              JointRole::left_ankle, JointRole::left_shoulder,
+                              JointRole::left_elbow, JointRole::left_wrist};
+  if (!std::ranges::all_of(
+          kLimbs, [&](JointRole left) { return roles.has(left) && roles.has(other_side(left)); }))
+    return false;
+  const auto places = std::ranges::count_if(
+      keypoints_of(names), [](const Keypoint& keypoint) { return keypoint.role.has_value(); });
+  return std::ssize(joint_roles()) - std::ssize(roles.missing()) > places;
+}
+
 }  // namespace
+
+bool is_joint_count(std::size_t joints) {
+  return std::ranges::find(counted_sets(), joints, &CountedSets::joints) != counted_sets().end();
+}
 
 void name_joints_by_count(SeenPeople& people, const std::string& file,
                           const std::vector<std::string>& names) {
@@ -148,8 +169,17 @@ void name_joints_by_count(SeenPeople& people, const std::string& file,
   set_length(people, people.joint_names.size());
 }
 
+bool are_a_detectors(const std::vector<std::string>& names) {
+  const auto known = std::ranges::count_if(names, [](const std::string& name) {
+    return std::ranges::any_of(joint_sets(), [&](const JointSet& set) {
+      return std::ranges::find(set.keypoints, name, &Keypoint::name) != set.keypoints.end();
+    });
+  });
+  return 2 * known > static_cast<std::ptrdiff_t>(names.size());
+}
+
 void name_joints(SeenPeople& people, std::vector<std::string> names) {
-  people.keypoints = keypoints_of(names);
+  if (!are_a_skeletons(names)) people.keypoints = keypoints_of(names);
   people.joint_names = std::move(names);
 }
 

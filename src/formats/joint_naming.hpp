@@ -16,6 +16,10 @@ class NoPersonSeen : public InputError {
   using InputError::InputError;
 };
 
+/// Whether a body has so many joints in one of the known joint sets, with or without face and
+/// hands.
+bool is_joint_count(std::size_t joints);
+
 /// Names the joints. Where the file gives as many names as joints, those; else the joint
 /// set of that count, of several the one that makes the shortest limbs (BODY_25 and BODY_25B have
 /// the same count). Faces and hands behind a body's joints (133, 135, 136) are left out, with a
@@ -25,7 +29,11 @@ class NoPersonSeen : public InputError {
 void name_joints_by_count(SeenPeople& people, const std::string& file,
                           const std::vector<std::string>& names = {});
 
-/// Names, in the file's order.
+/// Whether the columns are a detector's, not a skeleton's: most are called as in one of the joint
+/// sets.
+bool are_a_detectors(const std::vector<std::string>& names);
+
+/// Names, in the file's order. A skeleton's joints are no keypoints: as in Track2d.
 void name_joints(SeenPeople& people, std::vector<std::string> names);
 
 /// One body of a JSON list of numbers, x, y, confidence of each joint; of lists of 2 or 3 numbers;

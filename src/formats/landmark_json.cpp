@@ -23,6 +23,7 @@ constexpr std::array kBodyKeys{"landmarks", "pose_landmarks", "poseLandmarks", "
 constexpr int kDepth = 6;  // lists in lists down to a body
 constexpr std::array kFrameKeys{"frame", "frame_id", "frame_idx", "frame_number", "frameNumber"};
 constexpr std::array kConfidenceKeys{"visibility", "score", "confidence", "presence", "v"};
+constexpr std::array kNameKeys{"name", "part"};
 
 /// The value of the first of these keys that an object has.
 template <typename Keys>
@@ -60,6 +61,12 @@ std::vector<std::string> keys_by_number(std::vector<std::string> keys) {
   return keys;
 }
 
+struct LandmarkBody {
+  SeenPerson person;
+  /// [landmarks] The number behind x and y, a confidence or a depth; -1: no list of three.
+  std::vector<double> thirds;
+};
+
 class LandmarkReader {
  public:
   explicit LandmarkReader(std::string file) : file_(std::move(file)) {}
@@ -67,9 +74,7 @@ class LandmarkReader {
   SeenPeople read(const JsonPlace& content) {
     read_film(content);
     add_all(content);
-    judge_third_numbers();
-    for (auto& [number, frame] : people_.frames)
-      for (SeenPerson& person : frame) mark_missing(person);
+    take_bodies();
     name_landmarks(people_, file_, names_);
     return std::move(people_);
   }
@@ -116,51 +121,54 @@ class LandmarkReader {
   }
 
   void add_frame(const JsonPlace& frame, long long number) {
-    if (!people_.frames.try_emplace(number).second)
-      frame.fail(fmt::format("a second frame {}", number));
-    add_bodies(frame, people_.frames[number]);
+    const auto [at, is_new] = bodies_.try_emplace(number);
+    if (!is_new) frame.fail(fmt::format("a second frame {}", number));
+    add_bodies(frame, at->second);
   }
 
   /// A body, or a list of them, or an object around either. Nothing: no person was found.
-  void add_bodies(const JsonPlace& place, std::vector<SeenPerson>& people, int depth = 0) {
+  void add_bodies(const JsonPlace& place, std::vector<LandmarkBody>& bodies, int depth = 0) {
     if (depth > kDepth) place.fail("no landmarks down to here");
     if (place.value().is_null() || place.size() == 0) return;
     if (is_body(place)) {
-      people.push_back(person_of_body(place));
+      bodies.push_back(body_of(place));
     } else if (place.is_list()) {
-      for (const JsonPlace& body : place.list()) add_bodies(body, people, depth + 1);
+      for (const JsonPlace& body : place.list()) add_bodies(body, bodies, depth + 1);
     } else if (place.is_object()) {
-      if (const auto inside = any_of_keys(place, kBodyKeys)) add_bodies(*inside, people, depth + 1);
+      if (const auto inside = any_of_keys(place, kBodyKeys)) add_bodies(*inside, bodies, depth + 1);
     } else {
       place.fail("neither landmarks nor a list of them");
     }
   }
 
-  SeenPerson person_of_body(const JsonPlace& body) {
-    SeenPerson person;
+  LandmarkBody body_of(const JsonPlace& place) {
+    LandmarkBody body;
     std::vector<std::string> names;
-    if (body.is_list())
-      for (const JsonPlace& landmark : body.list()) add_landmark(landmark, person, names);
-    else
-      for (const std::string& key : keys_by_number(body.keys())) {
-        add_landmark(body[key], person, names);
-        names.push_back(key);
+    if (place.is_list()) {
+      for (const JsonPlace& landmark : place.list()) {
+        add_landmark(landmark, body);
+        if (const auto name = any_of_keys(landmark, kNameKeys)) names.push_back(name->text());
       }
-    if (names.size() == person.x_px.size()) {
-      if (names_.empty()) names_ = names;
-      if (names != names_) body.fail("other landmarks than in the bodies before it");
+    } else {
+      names = keys_by_number(place.keys());
+      for (const std::string& key : names) add_landmark(place[key], body);
     }
-    return person;
+    if (names.size() == body.person.x_px.size()) {
+      if (names_.empty()) names_ = names;
+      if (names != names_) place.fail("other landmarks than in the bodies before it");
+    }
+    return body;
   }
 
-  void add_landmark(const JsonPlace& place, SeenPerson& person, std::vector<std::string>& names) {
+  static void add_landmark(const JsonPlace& place, LandmarkBody& body) {
+    SeenPerson& person = body.person;
     if (place.is_list()) {
       const std::vector<double> numbers = place.numbers();
       if (numbers.size() < 2) place.fail("x and y are needed");
       person.x_px.push_back(numbers[0]);
       person.y_px.push_back(numbers[1]);
       person.confidence.push_back(numbers.size() > 3 ? numbers[3] : 1.0);
-      thirds_.push_back(numbers.size() == 3 ? numbers[2] : -1);
+      body.thirds.push_back(numbers.size() == 3 ? numbers[2] : -1);
       return;
     }
     const JsonPlace at = place.has("position") ? place["position"] : place;
@@ -168,26 +176,33 @@ class LandmarkReader {
     person.y_px.push_back(at["y"].number());
     const auto confidence = any_of_keys(place, kConfidenceKeys);
     person.confidence.push_back(confidence ? confidence->number() : 1.0);
-    thirds_.push_back(-1);
-    for (const char* key : {"name", "part"})
-      if (place.has(key)) {
-        names.push_back(place[key].text());
-        break;
-      }
+    body.thirds.push_back(-1);
   }
 
   /// Of [x, y, number] the number is a confidence if it is never below 0 in the file, else a depth.
-  void judge_third_numbers() {
-    if (std::ranges::any_of(thirds_, [](double third) { return !(third >= 0); })) return;
-    auto third = thirds_.begin();
-    for (auto& [number, frame] : people_.frames)
-      for (SeenPerson& person : frame)
-        for (double& confidence : person.confidence) confidence = *third++;
+  bool thirds_are_confidences() const {
+    for (const auto& [number, frame] : bodies_)
+      for (const LandmarkBody& body : frame)
+        for (const double third : body.thirds)
+          if (!(third >= 0)) return false;
+    return true;
+  }
+
+  void take_bodies() {
+    const bool confidences = thirds_are_confidences();
+    for (auto& [number, frame] : bodies_) {
+      auto& people = people_.frames[number];
+      for (LandmarkBody& body : frame) {
+        if (confidences) body.person.confidence = std::move(body.thirds);
+        mark_missing(body.person);
+        people.push_back(std::move(body.person));
+      }
+    }
   }
 
   std::string file_;
   std::vector<std::string> names_;
-  std::vector<double> thirds_;  ///< in the order in which landmarks were read
+  std::map<long long, std::vector<LandmarkBody>> bodies_;  ///< by the numbers of frames
   SeenPeople people_;
 };
 

@@ -12,6 +12,7 @@
 #include "base/shown.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/csv_text.hpp"
+#include "formats/joint_naming.hpp"
 #include "formats/landmarks.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -95,8 +96,9 @@ class RowsReader {
       names_.emplace_back(name);
   }
 
-  /// Landmarks that are numbers stand in the order of these, the first one being 0 or 1; those that
-  /// were never seen keep their column.
+  /// Landmarks that are numbers stand in the order of these; those that were never seen keep their
+  /// column. They count from 1 where 0 never comes and the last number is a joint count that is
+  /// known: 1 to 17 are 17 joints. Else they count from 0.
   void sort_numbers() {
     std::vector<double> numbers;
     for (const std::string& name : names_) {
@@ -106,12 +108,12 @@ class RowsReader {
     }
     if (numbers.empty()) return;
     numbered_ = true;
-    // 33 landmarks from 1 to 33, not from 0 to 32.
-    const bool from_one =
-        std::ranges::find(numbers, 0) == numbers.end() && *std::ranges::max_element(numbers) == 33;
+    const auto last = static_cast<std::size_t>(*std::ranges::max_element(numbers));
+    const std::size_t first =
+        std::ranges::find(numbers, 0) == numbers.end() && is_joint_count(last) ? 1 : 0;
     for (std::size_t i = 0; i < names_.size(); ++i)
-      columns_[names_[i]] = static_cast<std::size_t>(numbers[i]) - (from_one ? 1 : 0);
-    joints_ = static_cast<std::size_t>(*std::ranges::max_element(numbers)) + (from_one ? 0 : 1);
+      columns_[names_[i]] = static_cast<std::size_t>(numbers[i]) - first;
+    joints_ = last + 1 - first;
   }
 
   /// Whether a frame has a landmark twice: `id` is then the person's number, else the landmark's.

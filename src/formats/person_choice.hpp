@@ -17,6 +17,7 @@ class PersonChoice {
   /// @param person largest, or a number: 1 is the largest of the first frame that shows so many
   /// @throws ConfigError if it is neither
   explicit PersonChoice(const std::string& person);
+  std::size_t number() const { return number_; }
 
   /// @param patience frames for which the person may be unseen  @return none: not in this frame
   std::optional<std::size_t> choose(const std::vector<SeenPerson>& people, double patience);

@@ -7,10 +7,22 @@
 #include <cmath>
 
 #include "base/numbers.hpp"
+#include "formats/frame_numbers.hpp"
+#include "formats/track_source.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
 
 namespace mcdbn {
+
+std::optional<ImageSize> SeenPeople::size_of_image(const TrackReadOptions& options) const {
+  if (options.image_size) return options.image_size;
+  if (image_size && image_size_is_given) return image_size;
+  return options.camera_image ? options.camera_image : image_size;
+}
+
+bool SeenPeople::takes_default_size(const TrackReadOptions& options) const {
+  return !options.image_size && !options.camera_image && image_size && !image_size_is_given;
+}
 
 SeenPeople people_of_set(std::string_view set) {
   SeenPeople people;
@@ -38,6 +50,29 @@ void mark_missing(SeenPerson& person) {
     x = y = kNan;
     c = 0;
   }
+}
+
+SeenPeople people_of_folder(const TrackSource& source,
+                            std::vector<SeenPerson> (*people_of)(const JsonPlace& content)) {
+  std::vector<std::string> names;
+  for (const auto& file : source.json_files()) names.push_back(file.stem().string());
+  const auto numbers = frame_numbers(names);
+  const bool numbered = std::ranges::any_of(numbers, [](const auto& n) { return n.has_value(); });
+  SeenPeople people;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& file = source.json_files()[i];
+    if (numbered && !numbers[i]) {
+      people.notices.push_back(
+          fmt::format("{} has no frame number and is left out", file.filename().string()));
+      continue;
+    }
+    const nlohmann::json content = source.json_of(file);
+    const JsonPlace place(content, file.string());
+    const long long number = numbers[i].value_or(static_cast<long long>(i));
+    if (!people.frames.emplace(number, people_of(place)).second)
+      place.fail(fmt::format("a second file of frame {}; give a folder of one camera", number));
+  }
+  return people;
 }
 
 std::vector<double> numbers_of(const Track2d& track, int frame) {

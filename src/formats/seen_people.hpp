@@ -11,6 +11,8 @@
 
 namespace mcdbn {
 
+class JsonPlace;
+
 /// One person in one frame, each [joints]. A joint that was not seen: NaN and confidence 0.
 struct SeenPerson {
   std::vector<double> x_px, y_px, confidence;
@@ -28,6 +30,12 @@ struct SeenPeople {
   bool image_size_is_given = true;  ///< else image_size is the format's default
   bool in_pixels = false;           ///< else coordinates that are all small are shares of the image
   std::vector<std::string> notices;
+
+  /// The image's size: that of the options, else the file's, else the camera's, else the format's
+  /// default.
+  std::optional<ImageSize> size_of_image(const TrackReadOptions& options) const;
+  /// Whether that is the format's default.
+  bool takes_default_size(const TrackReadOptions& options) const;
 };
 
 /// Joints of one of joint_sets().
@@ -39,6 +47,12 @@ SeenPerson person_of(const std::vector<double>& numbers, std::size_t joints, std
 
 /// Sets x, y and confidence to missing where one of them is.
 void mark_missing(SeenPerson& person);
+
+/// A folder's files as frames, by the numbers in their names. Those without one are left out with
+/// a notice; where none has one the frames are in the order of the names.
+/// @param people_of the content of a file  @throws InputError
+SeenPeople people_of_folder(const TrackSource& source,
+                            std::vector<SeenPerson> (*people_of)(const JsonPlace& content));
 
 /// The joints of a track that a format writes, as rows: x, y, confidence of each joint, 0 0 0 where
 /// it is missing.

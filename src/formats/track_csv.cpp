@@ -16,7 +16,6 @@
 #include "formats/track_formats.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/camera.hpp"
-#include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/motion/frame_rate.hpp"
 
 namespace mcdbn {
@@ -242,17 +241,6 @@ bool recognises(const TrackSource& source) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return false;
-}
-
-/// Whether the columns are a detector's, not a skeleton's: most are called as in one of the joint
-/// sets.
-bool are_a_detectors(const std::vector<std::string>& names) {
-  const auto known = std::ranges::count_if(names, [](const std::string& name) {
-    return std::ranges::any_of(joint_sets(), [&](const JointSet& set) {
-      return std::ranges::find(set.keypoints, name, &Keypoint::name) != set.keypoints.end();
-    });
-  });
-  return 2 * known > static_cast<std::ptrdiff_t>(names.size());
 }
 
 SeenPeople read(const TrackSource& source) {

@@ -103,9 +103,10 @@ class TrackLines::Reader {
     if (!is_known_ && (!json_ || has_person)) learn(seen, people);
     if (!is_known_) return TrackFrame::unseen(0);
     TrackFrame frame = TrackFrame::unseen(like_.joint_count());
-    // Rows are of one person.
-    const auto chosen = !json_ && !people.empty() ? std::optional<std::size_t>(0)
-                                                  : choice_.choose(people, kPatience_s * like_.fps);
+    // Rows are of one person: there is no second.
+    const bool of_one = !json_ && !people.empty() && choice_.number() == 1;
+    const auto chosen =
+        of_one ? std::optional<std::size_t>(0) : choice_.choose(people, kPatience_s * like_.fps);
     if (!chosen) return frame;
     const SeenPerson& person = people[*chosen];
     if (static_cast<Eigen::Index>(person.x_px.size()) != frame.joints())
@@ -121,10 +122,9 @@ class TrackLines::Reader {
   }
 
   void learn(const SeenPeople& seen, const std::vector<SeenPerson>& people) {
-    const std::optional<ImageSize> size =
-        options_.image_size ? options_.image_size : seen.image_size;
+    const std::optional<ImageSize> size = seen.size_of_image(options_);
     if (!size) fail("a frame does not give the image's size: set it with `image-size`");
-    if (!options_.image_size && !seen.image_size_is_given)
+    if (seen.takes_default_size(options_))
       notices_.push_back(
           fmt::format("the track does not give the image's size: {} x {} px are taken; set it with "
                       "`image-size`",

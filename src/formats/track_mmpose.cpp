@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "base/text_file.hpp"
-#include "formats/frame_numbers.hpp"
 #include "formats/joint_naming.hpp"
 #include "formats/track_formats.hpp"
 
@@ -155,28 +154,17 @@ void add_content(SeenPeople& people, const JsonPlace& content) {
     add_list(people, content);
 }
 
-SeenPeople read_folder(const TrackSource& source) {
-  std::vector<std::string> file_names;
-  for (const auto& file : source.json_files()) file_names.push_back(file.stem().string());
-  const auto numbers = frame_numbers(file_names);
-  SeenPeople people;
-  for (std::size_t i = 0; i < file_names.size(); ++i) {
-    const auto& file = source.json_files()[i];
-    const json content = source.json_of(file);
-    const JsonPlace place(content, file.string());
-    SeenPeople image;
-    add_content(image, place);
-    if (image.frames.size() != 1) place.fail("not of one image, as the files of a folder are");
-    const long long number = numbers[i].value_or(static_cast<long long>(i));
-    if (!people.frames.emplace(number, std::move(image.frames.begin()->second)).second)
-      place.fail(fmt::format("a second file of frame {}; give a folder of one camera", number));
-  }
-  return people;
+/// A file of a folder.
+std::vector<SeenPerson> people_of_image(const JsonPlace& content) {
+  SeenPeople image;
+  add_content(image, content);
+  if (image.frames.size() != 1) content.fail("not of one image, as the files of a folder are");
+  return std::move(image.frames.begin()->second);
 }
 
 SeenPeople read(const TrackSource& source) {
   if (source.is_folder()) {
-    SeenPeople people = read_folder(source);
+    SeenPeople people = people_of_folder(source, people_of_image);
     name_joints_by_count(people, source.name());
     return people;
   }

@@ -8,7 +8,6 @@
 #include "formats/frame_numbers.hpp"
 #include "formats/joint_naming.hpp"
 #include "formats/track_formats.hpp"
-#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -52,37 +51,10 @@ std::vector<SeenPerson> people_of(const JsonPlace& frame) {
   return people;
 }
 
-/// @param number of the frame
-void add_file(SeenPeople& people, const TrackSource& source, const fs::path& file,
-              long long number) {
-  const json content = source.json_of(file);
-  if (!people.frames.emplace(number, people_of(JsonPlace(content, file.string()))).second)
-    throw InputError(fmt::format("{}: a second file of frame {}; give a folder of one camera alone",
-                                 file.string(), number));
-}
-
-SeenPeople read_folder(const TrackSource& source) {
-  std::vector<std::string> names;
-  for (const fs::path& file : source.json_files()) names.push_back(file.stem().string());
-  const auto numbers = frame_numbers(names);
-  SeenPeople people;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const fs::path& file = source.json_files()[i];
-    if (numbers[i])
-      add_file(people, source, file, *numbers[i]);
-    else if (names.size() == 1)
-      add_file(people, source, file, 0);
-    else
-      people.notices.push_back(
-          fmt::format("{} has no frame number and is left out", file.filename().string()));
-  }
-  return people;
-}
-
 SeenPeople read(const TrackSource& source) {
   SeenPeople people;
   if (source.is_folder()) {
-    people = read_folder(source);
+    people = people_of_folder(source, people_of);
   } else if (const JsonPlace content = source.json(); content.is_list()) {
     for (const JsonPlace& frame : content.list())
       people.frames.emplace(static_cast<long long>(people.frames.size()), people_of(frame));

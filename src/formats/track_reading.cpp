@@ -37,8 +37,9 @@ void for_each_joint(Frames& frames, const Visit& visit) {
           visit(person.x_px[joint], person.y_px[joint], person.confidence[joint]);
 }
 
-/// The frames in their order, with empty ones where numbers are missing.
-Frames frames_by_number(SeenPeople& seen, std::vector<std::string>& notices) {
+/// The frames in their order, with empty ones where numbers are missing; their numbers and notices
+/// are the reading's.
+Frames frames_by_number(SeenPeople& seen, TrackReading& reading) {
   const long long first = seen.frames.begin()->first, last = seen.frames.rbegin()->first;
   const auto count = static_cast<long long>(seen.frames.size());
   long long step = 0;
@@ -46,16 +47,21 @@ Frames frames_by_number(SeenPeople& seen, std::vector<std::string>& notices) {
   step = std::max(step, 1LL);
   const bool sparse = (last - first) / step >= kSparse * count + kFewFrames;
   if (sparse)
-    notices.push_back(fmt::format(
+    reading.notices.push_back(fmt::format(
         "the numbers of its {} frames run from {} to {}: they are taken one after the other", count,
         first, last));
   else if (step > 1)
-    notices.push_back(fmt::format(
+    reading.notices.push_back(fmt::format(
         "its frames are numbered in steps of {}: they are taken one after the other", step));
   Frames frames(static_cast<std::size_t>(sparse ? count : (last - first) / step + 1));
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    reading.frame_numbers.push_back(first + static_cast<long long>(i) * step);
   std::size_t next = 0;
-  for (auto& [number, people] : seen.frames)
-    frames[sparse ? next++ : static_cast<std::size_t>((number - first) / step)] = std::move(people);
+  for (auto& [number, people] : seen.frames) {
+    const std::size_t at = sparse ? next++ : static_cast<std::size_t>((number - first) / step);
+    frames[at] = std::move(people);
+    reading.frame_numbers[at] = number;
+  }
   return frames;
 }
 
@@ -107,8 +113,8 @@ bool is_about_zero(Frames& frames) {
 ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadOptions& options,
                         const std::string& file, std::vector<std::string>& notices) {
   const Extent extent = extent_of(frames);
-  const std::optional<ImageSize> known = options.image_size ? options.image_size : seen.image_size;
-  if (!options.image_size && seen.image_size && !seen.image_size_is_given)
+  const std::optional<ImageSize> known = seen.size_of_image(options);
+  if (seen.takes_default_size(options))
     notices.push_back(fmt::format(
         "the file does not give the image's size: {} x {} px are taken; set it with `image-size`",
         known->width_px, known->height_px));
@@ -237,9 +243,8 @@ TrackReading tracks_of(SeenPeople seen, const TrackReadOptions& options, const s
   if (seen.frames.empty()) throw InputError(fmt::format("{}: no frames", file));
   TrackReading reading;
   reading.notices = std::move(seen.notices);
-  reading.first_frame = seen.frames.begin()->first;
   if (const JointSet* set = joint_set_of(seen.joint_names)) reading.joint_set = set->name;
-  Frames frames = frames_by_number(seen, reading.notices);
+  Frames frames = frames_by_number(seen, reading);
   for (auto& people : frames)
     std::erase_if(people, [](const SeenPerson& person) {
       return std::ranges::none_of(person.confidence, [](double c) { return c > 0; });

@@ -25,7 +25,7 @@ void write_uncertainty_csv(const std::filesystem::path& path, const Motion& moti
       fmt::format_to(out, ",{}_{}_deviation", joint.name, axis);
   }
   for (Eigen::Index t = 0; t < deviations.rows(); ++t) {
-    fmt::format_to(out, "\n{:.6g}", static_cast<double>(t) * motion.frame_time_s);
+    fmt::format_to(out, "\n{}", time_cell(static_cast<double>(t) * motion.frame_time_s));
     for (const double deviation : deviations.row(t)) fmt::format_to(out, ",{:.4g}", deviation);
   }
   write_text_file(path, text + '\n');

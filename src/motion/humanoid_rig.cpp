@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <string_view>
 
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
@@ -18,6 +19,15 @@ namespace {
 using enum JointRole;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+
+/// What a person has of each side, and the skeleton of a person, too.
+constexpr std::array kPersonsLimbs{std::array{left_hip, left_knee, left_ankle},
+                                   std::array{left_shoulder, left_elbow, left_wrist}};
+constexpr std::string_view kNeckOrHead = "neck or head";
+
+bool lacks_head(const SkeletonRoles& roles) {
+  return !roles.has(neck) && !roles.has(head);
+}
 
 bool turns(const Joint& joint) {
   return std::ranges::any_of(joint.channels, is_rotation);
@@ -316,17 +326,40 @@ HumanoidRig rig_of_person(const Motion& motion, const JointMap& joint_map) {
   std::erase_if(own, [&](const auto& given) { return motion.skeleton.find(given.second) < 0; });
   HumanoidRig rig(motion, skeleton_roles(motion.skeleton, own));
   std::vector<std::string_view> lacking;
-  for (const JointRole left :
-       {left_hip, left_knee, left_ankle, left_shoulder, left_elbow, left_wrist})
-    for (const JointRole role : {left, other_side(left)})
-      if (!rig.roles().has(role)) lacking.push_back(name_of(role));
-  if (!rig.roles().has(neck) && !rig.roles().has(head)) lacking.emplace_back("neck or head");
+  for (const auto& limb : kPersonsLimbs)
+    for (const JointRole left : limb)
+      for (const JointRole role : {left, other_side(left)})
+        if (!rig.roles().has(role)) lacking.push_back(name_of(role));
+  if (lacks_head(rig.roles())) lacking.push_back(kNeckOrHead);
   if (!lacking.empty())
     throw InputError(fmt::format(
         "no joint is known to be {}: this cannot be brought onto the humanoid; name its joints in "
         "a joint map, or leave the file out",
         fmt::join(lacking, ", ")));
   return rig;
+}
+
+std::vector<JointRole> lost_roles(const SkeletonRoles& roles) {
+  std::vector<JointRole> lost;
+  std::vector<std::string_view> whole;
+  for (const auto& limb : kPersonsLimbs)
+    for (const bool right : {false, true}) {
+      std::vector<JointRole> unknown;
+      for (const JointRole left : limb)
+        if (const JointRole role = right ? other_side(left) : left; !roles.has(role))
+          unknown.push_back(role);
+      if (unknown.size() == limb.size())
+        for (const JointRole role : unknown) whole.push_back(name_of(role));
+      lost.insert(lost.end(), unknown.begin(), unknown.end());
+    }
+  if (lacks_head(roles)) whole.push_back(kNeckOrHead);
+  if (!whole.empty())
+    throw InputError(fmt::format(
+        "no joint is known to be {}: a person's motion cannot be put on this skeleton; name its "
+        "joints in a joint map",
+        fmt::join(whole, ", ")));
+  if (!roles.has(spine) && !roles.has(chest)) lost.push_back(spine);
+  return lost;
 }
 
 }  // namespace mcdbn

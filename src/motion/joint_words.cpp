@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <utility>
 
 namespace mcdbn {
 namespace {
@@ -16,11 +17,12 @@ using enum JointWord;
 
 /// Joints in the middle, as their names read without anything but letters.
 constexpr std::array kMiddle{
-    WordSpelling{"hips", hips},     WordSpelling{"hip", hips},
-    WordSpelling{"pelvis", hips},   WordSpelling{"midhip", hips},
-    WordSpelling{"neck", neck},     WordSpelling{"lowerneck", neck},
-    WordSpelling{"neckbase", neck}, WordSpelling{"upperneck", neck},
-    WordSpelling{"head", head},     WordSpelling{"skull", head},
+    WordSpelling{"hips", hips},      WordSpelling{"hip", hips},
+    WordSpelling{"pelvis", hips},    WordSpelling{"midhip", hips},
+    WordSpelling{"neck", neck},      WordSpelling{"lowerneck", neck},
+    WordSpelling{"neckbase", neck},  WordSpelling{"upperneck", neck},
+    WordSpelling{"necklower", neck}, WordSpelling{"neckupper", neck},
+    WordSpelling{"head", head},      WordSpelling{"skull", head},
 };
 
 /// Joints of the sides, likewise, without the side.
@@ -34,8 +36,12 @@ constexpr std::array kSided{
     WordSpelling{"uparm", upper_arm},
     WordSpelling{"humerus", upper_arm},
     WordSpelling{"shldr", upper_arm},
+    WordSpelling{"shldrbend", upper_arm},
     WordSpelling{"arm", arm},
+    WordSpelling{"armstretch", arm},
     WordSpelling{"forearm", forearm},
+    WordSpelling{"forearmbend", forearm},
+    WordSpelling{"forearmstretch", forearm},
     WordSpelling{"lowerarm", forearm},
     WordSpelling{"lowarm", forearm},
     WordSpelling{"elbow", forearm},
@@ -51,10 +57,13 @@ constexpr std::array kSided{
     WordSpelling{"middle", fingers},
     WordSpelling{"hip", hip},
     WordSpelling{"thigh", thigh},
+    WordSpelling{"thighbend", thigh},
+    WordSpelling{"thighstretch", thigh},
     WordSpelling{"upleg", thigh},
     WordSpelling{"upperleg", thigh},
     WordSpelling{"femur", thigh},
     WordSpelling{"leg", leg},
+    WordSpelling{"legstretch", leg},
     WordSpelling{"shin", shin},
     WordSpelling{"calf", shin},
     WordSpelling{"shank", shin},
@@ -69,6 +78,13 @@ constexpr std::array kSided{
     WordSpelling{"toebase", toe},
     WordSpelling{"ball", toe},
 };
+
+/// Words that programs put before the names of joints, also where others stand beside them.
+constexpr std::array<std::string_view, 5> kProgramWords{"j", "bip", "def", "mixamorig",
+                                                        "valvebiped"};
+
+/// Letters that mark the middle, where l and r mark the sides: VRM's, Maya's, Auto-Rig Pro's.
+constexpr std::string_view kMiddleMarks = "cmx";
 
 template <std::size_t count>
 std::optional<JointWord> look_up(const std::array<WordSpelling, count>& words,
@@ -114,6 +130,33 @@ std::size_t common_start(const std::vector<std::string>& texts) {
   return separator == std::string::npos ? 0 : separator + 1;
 }
 
+/// The text without the words of kProgramWords, and the digits at their ends, at its beginning.
+std::string without_program(std::string text) {
+  for (;;) {
+    const auto end = text.find(' ');
+    if (end == std::string::npos) return text;
+    std::string_view word = std::string_view(text).substr(0, end);
+    while (!word.empty() && !is_letter(word.back())) word.remove_suffix(1);
+    if (std::ranges::find(kProgramWords, word) == kProgramWords.end()) return text;
+    text.erase(0, end + 1);
+  }
+}
+
+/// Whether a letter stands between blanks or ends.
+bool stands_alone(std::string_view text, std::size_t at) {
+  return (at == 0 || text[at - 1] == ' ') && (at + 1 == text.size() || text[at + 1] == ' ');
+}
+
+std::optional<JointWord> middle(const std::string& text) {
+  if (const auto word = look_up(kMiddle, letters_of(text))) return word;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (kMiddleMarks.find(text[at]) == std::string_view::npos || !stands_alone(text, at)) continue;
+    std::string rest = text;
+    if (const auto word = look_up(kMiddle, letters_of(rest.erase(at, 1)))) return word;
+  }
+  return {};
+}
+
 /// The sided word left when the `length` letters from `at` that mark the side are taken out.
 std::optional<NamedJoint> sided(const std::string& text, std::size_t at, std::size_t length,
                                 Side side) {
@@ -133,9 +176,7 @@ std::optional<NamedJoint> sided(const std::string& text) {
     if (text.front() == letter)
       if (const auto found = sided(text, 0, 1, side)) return found;
     for (std::size_t at = 1; at < text.size(); ++at) {
-      const bool alone = text[at] == letter && text[at - 1] == ' ' &&
-                         (at + 1 == text.size() || text[at + 1] == ' ');
-      if (!alone) continue;
+      if (text[at] != letter || !stands_alone(text, at)) continue;
       if (const auto found = sided(text, at, 1, side)) return found;
     }
   }
@@ -153,10 +194,10 @@ std::vector<std::optional<NamedJoint>> named_joints(const std::vector<std::strin
   for (std::string& text : texts) {
     if (&text != &texts.front() || text.starts_with(texts.back().substr(0, start)))
       text.erase(0, std::min(start, text.size()));
+    text = without_program(std::move(text));
     std::optional<NamedJoint> joint;
     if (!text.empty()) joint = sided(text);
-    if (const auto word = look_up(kMiddle, letters_of(text)); !joint && word)
-      joint = NamedJoint{*word, Side::middle};
+    if (const auto word = middle(text); !joint && word) joint = NamedJoint{*word, Side::middle};
     joints.push_back(joint);
   }
   return joints;

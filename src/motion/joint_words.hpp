@@ -38,7 +38,8 @@ struct NamedJoint {
 };
 
 /// Words and sides of the names, one entry a joint; none without a known word. What stands before a
-/// colon, what all names begin with (`Bip01_`) and digits at the end do not count.
+/// colon, what all names begin with (`Bip01_`), what programs put before them (`J_Bip_`), marks of
+/// the middle (`C_`, `_M`, `.x`) and digits at the end do not count.
 std::vector<std::optional<NamedJoint>> named_joints(const std::vector<std::string>& names);
 
 }  // namespace mcdbn

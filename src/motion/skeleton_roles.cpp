@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <string_view>
 
 #include "mcdbn/base/errors.hpp"
 #include "motion/joint_words.hpp"
@@ -156,6 +158,39 @@ void add_pelvis(const Skeleton& skeleton, SkeletonRoles& roles) {
   roles.set(pelvis, joint);
 }
 
+/// The name without the number at its end: `spine` of `spine.004`.
+std::string_view without_number(std::string_view name) {
+  while (!name.empty() && std::isalpha(static_cast<unsigned char>(name.back())) == 0)
+    name.remove_suffix(1);
+  return name;
+}
+
+/// The child called as the joint itself, but for the number, or -1.
+int next_of_name(const Skeleton& skeleton, int joint) {
+  for (int j = joint + 1; j < skeleton.joint_count(); ++j)
+    if (skeleton.joints[j].parent == joint &&
+        without_number(skeleton.joints[j].name) == without_number(skeleton.joints[joint].name))
+      return j;
+  return kNone;
+}
+
+/// Blender's Rigify counts neck and head on with the spine: they are what goes on by its name above
+/// the joint where both arms meet.
+void add_numbered_head(const Skeleton& skeleton, SkeletonRoles& roles) {
+  const int left = roles.joint(left_shoulder), right = roles.joint(right_shoulder);
+  if (roles.has(neck) || roles.has(head) || left == kNone || right == kNone) return;
+  int joint = skeleton.joints[left].parent;
+  while (joint != kNone && !is_ancestor(skeleton, joint, right))
+    joint = skeleton.joints[joint].parent;
+  const bool is_trunk = joint != kNone && joint > roles.joint(pelvis);
+  if (!is_trunk) return;
+  std::vector<int> above;
+  while ((joint = next_of_name(skeleton, joint)) != kNone) above.push_back(joint);
+  if (above.empty()) return;
+  roles.set(head, above.back());
+  if (above.size() > 1) roles.set(neck, above.front());
+}
+
 /// Between pelvis and neck: the chest is the last joint, the spine the first that is not where the
 /// pelvis is.
 void add_trunk(const Skeleton& skeleton, SkeletonRoles& roles) {
@@ -210,11 +245,22 @@ std::vector<JointRole> SkeletonRoles::missing() const {
   return roles;
 }
 
+SkeletonRoles roles_by_name(const std::vector<std::string>& names) {
+  Skeleton skeleton;
+  for (const std::string& name : names) {
+    skeleton.joints.emplace_back();
+    skeleton.joints.back().name = name;
+    skeleton.joints.back().parent = skeleton.joint_count() > 1 ? 0 : -1;
+  }
+  return roles_by_name(skeleton);
+}
+
 SkeletonRoles skeleton_roles(const Skeleton& skeleton, const JointMap& given) {
   SkeletonRoles roles = roles_by_name(skeleton);
   add_chains(skeleton, roles);
   set_given(skeleton, given, roles);
   add_pelvis(skeleton, roles);
+  add_numbered_head(skeleton, roles);
   add_trunk(skeleton, roles);
   return roles;
 }

@@ -135,6 +135,61 @@ TEST_CASE("projection: a joint behind the camera is missing, the others are not"
   CHECK(track.find("nobody") == -1);
 }
 
+TEST_CASE("a camera of scaled images sees the same, smaller") {
+  const Camera camera = odd_camera();
+  std::vector<std::string> notices;
+  const Camera half = of_scaled_images(camera, camera.width_px / 2, camera.height_px / 2, &notices);
+  CHECK(notices.size() == 1);
+  CHECK(half.width_px == camera.width_px / 2);
+  MatrixD points(1, 6);
+  points << 1, 2, 3, -40, 55, 60;
+  const double x = static_cast<double>(half.width_px) / camera.width_px,
+               y = static_cast<double>(half.height_px) / camera.height_px;
+  const MatrixD wanted = project_points(camera, points), pixels = project_points(half, points);
+  for (int joint = 0; joint < 2; ++joint) {
+    CHECK(pixels(0, 2 * joint) == doctest::Approx(x * wanted(0, 2 * joint)));
+    CHECK(pixels(0, 2 * joint + 1) == doctest::Approx(y * wanted(0, 2 * joint + 1)));
+  }
+  of_scaled_images(camera, camera.width_px, camera.height_px, &notices);
+  CHECK(notices.size() == 1);
+  CHECK_THROWS_WITH_AS(
+      of_scaled_images(camera, 720, 1280),
+      "its images are 720 x 1280 px, those of the camera 1280 x 720 px, which is another shape",
+      InputError);
+}
+
+TEST_CASE("a camera whose size is a guess takes that of the images, but not scaled ones") {
+  Camera camera;
+  camera.cx_px = 981;
+  camera.cy_px = 532;
+  camera.width_px = 1962;
+  camera.height_px = 1064;
+  camera.size_is_guess = true;
+  std::vector<std::string> notices;
+  const Camera own = of_scaled_images(camera, 1920, 1080, &notices);
+  CHECK(own.width_px == 1920);
+  CHECK(own.height_px == 1080);
+  CHECK(own.cx_px == 981);
+  CHECK(own.fx_px == camera.fx_px);
+  CHECK(notices.empty());
+  CHECK_THROWS_AS(of_scaled_images(camera, 960, 540), InputError);
+  CHECK_THROWS_AS(of_scaled_images(camera, 3840, 2160), InputError);
+}
+
+TEST_CASE("a camera's units: those of its motion, given in metres, are those of another motion") {
+  const Skeleton skeleton = test::small_body();
+  Skeleton large = skeleton;
+  for (Joint& joint : large.joints) joint.offset *= 5.64;
+  Camera camera;
+  camera.translation << 1, 2, 3;
+  const Camera written = with_unit(camera, skeleton);
+  REQUIRE(written.unit_m.has_value());
+  CHECK(in_file_units(written, skeleton).translation.isApprox(camera.translation, 1e-12));
+  CHECK(in_file_units(written, large).translation.isApprox(5.64 * camera.translation, 1e-9));
+  camera.unit_m = 0.5;
+  CHECK(with_unit(camera, skeleton).unit_m == 0.5);
+}
+
 TEST_CASE("placed camera: real clips fit into the image") {
   for (const char* relative :
        {"cmu/walk/02_01.bvh", "bandai/wave_both_hands/dataset-2_wave-both-hands_normal_001.bvh",

@@ -157,7 +157,14 @@ TEST_CASE("keypoint map: too little of a body is refused") {
                        InputError);
   Keypoint nothing;
   nothing.name = "tail";
-  CHECK_THROWS_AS(scene.map({nothing}), InputError);
+  CHECK_THROWS_WITH_AS(scene.map({nothing}),
+                       doctest::Contains("0 of the model's joints; at least 3 are needed, the "
+                                         "pelvis or both hips among them; its columns 'tail' are "
+                                         "no known joints: call them as"),
+                       InputError);
+  CHECK_THROWS_WITH_AS(scene.map(std::vector<Keypoint>(7, nothing)),
+                       doctest::Contains("'tail', 'tail', 'tail', 'tail', 'tail', … are"),
+                       InputError);
   CHECK_THROWS_AS(scene.map({}), InputError);
   const KeypointMap map = scene.map(coco_keypoints());
   Motion shorter = scene.motion;

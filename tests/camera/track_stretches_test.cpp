@@ -32,6 +32,19 @@ void move(Track2d& track, int first, int frames, double heights) {
 
 }  // namespace
 
+TEST_CASE("stretches: frames that show nobody are those without any joint") {
+  Track2d track = walking(20);
+  CHECK(frames_of_nobody(track).empty());
+  track.confidence.topRows(3).setZero();
+  track.confidence.row(8).setZero();
+  track.confidence.row(10).head(4).setZero();  // a foot is left
+  track.confidence.bottomRows(1).setZero();
+  CHECK(frames_of_nobody(track) == std::vector<FrameRange>{{0, 3}, {8, 1}, {19, 1}});
+  track.confidence.setZero();
+  CHECK(frames_of_nobody(track) == std::vector<FrameRange>{{0, 20}});
+  CHECK(frames_of_nobody(walking(0)).empty());
+}
+
 TEST_CASE("stretches: a person who goes on is one, whatever joints come and go") {
   Track2d track = walking(90);
   CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 90}});

@@ -141,11 +141,20 @@ TEST_CASE("camera formats: EasyMocap's two files are found from either") {
     CHECK(rig.cameras[0].name == "1");
     CHECK(camera.fy_px == 901);
     CHECK(camera.width_px == 1920);
+    CHECK(camera.size_is_guess);
     CHECK(camera.height_px == 1080);
     CHECK(camera.distortion.size() == 5);
     CHECK((centre_m(camera) - Eigen::Vector3d(0, 1.2, 3)).norm() < 1e-9);
     CHECK((up_of(camera) - Eigen::Vector3d(0, -1, 0)).norm() < 1e-9);
+    REQUIRE(rig.assumed.size() == 2);
+    CHECK(rig.assumed[1].find("no image size") != std::string::npos);
   }
+  const CameraRig sized =
+      read_cameras(folder.write("intri.yml", read_text_file(intri) + "W_1: 1280\nH_1: 720\n"));
+  CHECK(sized.cameras[0].camera.width_px == 1280);
+  CHECK(sized.cameras[0].camera.height_px == 720);
+  CHECK_FALSE(sized.cameras[0].camera.size_is_guess);
+  CHECK(sized.assumed.size() == 1);
 }
 
 TEST_CASE("camera formats: Qualisys' pixels are 64ths, its camera looks backwards with y up") {
@@ -168,6 +177,14 @@ TEST_CASE("camera formats: Qualisys' pixels are 64ths, its camera looks backward
   CHECK(rig.assumed.size() == 2);
   check_as_section(rig.cameras[0].camera, 0.001);
   CHECK(rig.cameras[0].camera.distortion[3] == doctest::Approx(0.002));
+  // A part of the sensor: the principal point still counts from the sensor's corner.
+  std::string part = text;
+  const std::string whole_view = "left=\"0\" right=\"1279\" top=\"0\" bottom=\"719\"";
+  part.replace(part.find(whole_view), whole_view.size(),
+               "left=\"320\" right=\"1599\" top=\"180\" bottom=\"899\"");
+  part.replace(part.find("40336"), 5, std::to_string(40336 + 64 * 320));
+  part.replace(part.find("22448"), 5, std::to_string(22448 + 64 * 180));
+  check_as_section(read_camera(folder.write("part.qca.txt", part)), 0.001);
   std::string broken = text;
   broken.replace(broken.find("r33=\"0\""), 7, "r33=\"1\"");
   CHECK_THROWS_WITH_AS(read_cameras(folder.write("b.txt", broken)),

@@ -22,13 +22,18 @@ const LayoutSample& sample_called(const std::string& name) {
   return *std::ranges::find(layout_samples(), name, &LayoutSample::name);
 }
 
-/// A folder of OpenPose's files of these names.
-std::filesystem::path openpose_folder(const ScratchFolder& folder, const std::string& name,
-                                      const std::vector<std::string>& files) {
+/// A folder of files of these names.
+std::filesystem::path folder_of(const std::string& sample, const ScratchFolder& folder,
+                                const std::string& name, const std::vector<std::string>& files) {
   std::filesystem::create_directory(folder / name);
   for (const std::string& file : files)
-    std::ofstream(folder / name / file) << sample_called("frame_0007_keypoints.json").text;
+    std::ofstream(folder / name / file) << sample_called(sample).text;
   return folder / name;
+}
+
+std::filesystem::path openpose_folder(const ScratchFolder& folder, const std::string& name,
+                                      const std::vector<std::string>& files) {
+  return folder_of("frame_0007_keypoints.json", folder, name, files);
 }
 
 bool reports(const TrackReading& reading, const std::string& what) {
@@ -51,7 +56,7 @@ TEST_CASE("frame numbers: gaps are missing joints, steps are none") {
   const ScratchFolder folder;
   const TrackReading gap =
       read_tracks(openpose_folder(folder, "gap", {"f_003.json", "f_004.json", "f_006.json"}));
-  CHECK(gap.first_frame == 3);
+  CHECK(gap.frame_numbers == std::vector<long long>{3, 4, 5, 6});
   REQUIRE(gap.people.front().frames() == 4);
   CHECK((gap.people.front().confidence.row(2).array() == 0).all());
   CHECK((gap.people.front().confidence.row(3).array() > 0).any());
@@ -59,23 +64,32 @@ TEST_CASE("frame numbers: gaps are missing joints, steps are none") {
   const TrackReading steps =
       read_tracks(openpose_folder(folder, "steps", {"f_000.json", "f_005.json", "f_010.json"}));
   CHECK(steps.people.front().frames() == 3);
+  CHECK(steps.frame_numbers == std::vector<long long>{0, 5, 10});
   CHECK(reports(steps, "steps of 5"));
 
   const TrackReading images = read_tracks(
       openpose_folder(folder, "images", {"f_000785.json", "f_040083.json", "f_196141.json"}));
   CHECK(images.people.front().frames() == 3);
+  CHECK(images.frame_numbers == std::vector<long long>{785, 40083, 196141});
   CHECK(reports(images, "one after the other"));
 }
 
 TEST_CASE("frame numbers: names that have none are left out with a notice, doubles refused") {
   const ScratchFolder folder;
-  const TrackReading odd =
-      read_tracks(openpose_folder(folder, "odd", {"f_1.json", "f_2.json", "front.json"}));
-  CHECK(odd.people.front().frames() == 2);
-  CHECK(reports(odd, "front.json has no frame number"));
-  const auto doubles = openpose_folder(folder, "doubles", {"a_1.json", "b_1.json", "b_2.json"});
-  CHECK_THROWS_WITH_AS(read_track(doubles), doctest::Contains("a second file of frame 1"),
-                       InputError);
+  for (const std::string sample : {"frame_0007_keypoints.json", "mmpose_image.json"}) {
+    CAPTURE(sample);
+    const TrackReading odd = read_tracks(
+        folder_of(sample, folder, "odd_" + sample, {"f_1.json", "f_2.json", "front.json"}));
+    CHECK(odd.people.front().frames() == 2);
+    CHECK(reports(odd, "front.json has no frame number"));
+    const TrackReading none =
+        read_tracks(folder_of(sample, folder, "none_" + sample, {"a.json", "b.json"}));
+    CHECK(none.people.front().frames() == 2);
+    const auto doubles =
+        folder_of(sample, folder, "doubles_" + sample, {"a_1.json", "b_1.json", "b_2.json"});
+    CHECK_THROWS_WITH_AS(read_track(doubles), doctest::Contains("a second file of frame 1"),
+                         InputError);
+  }
   CHECK_THROWS_WITH_AS(read_track(openpose_folder(folder, "empty", {})),
                        doctest::Contains("no .json files"), InputError);
 }

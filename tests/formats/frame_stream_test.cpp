@@ -30,7 +30,7 @@ TEST_CASE("frame stream: a BVH's number of frames and bones are written when the
   const auto stream = bvh_stream(out, 25, true);
   for (Eigen::Index t = 0; t < 12; ++t) {
     stream->write(longer(motion.skeleton, 1 + 0.01 * static_cast<double>(t)),
-                  motion.channels.row(t));
+                  motion.channels.row(t), true);
     // Whoever reads it while it grows finds all frames so far, behind a number that is 1.
     std::vector<std::string> warnings;
     if (t == 3) CHECK(out.str().find("Frames: 1 ") != std::string::npos);
@@ -55,7 +55,8 @@ TEST_CASE("frame stream: a BVH that cannot be written again keeps its first bone
   std::stringstream out;
   const auto stream = bvh_stream(out, 30, false);
   for (Eigen::Index t = 0; t < 3; ++t)
-    stream->write(longer(motion.skeleton, 1 + static_cast<double>(t)), motion.channels.row(t));
+    stream->write(longer(motion.skeleton, 1 + static_cast<double>(t)), motion.channels.row(t),
+                  true);
   const std::string before = out.str();
   stream->finish();
   CHECK(out.str() == before);
@@ -71,7 +72,7 @@ TEST_CASE("frame stream: places as CSV and JSON lines, on the frame's own bones"
   const auto rows = csv_stream(csv, 50), lines = json_stream(json, 50);
   for (Eigen::Index t = 0; t < 4; ++t)
     for (FrameStream* stream : {rows.get(), lines.get()})
-      stream->write(longer(motion.skeleton, t == 2 ? 2 : 1), motion.channels.row(t));
+      stream->write(longer(motion.skeleton, t == 2 ? 2 : 1), motion.channels.row(t), t != 3);
   Motion other = motion;
   other.skeleton = longer(motion.skeleton, 2);
   const double x = joint_positions(other)(2, 3 * 4 + 1);  // LFoot's y
@@ -91,11 +92,27 @@ TEST_CASE("frame stream: places as CSV and JSON lines, on the frame's own bones"
   CHECK(frame.at("joints").at("LFoot").at(1).get<double>() == doctest::Approx(x));
   CHECK(frame.at("channels").size() == static_cast<std::size_t>(motion.channels.cols()));
   CHECK(frame.at("channels").at(5).get<double>() == doctest::Approx(motion.channels(2, 5)));
+  CHECK(frame.at("seen") == true);
+  REQUIRE(std::getline(json, line));
+  CHECK(nlohmann::json::parse(line).at("seen") == false);
+}
+
+TEST_CASE("frame stream: every frame has a time of its own, hours after the first, too") {
+  Skeleton skeleton;
+  skeleton.joints = {make_joint("Hips", -1, {0, 0, 0}, {z_rotation})};
+  std::stringstream out;
+  const auto rows = csv_stream(out, 30);
+  for (int t = 0; t <= 300'001; ++t) rows->write(skeleton, RowVectorD::Zero(1), true);
+  const std::string text = out.str();
+  for (const char* start :
+       {"\n0,0,", "\n1,0.0333333,", "\n300000,10000,", "\n300001,10000.0333333,"})
+    CHECK(text.find(start) != std::string::npos);
 }
 
 TEST_CASE("frame stream: what cannot be written is reported") {
   std::stringstream out;
   out.setstate(std::ios::badbit);
   const Motion motion = swinging(small_body(), 1);
-  CHECK_THROWS_AS(csv_stream(out, 30)->write(motion.skeleton, motion.channels.row(0)), InputError);
+  CHECK_THROWS_AS(csv_stream(out, 30)->write(motion.skeleton, motion.channels.row(0), true),
+                  InputError);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/scratch_folder.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/formats/track_file.hpp"
 
 using namespace mcdbn;
@@ -106,6 +107,44 @@ TEST_CASE("track details: third numbers are confidences unless one of them is be
   CHECK(of(-0.75).confidence(1, 16) == 1);
 }
 
+TEST_CASE("track details: third numbers are those of their frames, in whatever order these stand") {
+  const ScratchFolder folder;
+  json by_number = json::object(), rising = json::array(), falling = json::array();
+  for (int frame = 0; frame < 12; ++frame) {
+    json landmarks = json::array();
+    for (int joint = 0; joint < 17; ++joint)
+      landmarks.push_back({200 + 10.0 * joint, 100.0 + joint, (1.0 + frame) / 16});
+    by_number[std::to_string(frame)] = landmarks;
+    rising.push_back({{"frame", frame}, {"landmarks", landmarks}});
+    falling.insert(falling.begin(), rising.back());
+  }
+  for (const json& content : {by_number, rising, falling}) {
+    const Track2d track = read_track(folder.write("film.json", content.dump()));
+    REQUIRE(track.frames() == 12);
+    for (int frame = 0; frame < 12; ++frame) {
+      CAPTURE(frame);
+      CHECK((track.confidence.row(frame).array() == (1.0 + frame) / 16).all());
+    }
+  }
+}
+
+TEST_CASE("track details: landmarks under their names may have a name beside x and y, too") {
+  const ScratchFolder folder;
+  json named = json::object(), twice = json::object();
+  for (const Keypoint& keypoint : joint_set("COCO_17").keypoints) {
+    const double at = 200.0 + 10 * static_cast<double>(named.size());
+    named[keypoint.name] = twice[keypoint.name] = {{"x", at}, {"y", 2 * at}};
+    twice[keypoint.name]["name"] = keypoint.name;
+  }
+  const TrackReading once = read_tracks(folder.write("named.json", json::array({named}).dump())),
+                     both = read_tracks(folder.write("twice.json", json::array({twice}).dump()));
+  REQUIRE(once.joint_set == "COCO_17");
+  REQUIRE(both.joint_set == "COCO_17");
+  CHECK(once.people.front().x_px(0, 16) == 360);
+  CHECK(both.people.front().x_px == once.people.front().x_px);
+  CHECK(both.people.front().y_px == once.people.front().y_px);
+}
+
 TEST_CASE("track details: of two confidences in columns the first counts") {
   const ScratchFolder folder;
   std::string header = "frame", row = "0";
@@ -123,7 +162,7 @@ TEST_CASE("track details: labelled images are frames by the numbers in their nam
   const TrackReading labels = read_tracks(
       folder.write("labels.csv", header + "cam2/img0010_a1.png,5,6\ncam2/img0012_a1.png,7,8\n"
                                           "cam2/img0013_a1.png,7,9\n"));
-  CHECK(labels.first_frame == 10);
+  CHECK(labels.frame_numbers == std::vector<long long>{10, 11, 12, 13});
   REQUIRE(labels.people.front().frames() == 4);
   CHECK(labels.people.front().confidence(1, 0) == 0);
   CHECK(labels.people.front().y_px(3, 0) == 9);

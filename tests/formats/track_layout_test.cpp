@@ -1,5 +1,6 @@
 // The layouts of tools, and what is wrong with files that are nearly of one.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +29,16 @@ void check_joints(const Track2d& track, const std::string& joint_set, int nose) 
           doctest::Approx(figure.x_px(0, joint) - figure.x_px(0, nose)));
     CHECK(track.y_px(0, joint) == doctest::Approx(figure.y_px(0, joint)));
   }
+}
+
+/// Rows of a figure's landmarks, numbered from `first`, without those before `seen_from`.
+std::string numbered_rows(const Track2d& figure, int first, int seen_from = 0) {
+  std::string text = "frame,landmark,x,y\n";
+  for (int frame = 0; frame < figure.frames(); ++frame)
+    for (int joint = seen_from; joint < figure.joint_count(); ++joint)
+      text += fmt::format("{},{},{},{}\n", frame, first + joint, figure.x_px(frame, joint),
+                          figure.y_px(frame, joint));
+  return text;
 }
 
 }  // namespace
@@ -215,19 +226,26 @@ TEST_CASE("layouts: lists in lists without end are refused") {
   CHECK_THROWS_AS(read_track(folder.write("deep.json", deep)), InputError);
 }
 
-TEST_CASE("layouts: 33 landmarks numbered from 1 are those numbered from 0") {
+TEST_CASE("layouts: landmarks numbered from 1 are those numbered from 0") {
   const ScratchFolder folder;
-  std::string from_zero = "frame,landmark,x,y\n", from_one = from_zero;
-  for (int joint = 0; joint < 33; ++joint) {
-    const double at = 0.1 + 0.02 * joint;
-    from_zero += "0," + std::to_string(joint) + "," + std::to_string(at) + ",0.5\n";
-    from_one += "0," + std::to_string(joint + 1) + "," + std::to_string(at) + ",0.5\n";
+  for (const char* set : {"COCO_17", "BODY_25", "MEDIAPIPE_33"}) {
+    const Track2d figure = sample_figure(set);
+    for (const int first : {0, 1}) {
+      CAPTURE(set);
+      CAPTURE(first);
+      const TrackReading reading =
+          read_tracks(folder.write("rows.csv", numbered_rows(figure, first)));
+      CHECK(reading.joint_set == set);
+      CHECK(reading.people.front().x_px == figure.x_px);
+      CHECK(reading.people.front().y_px == figure.y_px);
+    }
   }
-  const Track2d zero = read_track(folder.write("zero.csv", from_zero));
-  const Track2d one = read_track(folder.write("one.csv", from_one));
-  REQUIRE(one.joint_names == zero.joint_names);
-  CHECK(one.x_px == zero.x_px);
-  CHECK(zero.x_px(0, 32) == doctest::Approx(1920 * 0.74));
+  // 1 to 16 are those of 17 of which the first was never seen.
+  const Track2d rest =
+      read_track(folder.write("rest.csv", numbered_rows(sample_figure("COCO_17"), 0, 1)));
+  CHECK(rest.joint_count() == 17);
+  CHECK(rest.confidence.col(0).maxCoeff() == 0);
+  CHECK(rest.confidence.col(1).minCoeff() == 1);
 }
 
 TEST_CASE("layouts: an image's size that is given holds for pixels and for shares of it") {
@@ -255,6 +273,16 @@ TEST_CASE("layouts: an image's size that is given holds for pixels and for share
     CHECK(pixels.x_px.col(0).isApprox(track.x_px.col(0), 1e-6));
     for (const std::string& notice : notices) CHECK(notice.find("size") == std::string::npos);
   }
+  // A camera's size holds where neither the options nor the file give one.
+  const TrackReadOptions seen_by{.camera_image = ImageSize{800, 600}};
+  folder.write("sized.csv", "# width_px=640 height_px=480\n" + text);
+  CHECK(read_track(folder / "sized.csv", seen_by).width_px == 640);
+  TrackReadOptions given = seen_by;
+  given.image_size = ImageSize{320, 240};
+  CHECK(read_track(folder / "sized.csv", given).width_px == 320);
+  std::vector<std::string> of_camera;
+  CHECK(read_track(folder / "pixels.csv", seen_by, &of_camera).width_px == 800);
+  for (const std::string& notice : of_camera) CHECK(notice.find("size") == std::string::npos);
   std::vector<std::string> notices;
   CHECK(read_track(folder / "pixels.csv", {}, &notices).width_px == 1920);
   CHECK(notices.front().find("1920 x 1080 px are taken") != std::string::npos);

@@ -93,6 +93,18 @@ TEST_CASE("track lines: our CSV, its header first, gaps missing") {
   CHECK(lines.take_notices().empty());
 }
 
+TEST_CASE("track lines: the image's size is the options', the line's, or the camera's") {
+  const auto width = [](const TrackReadOptions& options, const std::string& text) {
+    TrackLines lines("pipe", options);
+    read_all(lines, text);
+    return lines.like().width_px;
+  };
+  const TrackReadOptions seen_by{.camera_image = ImageSize{800, 600}};
+  CHECK(width(seen_by, kCsv) == 640);
+  CHECK(width(seen_by, people_line({300})) == 800);
+  CHECK(width(of_image(), kCsv) == 1280);
+}
+
 TEST_CASE("track lines: every JSON format's frames are what its file is read as") {
   const ScratchFolder folder;
   for (const char* format : {"openpose", "mmpose"}) {

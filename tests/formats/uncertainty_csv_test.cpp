@@ -33,6 +33,17 @@ TEST_CASE("uncertainty csv: a header, then a line a frame with its time") {
         "0.04,0.1235,4,1e-06\n");
 }
 
+TEST_CASE("uncertainty csv: every frame has a time of its own, hours after the first, too") {
+  const test::ScratchFolder folder;
+  Motion motion = two_frames("Hips");
+  motion.frame_time_s = 1.0 / 30;
+  motion.channels = MatrixD::Zero(300'002, 1);
+  write_uncertainty_csv(folder / "long.csv", motion, MatrixD::Zero(300'002, 3));
+  const std::string text = read_text_file(folder / "long.csv");
+  CHECK(text.find("\n0.0333333,0,0,0\n") != std::string::npos);
+  CHECK(text.ends_with("\n10000,0,0,0\n10000.0333333,0,0,0\n"));
+}
+
 TEST_CASE("uncertainty csv: names that a header cannot hold, and other shapes, are refused") {
   const test::ScratchFolder folder;
   CHECK_THROWS_AS(write_uncertainty_csv(folder / "a.csv", two_frames("a,b"), MatrixD::Zero(2, 3)),

@@ -218,6 +218,22 @@ TEST_CASE("a rig: what is no person is refused in words") {
   CHECK_THROWS_WITH_AS(HumanoidRig{motion}, doctest::Contains("pelvis"), InputError);
 }
 
+TEST_CASE("a rig: what a skeleton cannot take of a person's motion is known, or it is refused") {
+  const SkeletonRoles whole = skeleton_roles(canonical_humanoid());
+  CHECK(lost_roles(whole).empty());
+  SkeletonRoles roles = whole;
+  for (const JointRole role : {left_knee, right_elbow, spine, left_hand, left_toe, neck})
+    roles.set(role, -1);
+  CHECK(lost_roles(roles) == std::vector<JointRole>{left_knee, right_elbow});
+  roles.set(chest, -1);
+  CHECK(lost_roles(roles) == std::vector<JointRole>{left_knee, right_elbow, spine});
+  for (const JointRole role : {left_hip, left_ankle, head}) roles.set(role, -1);
+  CHECK_THROWS_WITH_AS(
+      lost_roles(roles),
+      doctest::Contains("no joint is known to be left_hip, left_knee, left_ankle, neck or head: "),
+      InputError);
+}
+
 TEST_CASE("rigs of recorded motion: there and back") {
   struct Recorded {
     const char* file;

@@ -157,6 +157,34 @@ TEST_CASE("skeleton roles: limbs by the names of many programs") {
        {{"Hip%", "Knee%", "Ankle%", "Foot%"}, {"Clavicle%", "Shoulder%", "Elbow%", "Wrist%"}},
        "Left",
        "Right"},
+      {"VRM",
+       "J_Bip_C_Hips",
+       {"J_Bip_C_Spine", "J_Bip_C_Chest", "J_Bip_C_UpperChest", "J_Bip_C_Neck", "J_Bip_C_Head"},
+       {{"J_Bip_%_UpperLeg", "J_Bip_%_LowerLeg", "J_Bip_%_Foot", "J_Bip_%_ToeBase"},
+        {"J_Bip_%_Shoulder", "J_Bip_%_UpperArm", "J_Bip_%_LowerArm", "J_Bip_%_Hand"}},
+       "L",
+       "R"},
+      {"Maya",
+       "Root_M",
+       {"Spine1_M", "Chest_M", "Neck_M", "Head_M"},
+       {{"Hip_%", "Knee_%", "Ankle_%", "Toes_%"},
+        {"Scapula_%", "Shoulder_%", "Elbow_%", "Wrist_%"}},
+       "L",
+       "R"},
+      {"Auto-Rig Pro",
+       "root.x",
+       {"spine_01.x", "spine_02.x", "neck.x", "head.x"},
+       {{"thigh_stretch.%", "leg_stretch.%", "foot.%", "toes_01.%"},
+        {"shoulder.%", "arm_stretch.%", "forearm_stretch.%", "hand.%"}},
+       "l",
+       "r"},
+      {"Rigify",
+       "DEF-spine",
+       {"DEF-spine.001", "DEF-spine.002", "DEF-spine.003", "DEF-spine.004", "DEF-spine.005"},
+       {{"DEF-thigh.%", "DEF-shin.%", "DEF-foot.%", "DEF-toe.%"},
+        {"DEF-shoulder.%", "DEF-upper_arm.%", "DEF-forearm.%", "DEF-hand.%"}},
+       "L",
+       "R"},
       {"shouted",
        "ROOT",
        {"SPINE", "CHEST", "NECK", "HEAD"},
@@ -168,6 +196,106 @@ TEST_CASE("skeleton roles: limbs by the names of many programs") {
     CAPTURE(family.about);
     check_limbs(body_named(family.root, family.trunk, family.limbs, family.left, family.right));
   }
+}
+
+TEST_CASE("skeleton roles: names of programs beside bones of hair, and twisting ones between") {
+  struct Bone {
+    std::string name, parent;
+  };
+  using enum JointRole;
+  const auto check = [](const std::vector<Bone>& bones,
+                        const std::vector<std::pair<JointRole, std::string>>& wanted) {
+    Skeleton body;
+    for (const Bone& bone : bones)
+      body.joints.push_back(make_joint(bone.name, body.find(bone.parent), {1, 10, 0}, {}));
+    for (const auto& [role, name] : wanted) {
+      CAPTURE(std::string(name_of(role)));
+      CHECK(joint_name(body, role) == name);
+    }
+  };
+  // VRM: what all names begin with is less than what a body's begin with.
+  check({{"Root", ""},
+         {"J_Bip_C_Hips", "Root"},
+         {"J_Bip_C_Spine", "J_Bip_C_Hips"},
+         {"J_Bip_C_Chest", "J_Bip_C_Spine"},
+         {"J_Bip_C_UpperChest", "J_Bip_C_Chest"},
+         {"J_Bip_C_Neck", "J_Bip_C_UpperChest"},
+         {"J_Bip_C_Head", "J_Bip_C_Neck"},
+         {"J_Sec_Hair1_01", "J_Bip_C_Head"},
+         {"J_Bip_L_Shoulder", "J_Bip_C_UpperChest"},
+         {"J_Bip_L_UpperArm", "J_Bip_L_Shoulder"},
+         {"J_Bip_R_UpperLeg", "J_Bip_C_Hips"},
+         {"J_Bip_R_LowerLeg", "J_Bip_R_UpperLeg"}},
+        {{pelvis, "J_Bip_C_Hips"},
+         {spine, "J_Bip_C_Spine"},
+         {chest, "J_Bip_C_UpperChest"},
+         {neck, "J_Bip_C_Neck"},
+         {head, "J_Bip_C_Head"},
+         {left_clavicle, "J_Bip_L_Shoulder"},
+         {left_shoulder, "J_Bip_L_UpperArm"},
+         {right_hip, "J_Bip_R_UpperLeg"},
+         {right_knee, "J_Bip_R_LowerLeg"}});
+  // DAZ, Genesis 8.
+  check({{"hip", ""},
+         {"pelvis", "hip"},
+         {"lThighBend", "pelvis"},
+         {"lThighTwist", "lThighBend"},
+         {"lShin", "lThighTwist"},
+         {"lFoot", "lShin"},
+         {"lToe", "lFoot"},
+         {"abdomenLower", "hip"},
+         {"abdomenUpper", "abdomenLower"},
+         {"chestLower", "abdomenUpper"},
+         {"lCollar", "chestLower"},
+         {"lShldrBend", "lCollar"},
+         {"lShldrTwist", "lShldrBend"},
+         {"lForearmBend", "lShldrTwist"},
+         {"lForearmTwist", "lForearmBend"},
+         {"lHand", "lForearmTwist"},
+         {"chestUpper", "chestLower"},
+         {"neckLower", "chestUpper"},
+         {"neckUpper", "neckLower"},
+         {"head", "neckUpper"}},
+        {{pelvis, "hip"},
+         {spine, "abdomenLower"},
+         {chest, "chestUpper"},
+         {neck, "neckLower"},
+         {head, "head"},
+         {left_clavicle, "lCollar"},
+         {left_shoulder, "lShldrBend"},
+         {left_elbow, "lForearmBend"},
+         {left_wrist, "lHand"},
+         {left_hip, "lThighBend"},
+         {left_knee, "lShin"},
+         {left_ankle, "lFoot"},
+         {left_toe, "lToe"}});
+  // Rigify: neck and head go on with the spine's numbers.
+  check({{"DEF-spine", ""},
+         {"DEF-pelvis.L", "DEF-spine"},
+         {"DEF-thigh.L", "DEF-pelvis.L"},
+         {"DEF-thigh.L.001", "DEF-thigh.L"},
+         {"DEF-shin.L", "DEF-thigh.L.001"},
+         {"DEF-pelvis.R", "DEF-spine"},
+         {"DEF-thigh.R", "DEF-pelvis.R"},
+         {"DEF-spine.001", "DEF-spine"},
+         {"DEF-spine.002", "DEF-spine.001"},
+         {"DEF-spine.003", "DEF-spine.002"},
+         {"DEF-spine.004", "DEF-spine.003"},
+         {"DEF-spine.005", "DEF-spine.004"},
+         {"DEF-spine.006", "DEF-spine.005"},
+         {"DEF-forehead.L", "DEF-spine.006"},
+         {"DEF-shoulder.L", "DEF-spine.003"},
+         {"DEF-upper_arm.L", "DEF-shoulder.L"},
+         {"DEF-shoulder.R", "DEF-spine.003"},
+         {"DEF-upper_arm.R", "DEF-shoulder.R"}},
+        {{pelvis, "DEF-spine"},
+         {spine, "DEF-spine.001"},
+         {chest, "DEF-spine.003"},
+         {neck, "DEF-spine.004"},
+         {head, "DEF-spine.006"},
+         {left_hip, "DEF-thigh.L"},
+         {left_knee, "DEF-shin.L"},
+         {left_shoulder, "DEF-upper_arm.L"}});
 }
 
 TEST_CASE("skeleton roles: by the tree where names carry no information") {

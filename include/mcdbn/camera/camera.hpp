@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "mcdbn/base/settings.hpp"
@@ -26,6 +27,7 @@ struct Camera {
   std::vector<double> distortion;  ///< k1 k2 p1 p2 [k3 …], of a fisheye k1 k2 k3 k4; may be empty
   bool fisheye = false;            ///< what is 84 degrees aside and more is not seen
   int width_px = 1920, height_px = 1080;
+  bool size_is_guess = false;  ///< twice the principal point: its file gives none
   /// How many metres the translation's unit is; unset: it is in file units of the motion seen.
   std::optional<double> unit_m;
 };
@@ -33,6 +35,19 @@ struct Camera {
 /// The camera with its translation in file units of a motion of that skeleton: a person is taken
 /// to be 1.7 m tall. A camera without a unit is returned as it is.
 Camera in_file_units(Camera camera, const Skeleton& skeleton);
+/// The other way round: a camera in file units of a motion of that skeleton, with their length, so
+/// that it can be brought into another motion's. One that has a unit is returned as it is.
+Camera with_unit(Camera camera, const Skeleton& skeleton);
+
+/// The same view in an image of another size.
+Camera scaled(Camera camera, int width_px, int height_px);
+/// The camera of its own images scaled to that size, which is rounded to whole pixels. Where the
+/// size of its own is a guess the images are taken to be its own.
+/// @param notices if given, collects that it was scaled
+/// @throws InputError naming both sizes if they have another shape: then the images were cut or
+///         turned, which nothing shows; of a guess if the principal point is far from their middle
+Camera of_scaled_images(Camera camera, int width_px, int height_px,
+                        std::vector<std::string>* notices = nullptr);
 
 /// Where to put a camera that looks at a clip. Azimuth 0 looks along the clip's −z axis
 /// (at a figure that faces +z), positive azimuth moves the camera to the figure's left (+x).

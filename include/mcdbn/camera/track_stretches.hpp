@@ -16,6 +16,9 @@ struct FrameRange {
 /// First and last frames as text: "0-11, 30, 40-52".
 std::string described(const std::vector<FrameRange>& ranges);
 
+/// The frames that show no joint at all, in order.
+std::vector<FrameRange> frames_of_nobody(const Track2d& track);
+
 /// A track in parts, each of which can be one person's motion.
 struct TrackStretches {
   std::vector<FrameRange> stretches;  ///< all frames of the track, in order

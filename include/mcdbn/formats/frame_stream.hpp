@@ -12,8 +12,9 @@ class FrameStream {
  public:
   virtual ~FrameStream() = default;
   /// @param skeleton whose bones may become other in length from frame to frame
-  /// @param channels [1 x channels]  @throws InputError if it cannot be written
-  virtual void write(const Skeleton& skeleton, const RowVectorD& channels) = 0;
+  /// @param channels [1 x channels]  @param seen whether anybody was: only JSON has it
+  /// @throws InputError if it cannot be written
+  virtual void write(const Skeleton& skeleton, const RowVectorD& channels, bool seen) = 0;
   /// No more frames will come.
   virtual void finish() = 0;
 };
@@ -29,8 +30,8 @@ std::unique_ptr<FrameStream> bvh_stream(std::ostream& out, double fps, bool rewr
 /// file units: frame, time_s, JOINT_x, JOINT_y, JOINT_z …
 std::unique_ptr<FrameStream> csv_stream(std::ostream& out, double fps);
 
-/// JSON lines: {"frame": 0, "time_s": 0, "channels": […], "joints": {"Hips": [x, y, z], …}},
-/// channels in the BVH's order.
+/// JSON lines: {"frame": 0, "time_s": 0, "seen": true, "channels": […],
+/// "joints": {"Hips": [x, y, z], …}}, channels in the BVH's order.
 std::unique_ptr<FrameStream> json_stream(std::ostream& out, double fps);
 
 }  // namespace mcdbn

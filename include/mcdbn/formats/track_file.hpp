@@ -47,18 +47,19 @@ struct TrackReadOptions {
   std::string format = {};                   ///< a name of track_formats(); empty: by content
   std::string person = "largest";            ///< largest, all, or a number: 1 is the largest
   std::optional<double> fps = std::nullopt;  ///< unset: the file's, else 30
-  /// Unset: the file's, else guessed from what was seen.
+  /// Unset: the file's, else the camera's, else guessed from what was seen.
   std::optional<ImageSize> image_size = std::nullopt;
+  std::optional<ImageSize> camera_image = std::nullopt;  ///< of the camera's calibration, if known
 };
 
 /// The people of a track file, each followed over all frames of it.
 struct TrackReading {
-  std::string format;                ///< a name of track_formats()
-  std::string joint_set;             ///< a name of joint_sets(); empty: the file's own joints
-  long long first_frame = 0;         ///< the file's own number of the first frame
-  int people_seen = 0;               ///< those who were followed, chosen or not
-  std::vector<Track2d> people;       ///< those chosen, the largest first
-  std::vector<std::string> notices;  ///< what was assumed, guessed, left out or scaled
+  std::string format;                    ///< a name of track_formats()
+  std::string joint_set;                 ///< a name of joint_sets(); empty: the file's own joints
+  std::vector<long long> frame_numbers;  ///< [frames] the file's own
+  int people_seen = 0;                   ///< those who were followed, chosen or not
+  std::vector<Track2d> people;           ///< those chosen, the largest first
+  std::vector<std::string> notices;      ///< what was assumed, guessed, left out or scaled
 };
 
 /// Reads a file, or a folder with a file for each frame. Joints that were not seen are NaN with

@@ -73,6 +73,11 @@ class HumanoidRig {
 ///         hips, knees, ankles, shoulders, elbows and wrists of both sides, neck or head
 HumanoidRig rig_of_person(const Motion& motion, const JointMap& joint_map = {});
 
+/// What a person moves and no joint of a skeleton is known to be, so that it is lost where the
+/// skeleton takes a person's motion: roles of limbs; the spine where the trunk has no joint.
+/// @throws InputError naming what lacks if nothing is known of a whole limb, or of neck and head
+std::vector<JointRole> lost_roles(const SkeletonRoles& roles);
+
 /// What is lost of a motion that goes to the humanoid and comes back.
 struct RetargetError {
   struct OfJoint {

@@ -34,15 +34,18 @@ class SkeletonRoles {
 };
 
 /// The roles of a skeleton's joints: those of `given`; then by names, as CMU's files (`LeftUpLeg`,
-/// `lfemur`), Bandai, Mixamo, Berkeley MHAD, Xsens, LAFAN, Biped, SMPL, Unreal, Blender and others
-/// spell them; then, for limbs without known names, by the tree: legs are the longest pair of like
-/// chains nearest the root, arms the longest pair above, and the two longest bones in a row are
-/// thigh and shank, upper arm and forearm. Left is then found by marks in names, else by the rest
-/// pose: up is from legs to arms, forward as the feet point, or along +z;
-/// where the rest pose is not a person's, as in a BVH made of ASF, give the sides by hand.
-/// A joint that only leads to a limb (CMU's LHipJoint) plays no role.
+/// `lfemur`), Bandai, Mixamo, Berkeley MHAD, Xsens, LAFAN, Biped, SMPL, Unreal, Blender and its
+/// Rigify, VRM, DAZ, Auto-Rig Pro and others spell them; then, for limbs without known names, by
+/// the tree: legs are the longest pair of like chains nearest the root, arms the longest pair
+/// above, and the two longest bones in a row are thigh and shank, upper arm and forearm. Left is
+/// then found by marks in names, else by the rest pose: up is from legs to arms, forward as the
+/// feet point, or along +z; where the rest pose is not a person's, as in a BVH made of ASF, give
+/// the sides by hand. A joint that only leads to a limb (CMU's LHipJoint) plays no role.
 /// @throws InputError if the skeleton has no joint, or more than one, of a name in `given`, or a
 ///         joint is given two roles
 SkeletonRoles skeleton_roles(const Skeleton& skeleton, const JointMap& given = {});
+
+/// The roles of joints of which nothing is known but their names: the joint's index is the name's.
+SkeletonRoles roles_by_name(const std::vector<std::string>& names);
 
 }  // namespace mcdbn
