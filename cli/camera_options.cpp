@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "setting_flags.hpp"
 
@@ -29,6 +30,18 @@ Camera read_camera_with_notices(const std::filesystem::path& file) {
         file.string(), *camera.unit_m));
   for (const std::string& line : assumed) spdlog::warn("{}", line);
   return camera;
+}
+
+Camera camera_of_track(const Camera& camera, const Track2d& track, const std::string& name) {
+  constexpr const char* kSetIt = "set the track's with --image-size if it is not that";
+  std::vector<std::string> notices;
+  try {
+    const Camera own = of_scaled_images(camera, track.width_px, track.height_px, &notices);
+    for (const std::string& notice : notices) spdlog::warn("{}: {}; {}", name, notice, kSetIt);
+    return own;
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}; {}", name, error.what(), kSetIt));
+  }
 }
 
 std::optional<Camera> SeenByOptions::camera() const {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "mcdbn/camera/assumed_view.hpp"
 #include "mcdbn/camera/camera.hpp"
@@ -29,6 +30,10 @@ struct SeenByOptions {
 
 /// A camera file's camera; warns what was assumed of it. @throws InputError
 Camera read_camera_with_notices(const std::filesystem::path& file);
+
+/// The camera as it gives the track's images; warns where it is scaled to them.
+/// @param name the track's, for messages  @throws InputError as of_scaled_images
+Camera camera_of_track(const Camera& camera, const Track2d& track, const std::string& name);
 
 /// --camera FILE[:NAME], or --camera-pitch, --camera-roll, --camera-fov.
 void add_seen_by_options(CLI::App& command, SeenByOptions& options);

@@ -8,8 +8,8 @@
 
 namespace mcdbn::cli {
 
-void add_model_option(CLI::App& command, std::filesystem::path& model) {
-  command
+CLI::Option* add_model_option(CLI::App& command, std::filesystem::path& model) {
+  return command
       .add_option("--model", model,
                   "Trained model (default: the general one that comes with the program)")
       ->type_name("FILE");

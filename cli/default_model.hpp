@@ -6,7 +6,8 @@
 namespace mcdbn::cli {
 
 /// Adds --model for a trained model of motion; without it the one that comes with the program.
-void add_model_option(CLI::App& command, std::filesystem::path& model);
+/// @return the option, whose description is one for every use
+CLI::Option* add_model_option(CLI::App& command, std::filesystem::path& model);
 
 /// `given`; where it is empty, the model that comes with the program, with a notice. That lies
 /// under share/mcdbn-cl beside the program's own folder. @throws ConfigError if there is none

@@ -37,11 +37,13 @@ DetectorViews detector_like(const std::string& name_or_file) {
   return {track.keypoints, measured_noise(track, height_px), {}, {}};
 }
 
-void add_detector_camera_flags(CLI::App& command, DetectorCameras& cameras) {
+std::vector<CLI::Option*> add_detector_camera_flags(CLI::App& command, DetectorCameras& cameras) {
+  std::vector<CLI::Option*> flags;
   visit_group("detector", cameras, [&](const Setting& setting, double& value) {
-    add_setting_flag(command, flag_of(setting.name), setting, value)
-        ->group("Cameras drawn around the person, by --seed");
+    flags.push_back(add_setting_flag(command, flag_of(setting.name), setting, value)
+                        ->group("Cameras drawn around the person, by --seed"));
   });
+  return flags;
 }
 
 }  // namespace mcdbn::cli

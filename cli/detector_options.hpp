@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "corpus/detector_view.hpp"
 
@@ -16,6 +17,6 @@ DetectorViews detector_like(const std::string& name_or_file);
 std::string detector_names();
 
 /// --detector-elevation-from and the other settings of DetectorCameras.
-void add_detector_camera_flags(CLI::App& command, DetectorCameras& cameras);
+std::vector<CLI::Option*> add_detector_camera_flags(CLI::App& command, DetectorCameras& cameras);
 
 }  // namespace mcdbn::cli

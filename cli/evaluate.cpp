@@ -17,6 +17,7 @@
 #include "detector_options.hpp"
 #include "evaluation/report_page.hpp"
 #include "fit_option.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "progress.hpp"
 #include "sampling_options.hpp"
@@ -37,7 +38,8 @@ struct EvaluateOptions {
   std::string tracks = kExact, like = "openpose";
   DetectorCameras cameras;
   OtherBody people;
-  bool camera_unknown = false;
+  std::vector<const CLI::Option*> of_detector;  ///< to check whether they were given
+  bool camera_unknown = false, baselines_given = false;
   TestRunOptions run;
   SamplingOptions sampling;
   std::optional<double> azimuth_deg, elevation_deg;
@@ -57,6 +59,14 @@ void apply_protocol(EvaluateOptions& options) {
   SamplingOptions& sampling = options.sampling;
   sampling.samples = sampling.samples.value_or(kPaperSamples);
   sampling.temperature = sampling.temperature.value_or(kPaperTemperature);
+}
+
+/// @throws ConfigError naming an option that exact tracks would ignore
+void check_tracks(const EvaluateOptions& options) {
+  if (options.tracks == kDetector) return;
+  for (const CLI::Option* option : options.of_detector)
+    if (option->count() > 0)
+      throw ConfigError(fmt::format("{} is for --tracks detector", option->get_name()));
 }
 
 /// The tracks that every method is to see.
@@ -119,13 +129,26 @@ void print_table(const EvaluationReport& report) {
                printable(verdict.text));
 }
 
+/// Simpler methods are fitted on the model's training clips. Those of the model that comes with the
+/// program are elsewhere.
+void leave_out_baselines(const Model& model, EvaluateOptions& options) {
+  const bool gone = std::ranges::any_of(model.training_clips, [](const TrainingClip& clip) {
+    return !std::filesystem::exists(clip.path);
+  });
+  if (!options.model.empty() || options.baselines_given || !gone) return;
+  options.run.baselines.clear();
+  spdlog::warn("no simpler methods beside the model: its training clips are not here");
+}
+
 void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   apply_protocol(options);
+  check_tracks(options);
   choose_tracks(options);
   if (!options.report.empty()) make_folder(options.report);  // before the work
   Device device = Device::open({context.platform, context.device});
   const std::filesystem::path model_file = model_or_default(options.model);
   const Model model = load_model(device, model_file);
+  leave_out_baselines(model, options);
   EvaluationReport report;
   {
     ProgressLine progress(context.quiet);
@@ -193,6 +216,7 @@ void add_test_options(CLI::App& command, EvaluateOptions& options) {
           "--baselines",
           [&options](const std::vector<std::string>& words) {
             options.run.baselines = baselines_of(words);
+            options.baselines_given = true;
           },
           "Simpler methods to score beside the model: usual, all (related systems too, which take "
           "minutes), none, or names: " +
@@ -228,21 +252,24 @@ void add_track_options(CLI::App& command, EvaluateOptions& options) {
       ->check(CLI::IsMember({kExact, kDetector}))
       ->capture_default_str()
       ->group(kGroup);
-  command
-      .add_option("--like", options.like,
-                  "With --tracks detector: its name (" + detector_names() +
-                      "), or a track file that it wrote")
-      ->capture_default_str()
-      ->type_name("NAME|FILE")
-      ->group(kGroup);
+  CLI::Option* like = command
+                          .add_option("--like", options.like,
+                                      "With --tracks detector: its name (" + detector_names() +
+                                          "), or a track file that it wrote")
+                          ->capture_default_str()
+                          ->type_name("NAME|FILE")
+                          ->group(kGroup);
+  options.of_detector.push_back(like);
   command
       .add_flag("--camera-unknown", options.camera_unknown,
                 "Hide the camera's place and lens from every method")
       ->group(kGroup);
   visit_group("person", options.people, [&](const Setting& setting, double& value) {
-    add_setting_flag(command, flag_of(setting.name), setting, value)->group(kGroup);
+    options.of_detector.push_back(
+        add_setting_flag(command, flag_of(setting.name), setting, value)->group(kGroup));
   });
-  add_detector_camera_flags(command, options.cameras);
+  for (const CLI::Option* option : add_detector_camera_flags(command, options.cameras))
+    options.of_detector.push_back(option);
 }
 
 /// Trackers' faults, applied to the test clips' tracks before any method sees them.

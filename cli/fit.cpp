@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "base/counted.hpp"
 #include "base/output_file.hpp"
@@ -61,7 +62,7 @@ struct FitOptions {
   std::vector<std::size_t> widths, orders;  ///< of each layer, where they differ
   /// To check whether they were given.
   const CLI::Option *order = nullptr, *layers = nullptr, *each_width = nullptr,
-                    *each_order = nullptr;
+                    *each_order = nullptr, *gaussian_flag = nullptr;
 
   const MachineKind& kind() const {
     return *std::find_if(kKinds.begin(), kKinds.end(),
@@ -88,6 +89,7 @@ void check_flags(const FitOptions& options) {
     refuse(options.each_width, "layers but one");
     refuse(options.each_order, "layers but one");
   }
+  if (!is_mrbm) refuse(options.gaussian_flag, "modalities");
   if (is_mrbm != options.data.files.empty() || is_mrbm == options.modalities.empty())
     throw ConfigError(
         "data: --machine mrbm wants --modality NAME=FILE for each modality, every other machine "
@@ -188,7 +190,9 @@ void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
     const bool is_gaussian = std::ranges::count(options.gaussian, input.name) > 0;
     modalities.push_back(
         {.name = input.name, .kind = is_gaussian ? VisibleKind::gaussian : VisibleKind::binary});
-    scales.push_back(prepare(input.data, input.files, modalities.back().kind, options.standardize));
+    ColumnScale scale =
+        prepare(input.data, input.files, modalities.back().kind, options.standardize);
+    if (options.standardize) scales.push_back(std::move(scale));
   }
   fit_and_save(context, options, [&](Device& device, const EpochObserver& observer) {
     std::vector<Sequences> data;
@@ -292,10 +296,11 @@ void add_fit_command(CLI::App& app, CommandContext& context) {
       *command, options->modalities,
       "Matrices of an MRBM's modalities, each with its name; the files of a name are "
       "sequences, as many and as long as those of every other name");
-  command
-      ->add_option("--gaussian", options->gaussian,
-                   "Modalities of an MRBM whose units are Gaussian; the others are binary")
-      ->type_name("NAME");
+  options->gaussian_flag =
+      command
+          ->add_option("--gaussian", options->gaussian,
+                       "Modalities of an MRBM whose units are Gaussian; the others are binary")
+          ->type_name("NAME");
   command
       ->add_option(
           "--machine", options->machine,

@@ -13,10 +13,12 @@
 
 #include "base/interruption.hpp"
 #include "base/output_file.hpp"
+#include "camera_options.hpp"
 #include "line_source.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/frame_stream.hpp"
 #include "mcdbn/formats/track_lines.hpp"
+#include "output_ending.hpp"
 #include "setting_flags.hpp"
 
 namespace mcdbn::cli {
@@ -30,7 +32,7 @@ class FrameOutput {
  public:
   FrameOutput(const std::filesystem::path& path, const std::string& frames, double fps)
       : name_(path.empty() ? "standard output" : path.string()) {
-    const std::string ending = path.extension().string();
+    const std::string ending = ending_of(path);
     const std::string format = !frames.empty()                           ? frames
                                : ending == ".csv"                        ? kCsv
                                : ending == ".json" || ending == ".jsonl" ? kJson
@@ -59,8 +61,9 @@ class FrameOutput {
   void write(const Skeleton& skeleton, const std::vector<LiveFrame>& frames) {
     named([&] {
       for (const LiveFrame& frame : frames) {
-        stream_->write(skeleton, frame.channels);
+        stream_->write(skeleton, frame.channels, frame.seen);
         ++written_;
+        shows_somebody_ = shows_somebody_ || frame.seen;
       }
     });
   }
@@ -69,6 +72,7 @@ class FrameOutput {
     if (!std::exchange(finished_, true)) named([&] { stream_->finish(); });
   }
   std::size_t written() const { return written_; }
+  bool shows_somebody() const { return shows_somebody_; }  ///< any frame, not the mean pose alone
 
  private:
   template <typename Write>
@@ -86,6 +90,7 @@ class FrameOutput {
   std::ofstream file_;
   std::unique_ptr<FrameStream> stream_;
   std::size_t written_ = 0;
+  bool shows_somebody_ = false;
 };
 
 /// Regenerates a track frame by frame.
@@ -111,6 +116,8 @@ class Following {
 
   void take_broken() { push(TrackFrame::unseen(joints_)); }
   bool has_begun() const { return live_ != nullptr; }
+  bool saw_anybody() const { return saw_anybody_; }  ///< any joint of the person in any frame
+  bool shows_somebody() const { return frames_ && frames_->shows_somebody(); }
 
   /// @return frames written
   std::size_t finish() {
@@ -123,6 +130,7 @@ class Following {
  private:
   void begin(const Track2d& like) {
     joints_ = like.joint_count();
+    if (placement_.camera) placement_.camera = camera_of_track(*placement_.camera, like, name_);
     try {
       live_ = std::make_unique<LiveRegeneration>(model_, like, placement_, options_.look_ahead);
     } catch (const InputError& error) {
@@ -134,6 +142,7 @@ class Following {
     for (; before_ > 0; --before_) push(TrackFrame::unseen(joints_));
   }
   void push(const TrackFrame& frame) {
+    saw_anybody_ = saw_anybody_ || (frame.confidence.array() > 0).any();
     const std::vector<LiveFrame> finished = live_->push(frame);
     frames_->write(live_->skeleton(), finished);
   }
@@ -145,9 +154,19 @@ class Following {
   FollowOptions options_;
   long long before_ = 0;  ///< frames before the joints were known
   Eigen::Index joints_ = 0;
+  bool saw_anybody_ = false;
   std::unique_ptr<LiveRegeneration> live_;
   std::unique_ptr<FrameOutput> frames_;
 };
+
+/// What there is to report of a track of which frames were written.
+/// @throws InputError if a person was asked for by number and is in no frame
+void report_unseen(const Following& following, const std::string& name, const std::string& person) {
+  if (!following.saw_anybody() && person != TrackReadOptions{}.person)
+    throw InputError(fmt::format("{}: no person {} in any frame", name, person));
+  if (!following.shows_somebody())
+    spdlog::warn("{}: no frame shows enough of a person: all are the mean pose", name);
+}
 
 }  // namespace
 
@@ -176,6 +195,10 @@ void add_follow_options(CLI::App& command, FollowOptions& options) {
       ->group(kGroup);
 }
 
+void check_frames_output(const std::filesystem::path& output, const FollowOptions& options) {
+  if (options.frames.empty()) check_ending(output, {".bvh", ".csv", ".json", ".jsonl"});
+}
+
 void follow_track(const Model& model, const std::filesystem::path& input,
                   const std::filesystem::path& output, const TrackReadOptions& reading,
                   const ClipPlacement& placement, const FollowOptions& options) {
@@ -202,6 +225,7 @@ void follow_track(const Model& model, const std::filesystem::path& input,
   const std::size_t written = following.finish();
   if (written == 0) throw InputError(fmt::format("{}: no frame that shows a person", name));
   spdlog::info("{}: {} frames", output.empty() ? "standard output" : output.string(), written);
+  report_unseen(following, name, reading.person);
 }
 
 }  // namespace mcdbn::cli

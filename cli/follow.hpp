@@ -19,6 +19,10 @@ struct FollowOptions {
 
 void add_follow_options(CLI::App& command, FollowOptions& options);
 
+/// Refuses an output whose ending is that of no format of frames, where none is given.
+/// @throws ConfigError
+void check_frames_output(const std::filesystem::path& output, const FollowOptions& options);
+
 /// Reads a track line by line and writes frames as they are finished, until the input ends or a
 /// stop is requested; the frames in progress are then still written.
 /// @param input "-": standard input  @param output empty: standard output

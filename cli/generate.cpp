@@ -15,6 +15,8 @@
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/machines/size_limits.hpp"
 #include "mcdbn/motion_model/clip_generation.hpp"
+#include "mcdbn/motion_model/settings_record.hpp"
+#include "output_ending.hpp"
 #include "sample_path.hpp"
 #include "setting_flags.hpp"
 
@@ -40,8 +42,15 @@ std::vector<SeedClip> load_seeds(const GenerateOptions& options, double fps) {
   return seeds;
 }
 
-/// Reports whether the motion stays bounded and keeps moving.
-void report(const GenerationHealth& health) {
+/// Whether its 3D CDBN was trained with noise on histories: else it has never seen its own output.
+bool learnt_to_run_freely(const Model& model) {
+  return settings_from_json(model.config).gaussian.history_noise > 0;
+}
+
+/// Reports whether the motion stays bounded and keeps moving. One person's channels may deviate
+/// less than those of all people in training: where few are in range, only a model that did not
+/// learn to run freely is to blame.
+void report(const GenerationHealth& health, bool can_run_freely) {
   constexpr double kLeast = 0.5, kMost = 1.5;  // shares of the training data's deviation
   std::vector<double> deviation(health.deviation.begin(), health.deviation.end());
   std::sort(deviation.begin(), deviation.end());
@@ -56,11 +65,18 @@ void report(const GenerationHealth& health) {
       "{} of {} between {:g} and {:g}; {} of {} slower than half the clip's speed in the end",
       in_range, counted(deviation.size(), "channel"), kLeast, kMost, health.slow_sequences(),
       counted(health.late_speed.size(), "sequence"));
+  if (!can_run_freely && 2 * in_range < deviation.size())
+    spdlog::warn(
+        "only {} of {} deviate {:g} to {:g} times as far as in training: the model was not trained "
+        "to run freely; train one with `train --preset generation`",
+        in_range, counted(deviation.size(), "channel"), kLeast, kMost);
 }
 
 void run_generate(const CommandContext& context, const GenerateOptions& options) {
+  check_ending(options.output, {".bvh"});
   Device device = Device::open({context.platform, context.device});
   const Model model = load_model(device, model_or_default(options.model));
+  const bool can_run_freely = learnt_to_run_freely(model);
   GenerationOptions generation = options.generation;
   generation.seed = context.seed;
   GenerationHealth health;
@@ -72,7 +88,7 @@ void run_generate(const CommandContext& context, const GenerateOptions& options)
     spdlog::info("{}: {} at {:.4g} fps", path.string(), counted(motions[i].frames(), "frame"),
                  motions[i].fps());
   }
-  report(health);
+  report(health, can_run_freely);
 }
 
 }  // namespace
@@ -84,7 +100,10 @@ void add_generate_command(CLI::App& app, CommandContext& context) {
   GenerationOptions& generation = options->generation;
   CLI::App* command = app.add_subcommand(
       "generate", "Continues a clip where it ends: new 3D motion, as BVH, without any track");
-  add_model_option(*command, options->model);
+  add_model_option(*command, options->model)
+      ->description(
+          "Model of `train --preset generation` (default: the general one that comes with the "
+          "program, which was not trained to run freely)");
   command
       ->add_option(
           "--seed-clip", options->seed_clips,

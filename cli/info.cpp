@@ -19,6 +19,7 @@
 #include "mcdbn/formats/motion_file.hpp"
 #include "mcdbn/formats/track_file.hpp"
 #include "mcdbn/machines/machine_file.hpp"
+#include "mcdbn/motion/skeleton_roles.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
 #include "setting_flags.hpp"
 #include "track_options.hpp"
@@ -38,10 +39,18 @@ std::string extension_of(const fs::path& path) {
 
 json describe_clip(const fs::path& path) {
   const Motion motion = load_clip_with_notices(path, {.fps = 0.0, .keep_first_frame = true});
-  json joints = json::array();
-  for (const Joint& joint : motion.skeleton.joints) joints.push_back(joint.name);
+  const SkeletonRoles known = skeleton_roles(motion.skeleton);
+  json joints = json::array(), roles = json::object(), missing = json::array();
+  for (const Joint& joint : motion.skeleton.joints) {
+    const auto role = known.role_of(static_cast<int>(joints.size()));
+    roles.emplace(joint.name, role ? json(name_of(*role)) : json());  // the first of a name counts
+    joints.push_back(joint.name);
+  }
+  for (const JointRole role : known.missing()) missing.push_back(name_of(role));
   return {{"kind", extension_of(path) == ".bvh" ? "BVH clip" : "ASF/AMC clip"},
           {"joints", joints},
+          {"roles", roles},
+          {"roles_without_joint", missing},
           {"channels", motion.skeleton.channel_count()},
           {"frames", motion.frames()},
           {"fps", motion.fps()},
@@ -54,7 +63,8 @@ json finite(double value) {
   return std::isfinite(value) ? json(value) : json();
 }
 
-json describe_person(const Track2d& track, long long first_frame) {
+/// @param numbers of the frames, the file's own
+json describe_person(const Track2d& track, const std::vector<long long>& numbers) {
   const TrackSummary summary = summarize(track);
   json unseen = json::array();
   for (int joint = 0; joint < track.joint_count(); ++joint)
@@ -66,12 +76,12 @@ json describe_person(const Track2d& track, long long first_frame) {
               {"height_px", summary.height_px},
               {"jitter_px", finite(summary.jitter_px)}};
   if (summary.seen_frames > 0) {
-    person["first_frame"] = first_frame + summary.first_frame;
-    person["last_frame"] = first_frame + summary.last_frame;
+    person["first_frame"] = numbers[summary.first_frame];
+    person["last_frame"] = numbers[summary.last_frame];
   }
   json jumps = json::array();
   for (const FrameRange& stretch : find_stretches(track).stretches)
-    if (stretch.first > 0) jumps.push_back(first_frame + stretch.first);
+    if (stretch.first > 0) jumps.push_back(numbers[stretch.first]);
   person["jumps_to_frames"] = jumps;
   return person;
 }
@@ -85,7 +95,7 @@ json describe_track(const fs::path& path, TrackReadOptions options) {
   for (const Keypoint& keypoint : track.keypoints)
     roles[keypoint.name] = keypoint.role ? json(name_of(*keypoint.role)) : json();
   for (const Track2d& person : reading.people)
-    people.push_back(describe_person(person, reading.first_frame));
+    people.push_back(describe_person(person, reading.frame_numbers));
   json notices = json::array();
   for (const std::string& notice : reading.notices) notices.push_back(with_flags(notice));
   return {{"kind", "2D track"},
@@ -159,7 +169,7 @@ void print_for_people(const json& description) {
       if (!value[i].is_object()) {
         const std::string name =
             value[i].is_string() ? value[i].get<std::string>() : value[i].dump();
-        const json role = roles.value(name, json());
+        const json role = key == "joints" ? roles.value(name, json()) : json();
         std::cout << (role.is_null()
                           ? fmt::format("  {}\n", printable(name))
                           : fmt::format("  {:<20}{}\n", printable(name), role.get<std::string>()));

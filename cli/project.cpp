@@ -44,7 +44,8 @@ void run_project(const CommandContext& context, const ProjectOptions& options) {
   Track2d track = seen_track(motion, camera, options.like, context.seed);
   add_pixel_noise(track, options.noise_px, context.seed);
   track_format(options.format).write(options.output, track);
-  if (!options.camera_output.empty()) write_camera(options.camera_output, camera);
+  if (!options.camera_output.empty())
+    write_camera(options.camera_output, with_unit(camera, motion.skeleton));
   spdlog::info("{}: {} of {} at {:.4g} fps", options.output.string(),
                counted(track.frames(), "frame"), counted(track.joint_count(), "joint"), track.fps);
 }
@@ -86,7 +87,8 @@ void add_project_command(CLI::App& app, CommandContext& context) {
   add_camera_options(*command, options->camera);
   for (CLI::Option* option : command->get_options())
     if (option->get_group() == "Camera") random->excludes(option);
-  add_detector_camera_flags(*command, options->cameras);
+  for (CLI::Option* option : add_detector_camera_flags(*command, options->cameras))
+    option->needs(random);
   add_seed_option(*command, context);
   add_quiet_option(*command, context);
   command->footer(

@@ -26,7 +26,9 @@
 #include "mcdbn/formats/motion_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
 #include "mcdbn/formats/uncertainty_csv.hpp"
+#include "mcdbn/motion/humanoid_rig.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
+#include "output_ending.hpp"
 #include "sample_path.hpp"
 #include "sampling_options.hpp"
 #include "track_options.hpp"
@@ -54,19 +56,25 @@ void check_direction(const RegenerateOptions& options) {
     return;
   }
   const AssumedView& view = options.seen_by.view;
-  for (const auto& [given, flag] : {std::pair{!options.skeleton.empty(), "--skeleton"},
-                                    std::pair{!options.joint_map.empty(), "--joint-map"},
-                                    std::pair{options.method != kModel, "--method"},
-                                    std::pair{!options.write_camera.empty(), "--write-camera"},
-                                    std::pair{!options.uncertainty.empty(), "--uncertainty"},
-                                    std::pair{!options.fit.empty(), "--fit"},
-                                    std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
-                                    std::pair{view.roll_deg.has_value(), "--camera-roll"},
-                                    std::pair{view.field_of_view_deg.has_value(), "--camera-fov"}})
+  const TrackReadOptions& track = options.track;
+  for (const auto& [given, flag] :
+       {std::pair{!options.skeleton.empty(), "--skeleton"},
+        std::pair{!options.joint_map.empty(), "--joint-map"},
+        std::pair{options.method != kModel, "--method"},
+        std::pair{!options.write_camera.empty(), "--write-camera"},
+        std::pair{!options.uncertainty.empty(), "--uncertainty"},
+        std::pair{!options.fit.empty(), "--fit"},
+        std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
+        std::pair{view.roll_deg.has_value(), "--camera-roll"},
+        std::pair{view.field_of_view_deg.has_value(), "--camera-fov"},
+        std::pair{!track.format.empty(), "--format"},
+        std::pair{track.person != TrackReadOptions{}.person, "--person"},
+        std::pair{track.fps.has_value(), "--fps"},
+        std::pair{track.image_size.has_value(), "--image-size"}})
     if (given)
       throw ConfigError(fmt::format(
-          "{} is for --to pose: a regenerated track has no skeleton and is not fitted, and its "
-          "camera is the model's or a file's",
+          "{} is for --to pose: with --to track motion is read; the track has no skeleton and is "
+          "not fitted, its rate is the model's, and its camera the model's or a file's",
           flag));
 }
 
@@ -95,9 +103,19 @@ void check_follow(const RegenerateOptions& options) {
         std::pair{!options.uncertainty.empty(), "--uncertainty"},
         std::pair{options.sampling.samples.value_or(1) > 1, "--samples"},
         std::pair{options.sampling.temperature.value_or(0) > 0, "--temperature"},
+        std::pair{options.sampling.gibbs_steps.value_or(0) > 0, "--gibbs-steps"},
+        std::pair{options.sampling.mrbm_gibbs_steps.value_or(0) > 0, "--mrbm-gibbs-steps"},
         std::pair{!track_fit(options.fit), "--fit none"}})
     if (given)
       throw ConfigError(fmt::format("{} needs the whole track: leave it out, or --follow", flag));
+}
+
+/// Refuses an output that is named as another format than what is written. @throws ConfigError
+void check_output_ending(const RegenerateOptions& options) {
+  if (options.following.follow)
+    check_frames_output(options.output, options.following);
+  else
+    check_ending(options.output, {options.to == kToTrack ? ".csv" : ".bvh"});
 }
 
 void report(const std::filesystem::path& path, int frames, double fps) {
@@ -105,7 +123,7 @@ void report(const std::filesystem::path& path, int frames, double fps) {
 }
 
 /// Warns what is assumed of a camera without calibration.
-/// @param found pitch and roll were estimated from the clip
+/// @param found pitch or roll was estimated from the clip
 void report_assumed(const Camera& camera, bool found) {
   const Eigen::Vector3d up = camera.camera_from_world.col(1);
   const auto deg = [](double angle) { return std::round(angle * 1800 / EIGEN_PI) / 10 + 0.0; };
@@ -118,25 +136,64 @@ void report_assumed(const Camera& camera, bool found) {
       2 * std::atan(0.5 * camera.height_px / camera.fy_px) * 180 / EIGEN_PI);
 }
 
+/// Of frames counted from 0, as the track's file numbers them.
+class FileFrames {
+ public:
+  /// @param numbers [frames] the file's
+  explicit FileFrames(const std::vector<long long>& numbers) : numbers_(numbers) {}
+
+  std::string described(std::vector<FrameRange> ranges) const {
+    for (FrameRange& range : ranges)
+      range = {number(range.first),
+               number(range.first + range.frames - 1) - number(range.first) + 1};
+    return mcdbn::described(ranges);
+  }
+  std::string described(std::vector<SideSwap> swaps) const {
+    for (SideSwap& swap : swaps)
+      for (int* frame : {&swap.first_frame, &swap.last_frame}) *frame = number(*frame);
+    return mcdbn::described(swaps);
+  }
+
+ private:
+  int number(int frame) const {
+    return static_cast<int>(numbers_[static_cast<std::size_t>(frame)]);
+  }
+  const std::vector<long long>& numbers_;
+};
+
 /// Warns what was missing in the track and what was wrong with it.
-void report(const std::filesystem::path& path, const TrackFindings& findings) {
+/// @param name of the track, for messages
+void report(const std::string& name, const Track2d& track, const FileFrames& frames,
+            const TrackFindings& findings) {
   const TrackFeatures::FillCount& filled = findings.filled;
   const std::vector<FrameRange>& stretches = findings.stretches.stretches;
   if (stretches.size() > 1)
     spdlog::warn(
         "{}: jumps to another place, as if to another person: frames {} are regenerated each by "
         "themselves, with one body",
-        path.string(), described(stretches));
+        name, frames.described(stretches));
   if (const auto& strays = findings.stretches.strays; !strays.empty())
-    spdlog::warn("{}: another person in frames {}: left out", path.string(), described(strays));
+    spdlog::warn("{}: another person in frames {}: left out", name, frames.described(strays));
   if (!findings.swaps.empty())
-    spdlog::warn("{}: {}; put right", path.string(), described(findings.swaps));
+    spdlog::warn("{}: {}; put right", name, frames.described(findings.swaps));
+  if (const auto nobody = frames_of_nobody(track); !nobody.empty())
+    spdlog::warn("{}: nobody is seen in frames {}: the motion there is made up", name,
+                 frames.described(nobody));
   if (!filled.unseen.empty())
-    spdlog::warn("{}: {} are in no column: inferred", path.string(),
-                 fmt::join(filled.unseen, ", "));
+    spdlog::warn("{}: {} are in no column: inferred", name, fmt::join(filled.unseen, ", "));
   if (filled.interpolated + filled.missing > 0)
     spdlog::warn("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
-                 path.string(), filled.interpolated, filled.missing);
+                 name, filled.interpolated, filled.missing);
+}
+
+/// What `work` returns. Errors of an input begin with the name.
+template <typename Work>
+auto with_name(const std::string& name, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", name, error.what()));
+  }
 }
 
 /// The usual deviation of a joint but the root along an axis, and the least sure joints'.
@@ -159,13 +216,13 @@ void report_uncertainty(const Motion& motion, const MatrixD& deviations) {
       joints.front().first);
 }
 
-/// By the model, or by a simpler method if there is one. Errors of the track name its file.
-std::vector<Motion> regenerate_named(const std::filesystem::path& input, const Model& model,
+/// By the model, or by a simpler method if there is one. Errors of the track begin with its name.
+std::vector<Motion> regenerate_named(const std::string& name, const Model& model,
                                      const Baseline* simpler, const Track2d& track,
                                      const ClipPlacement& placement,
                                      const RegenerationOptions& regeneration,
                                      TrackFindings& findings) {
-  try {
+  return with_name(name, [&] {
     if (simpler == nullptr)
       return regenerate_clip(model, track, placement, regeneration, &findings);
     const auto single = [&](const MatrixF& features) { return simpler->predict(features); };
@@ -173,9 +230,13 @@ std::vector<Motion> regenerate_named(const std::filesystem::path& input, const M
         model.modalities, track, placement, single,
         [&](const MatrixF& features) { return std::vector<PosePrior>{single(features)}; },
         &findings);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", input.string(), error.what()));
-  }
+  });
+}
+
+/// The track's name, with the person's number if there are several.
+std::string person_name(const std::filesystem::path& input, std::size_t person,
+                        std::size_t people) {
+  return people == 1 ? input.string() : fmt::format("{}: person {}", input.string(), person + 1);
 }
 
 /// Where a person's motion goes: out_person1.bvh … if there are several.
@@ -187,8 +248,32 @@ std::filesystem::path person_path(const std::filesystem::path& output, std::size
                                            output.extension().string()));
 }
 
-ClipPlacement placement_of(const RegenerateOptions& options, const std::optional<Camera>& camera,
-                           std::uint64_t seed) {
+/// Checks the joint map, and that the model's motion can be put on a skeleton of other joints;
+/// warns of what is lost there.
+/// @throws InputError naming the file that is at fault
+void check_body(const Modalities& modalities, const RegenerateOptions& options,
+                const ClipPlacement& placement) {
+  const Skeleton& own = modalities.pose_features.skeleton();
+  const Skeleton& wanted = placement.skeleton ? *placement.skeleton : own;
+  const SkeletonRoles roles = with_name(
+      options.joint_map.string(), [&] { return skeleton_roles(wanted, placement.joint_map); });
+  if (std::ranges::all_of(own.joints,
+                          [&](const Joint& joint) { return wanted.find(joint.name) >= 0; }))
+    return;
+  const std::vector<JointRole> lost = with_name(options.skeleton.string(), [&] {
+    return lost_roles(HumanoidRig({wanted, 1.0, placement.skeleton_channels}, roles).roles());
+  });
+  if (lost.empty()) return;
+  std::vector<std::string_view> names;
+  for (const JointRole role : lost) names.push_back(name_of(role));
+  spdlog::warn(
+      "{}: no joint is known to be {}: what they do is lost; name them with --joint-map, info "
+      "shows which are known",
+      options.skeleton.string(), fmt::join(names, ", "));
+}
+
+ClipPlacement placement_of(const Modalities& modalities, const RegenerateOptions& options,
+                           const std::optional<Camera>& camera, std::uint64_t seed) {
   ClipPlacement placement;
   placement.camera = camera;
   placement.view = options.seen_by.view;
@@ -205,25 +290,39 @@ ClipPlacement placement_of(const RegenerateOptions& options, const std::optional
   if (!options.uncertainty.empty() || (single && !placement.fit))
     placement.uncertainty_draws = {kUncertaintyDraws, seed};
   if (!options.joint_map.empty()) placement.joint_map = read_joint_map(options.joint_map);
+  check_body(modalities, options, placement);
   return placement;
+}
+
+/// Whether feet on level ground show how the camera stands.
+bool finds_angles(const Modalities& modalities, const ClipPlacement& placement) {
+  const AssumedView& given = placement.view;
+  return placement.fit && finds_view(modalities, placement) && !(given.pitch_deg && given.roll_deg);
 }
 
 void regenerate_poses(const Model& model, const RegenerateOptions& options,
                       const std::optional<Camera>& camera,
                       const RegenerationOptions& regeneration) {
-  const ClipPlacement placement = placement_of(options, camera, regeneration.seed);
+  ClipPlacement placement = placement_of(model.modalities, options, camera, regeneration.seed);
   TrackReadOptions reading = options.track;
-  if (camera && !reading.image_size) reading.image_size = {camera->width_px, camera->height_px};
-  const std::vector<Track2d> people = read_tracks_with_notices(options.input, reading).people;
+  if (camera) reading.camera_image = {camera->width_px, camera->height_px};
+  const TrackReading read = read_tracks_with_notices(options.input, reading);
+  const std::vector<Track2d>& people = read.people;
+  if (camera) placement.camera = camera_of_track(*camera, people.front(), options.input.string());
   const std::unique_ptr<Baseline> simpler =
-      options.method == kModel ? nullptr
-                               : fitted_baseline(options.method, model, all_lessons(model));
+      options.method == kModel
+          ? nullptr
+          : fitted_baseline(options.method, model, lessons_of(options.method, model));
   for (std::size_t person = 0; person < people.size(); ++person) {
     TrackFindings findings;
-    const auto motions = regenerate_named(options.input, model, simpler.get(), people[person],
-                                          placement, regeneration, findings);
-    report(options.input, findings);
-    if (!camera) report_assumed(findings.camera, finds_view(model.modalities, placement));
+    const std::string name = person_name(options.input, person, people.size());
+    const auto motions = regenerate_named(name, model, simpler.get(), people[person], placement,
+                                          regeneration, findings);
+    report(name, people[person], FileFrames(read.frame_numbers), findings);
+    if (!placement.camera) {
+      report_assumed(findings.camera, finds_angles(model.modalities, placement));
+      placement.camera = findings.camera;  // all others stand in the first one's world
+    }
     if (!options.write_camera.empty())
       write_camera(person_path(options.write_camera, person, people.size()), findings.camera);
     const auto output = person_path(options.output, person, people.size());
@@ -242,11 +341,11 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
 void follow(const Model& model, const RegenerateOptions& options,
             const std::optional<Camera>& camera, std::uint64_t seed) {
   TrackReadOptions reading = options.track;
-  if (camera && !reading.image_size) reading.image_size = {camera->width_px, camera->height_px};
+  if (camera) reading.camera_image = {camera->width_px, camera->height_px};
   if (model.network.sampling.always)
     spdlog::info("frames are the model's mean answer: it draws samples for whole tracks only");
   follow_track(model, options.input.empty() ? "-" : options.input, options.output, reading,
-               placement_of(options, camera, seed), options.following);
+               placement_of(model.modalities, options, camera, seed), options.following);
 }
 
 void regenerate_tracks(const Model& model, const RegenerateOptions& options,
@@ -266,6 +365,7 @@ void run_regenerate(const CommandContext& context, const RegenerateOptions& opti
   check_direction(options);
   check_uncertainty(options);
   check_follow(options);
+  check_output_ending(options);
   Device device = Device::open({context.platform, context.device});
   const Model model = load_model(device, model_or_default(options.model));
   const std::optional<Camera> camera = options.seen_by.camera();

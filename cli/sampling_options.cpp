@@ -14,9 +14,10 @@ constexpr double kHottest = 10.0;
 /// mean at 2, and 10 % at 1 (docs/results.md).
 constexpr double kSeveral = 2.0;
 
-double usual_temperature(const Mcdbn& network, const RegenerationOptions& options) {
+/// @param drawn a single answer is drawn, too
+double usual_temperature(const RegenerationOptions& options, bool drawn) {
   if (options.samples > 1) return options.sampling.steady ? kSeveral : 1.0;
-  return network.sampling.always ? 1.0 : 0.0;
+  return drawn ? 1.0 : 0.0;
 }
 
 }  // namespace
@@ -32,7 +33,9 @@ RegenerationOptions SamplingOptions::regeneration(const Mcdbn& network, std::uin
     options.sampling.gibbs_steps = gibbs_steps.value_or(mrbm_gibbs_steps ? 0 : 1);
     options.sampling.mrbm_gibbs_steps = mrbm_gibbs_steps.value_or(0);
   }
-  options.temperature = temperature.value_or(usual_temperature(network, options));
+  const bool anew = gibbs_steps.value_or(0) > 0 || mrbm_gibbs_steps.value_or(0) > 0;
+  options.temperature =
+      temperature.value_or(usual_temperature(options, anew || network.sampling.always));
   return options;
 }
 

@@ -46,7 +46,7 @@ void add_track_options(CLI::App& command, TrackReadOptions& options) {
           [&options](const std::pair<int, int>& size_px) {
             options.image_size = ImageSize{size_px.first, size_px.second};
           },
-          "Width and height in pixels (default: the file's, else guessed)")
+          "Width and height in pixels (default: the file's, else the camera's, else guessed)")
       ->check(in_range(Camera::kImage_px))
       ->type_name("WIDTH HEIGHT")
       ->group(kTrackGroup);

@@ -159,6 +159,9 @@ void train_sweep(const CommandContext& context, Device& device, const TrainOptio
   fmt::print("{:<44}{:>10}{:>14}{:>12}{:>10}\n", "", "train s", "ms a frame", "PCC channel",
              "MPJPE mm");
   for (const nlohmann::ordered_json& record : records) print_record(record);
+  if (std::ranges::none_of(records, [](const auto& record) { return record["status"] == "ok"; }))
+    throw Error(fmt::format("{}: every configuration failed, for the reason in its line",
+                            (options.run / "sweep.jsonl").string()));
 }
 
 /// The model file that --from names; empty where it is not given.
@@ -176,20 +179,27 @@ TrainingConfig config_from(const Model& start, const TrainingOptions& settings) 
   return config;
 }
 
+/// Those that a training with these options would have.
+void print_settings(const CommandContext& context, const TrainOptions& options) {
+  TrainingConfig config = options.settings.resolve();
+  if (const std::filesystem::path from = start_of(options); !from.empty()) {
+    Device device = Device::open({context.platform, context.device});
+    config = config_from(load_model(device, from), options.settings);
+  }
+  fmt::print("{}", settings_toml(config));
+}
+
 void run_train(const CommandContext& context, const TrainOptions& options,
                const CLI::App& command) {
   if (!options.resume.empty()) {
     check_resume(command);
     return resume(context, options);
   }
-  if (options.print_settings) {
-    fmt::print("{}", settings_toml(options.settings.resolve()));
-    return;
-  }
-  if (options.data.empty() || options.run.empty())
-    throw ConfigError("clips to train on and --output RUN are wanted, or --resume RUN");
   if (!options.from.empty() && !options.sweep.empty())
     throw ConfigError("--sweep compares trainings from nothing; leave --from out");
+  if (options.print_settings) return print_settings(context, options);
+  if (options.data.empty() || options.run.empty())
+    throw ConfigError("clips to train on and --output RUN are wanted, or --resume RUN");
   TrainingConfig config = options.settings.resolve();
   const auto clips = find_listed_clips(options.data);
   std::optional<SweepFile> sweep;
@@ -222,7 +232,7 @@ void add_train_command(CLI::App& app, CommandContext& context) {
       ->add_option(
           "--sweep", options->sweep,
           "TOML file of configurations to train and compare; RUN holds one folder for each, "
-          "and sweep.jsonl. Run again, it goes on where it stopped")
+          "and sweep.jsonl. Run again, it leaves out what was scored with these clips")
       ->type_name("FILE");
   command
       ->add_option("--from", options->from,

@@ -41,6 +41,8 @@ MatrixF inferred(Device& device, const SavedMachine& saved, const TransformOptio
 
 void run_transform(const CommandContext& context, const TransformOptions& options) {
   check_matrix_output(options.output);
+  if (!options.infer.empty() && !options.data.files.empty())
+    throw ConfigError("data: --infer takes what --modality NAME=FILE gives, and no other files");
   Device device = Device::open({context.platform, context.device});
   const SavedMachine saved = load_machine(device, options.model);
   if (!options.infer.empty()) return put_matrix(options.output, inferred(device, saved, options));
@@ -68,8 +70,9 @@ void add_transform_command(CLI::App& app, CommandContext& context) {
       app.add_subcommand("transform", "Gives a single machine's hidden probabilities of data");
   add_machine_option(*command, options->model);
   add_matrix_input(*command, options->data, "data", "Matrices, each a sequence of its own");
-  command->add_flag("--inverse", options->inverse,
-                    "Up and down again: the mean-field reconstruction of the data");
+  CLI::Option* inverse =
+      command->add_flag("--inverse", options->inverse,
+                        "Up and down again: the mean-field reconstruction of the data");
   add_setting_flag(*command, "--steps",
                    {"steps", within(1, 1000), "steps",
                     "Up and down so often, at the top of a stack (default: once), or mean-field "
@@ -78,7 +81,8 @@ void add_transform_command(CLI::App& app, CommandContext& context) {
   command
       ->add_option("--infer", options->infer,
                    "Modality of an MRBM to infer, by mean field, from those that --modality gives")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->excludes(inverse);
   add_modality_option(*command, options->modalities, "Given modalities of an MRBM");
   add_matrix_output(*command, context, options->output,
                     "File to write, .npy, .csv or .safetensors: the rows of all data that have a "

@@ -16,7 +16,9 @@ void run_render(const RenderCommandOptions& options, const CommandContext&) {
   RenderOptions look = options.render;
   look.placement = options.camera.placement;
   if (!options.camera.file.empty()) look.camera = options.camera.camera_for(clips.front().motion);
-  render(clips, options.output, look);
+  std::vector<std::string> notices;
+  render(clips, options.output, look, &notices);
+  for (const std::string& notice : notices) spdlog::warn("{}", notice);
   spdlog::info("{}: {} {}", options.output.string(), clips.size(),
                clips.size() == 1 ? "clip" : "clips");
 }

@@ -1,6 +1,5 @@
 #include "comparison/bimodal_autoencoder.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 #include "base/random_streams.hpp"
@@ -144,15 +143,8 @@ void BimodalAutoencoder::fit(const std::vector<MatrixF>& tracks,
   std::iota(rows.begin(), rows.end(), 0);
   MinibatchSchedule schedule(*device_, rows, settings_.batch, settings_.least_batches);
   AutoencoderTrainer trainer(*network_, settings_, schedule.batch(), data);
-  const std::size_t batches = schedule.batch_count(), all = settings_.epochs * batches;
-  for (std::size_t i = 0; i < all; ++i) {
-    if (i % batches == 0)
-      schedule.shuffle({settings_.seed, static_cast<std::uint32_t>(i / batches), kAutoencoderStream,
-                        kAutoencoderShuffle});
-    const double progress = static_cast<double>(i) / static_cast<double>(all);
-    trainer.step(schedule.index(), schedule.first_of(i % batches),
-                 settings_.rate * std::min(1.0, 2.0 - 1.98 * progress));
-  }
+  train_epochs(trainer, schedule, settings_,
+               {settings_.seed, 0, kAutoencoderStream, kAutoencoderShuffle});
   device_->queue().finish();  // what the trainer holds lives no longer
   track_dimension_ = tracks.front().cols();
 }

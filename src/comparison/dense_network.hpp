@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "device/gemm.hpp"
 #include "device/optimizer.hpp"
+#include "learning/minibatch.hpp"
 
 namespace mcdbn {
 
@@ -55,5 +57,21 @@ class DenseNetwork {
   Optimizer optimizer_;
   std::vector<Layer> layers_;
 };
+
+/// Epochs of shuffled mini-batches, at a rate that falls in a line over the second half.
+/// @param settings of `epochs` and `rate`  @param shuffles its step is the epoch's number
+/// @param trainer whose step() takes rows' numbers, the first of the mini-batch, and the rate
+template <typename Trainer, typename Settings>
+void train_epochs(Trainer& trainer, MinibatchSchedule& schedule, const Settings& settings,
+                  RandomKey shuffles) {
+  const std::size_t batches = schedule.batch_count(), all = settings.epochs * batches;
+  for (std::size_t i = 0; i < all; ++i) {
+    shuffles.step = static_cast<std::uint32_t>(i / batches);
+    if (i % batches == 0) schedule.shuffle(shuffles);
+    const double progress = static_cast<double>(i) / static_cast<double>(all);
+    trainer.step(schedule.index(), schedule.first_of(i % batches),
+                 settings.rate * std::min(1.0, 2.0 - 1.98 * progress));
+  }
+}
 
 }  // namespace mcdbn

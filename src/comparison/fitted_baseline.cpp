@@ -18,7 +18,7 @@ std::vector<EncodedClip> encode_training_clips(const Model& model, bool keep_fir
     if (!std::filesystem::exists(clip.path))
       throw InputError(fmt::format(
           "{}: a training clip of the model is gone; baselines are fitted on it, so put "
-          "it back or leave them out",
+          "it back or take no baselines",
           clip.path));
     clips.push_back(
         encode_clip(clip.path, model.modalities, model.modalities.camera, keep_first_frame));
@@ -37,8 +37,9 @@ BaselineLessons clip_lessons(const Model& model, bool keep_first_frame) {
   return lessons;
 }
 
-BaselineLessons all_lessons(const Model& model) {
+BaselineLessons lessons_of(const std::string& name, const Model& model) {
   TestRunOptions run;
+  run.baselines = {name};
   add_training_views(model, run);
   BaselineLessons lessons = clip_lessons(model, run.keep_first_frame);
   lessons.view_tracks = std::move(run.view_tracks);

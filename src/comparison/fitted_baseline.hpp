@@ -19,9 +19,10 @@ struct BaselineLessons {
 
 /// The model's training clips as they are. @throws InputError if one is gone
 BaselineLessons clip_lessons(const Model& model, bool keep_first_frame);
-/// With the views of the model's fine-tuning, made again.
+/// With the views of the model's fine-tuning, made again, if that baseline learns from views.
+/// @param name of all_baselines()
 /// @throws InputError likewise; ConfigError if the model's record of settings is not this program's
-BaselineLessons all_lessons(const Model& model);
+BaselineLessons lessons_of(const std::string& name, const Model& model);
 
 /// @param name of all_baselines()  @throws ConfigError
 std::unique_ptr<Baseline> fitted_baseline(const std::string& name, const Model& model,

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/missing_values.hpp"
@@ -141,17 +140,8 @@ void MlpWindow::fit(const std::vector<MatrixF>& tracks, const std::vector<Matrix
   const Matrix track_frames = Matrix::from_host(*device_, stacked(inputs));
   const Matrix pose_frames = Matrix::from_host(*device_, stacked(targets));
   PerceptronTrainer trainer(*device_, settings_, schedule.batch(), track_frames, pose_frames);
-  const std::size_t batches = schedule.batch_count();
-  for (std::size_t epoch = 0; epoch < settings_.epochs; ++epoch) {
-    schedule.shuffle(
-        {settings_.seed, static_cast<std::uint32_t>(epoch), kPerceptronStream, kPerceptronShuffle});
-    for (std::size_t i = 0; i < batches; ++i) {
-      const double progress = static_cast<double>(epoch * batches + i) /
-                              static_cast<double>(settings_.epochs * batches);
-      trainer.step(schedule.index(), schedule.first_of(i),
-                   settings_.rate * std::min(1.0, 2.0 - 1.98 * progress));
-    }
-  }
+  train_epochs(trainer, schedule, settings_,
+               {settings_.seed, 0, kPerceptronStream, kPerceptronShuffle});
   layers_ = trainer.to_host();
   track_dimension_ = tracks.front().cols();
 }

@@ -33,8 +33,8 @@ std::string name_of(const SweepConfiguration& configuration);
 
 /// Trains configurations on clips and scores them on a sweep's test clips (Fig. 7). Each gets a
 /// folder in the run's, and a line in sweep.jsonl: its settings, training and inference time, PCC
-/// and MPJPE; or why it failed. Those that have a line already, with the same settings, are not run
-/// again.
+/// and MPJPE; or why it failed. Those that were scored before, with the same settings and clips,
+/// are not run again; a new line replaces the one of its name.
 class Sweep {
  public:
   /// The whole configuration from what is varied. May throw ConfigError
@@ -46,12 +46,12 @@ class Sweep {
   /// Called with what is odd about the clips, line by line; of several trainings once.
   using Notices = std::function<void(const std::string& notice)>;
 
-  /// @throws InputError if the test clips cannot be used or the folder not be made
+  /// @throws InputError if a clip cannot be read or the folder not be made
   Sweep(Device& device, const std::vector<std::filesystem::path>& test,
         std::vector<ListedClip> clips, Resolve resolve, std::filesystem::path run,
         Notices notices = {});
 
-  /// @return the line, also of a configuration that failed, or was done before
+  /// @return the line, also of a configuration that failed, or was scored before
   /// @throws Interrupted, DeviceError: the next one would fail too
   nlohmann::ordered_json run(const SweepConfiguration& configuration, const Watch& watch = {});
 
@@ -60,7 +60,9 @@ class Sweep {
   class Log {
    public:
     explicit Log(std::filesystem::path path);
-    const nlohmann::ordered_json* find(const nlohmann::ordered_json& settings) const;
+    /// The line of what was scored with the settings and fingerprint of `wanted`.
+    const nlohmann::ordered_json* scored(const nlohmann::ordered_json& wanted) const;
+    /// In place of what has its name: the run folder of that name is the new one's, too.
     void add(nlohmann::ordered_json record);
 
    private:
@@ -68,12 +70,16 @@ class Sweep {
     std::vector<nlohmann::ordered_json> records_;
   };
 
+  /// Of what the result depends on beside the settings: the clips' bytes, who does what in them,
+  /// the choice of a skeleton, the joint map.
+  std::string fingerprint_of(const TrainingConfig& config) const;
   void score(const TrainingConfig& config, const Watch& watch, nlohmann::ordered_json& record);
   void report(const std::string& notice);
 
   Device& device_;
   std::vector<std::filesystem::path> test_;
   std::vector<ListedClip> clips_;
+  nlohmann::json data_;  ///< what fingerprint_of takes of the clips
   Resolve resolve_;
   std::filesystem::path run_;
   Notices notices_;

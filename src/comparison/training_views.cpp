@@ -1,13 +1,25 @@
 #include "comparison/training_views.hpp"
 
+#include <algorithm>
+
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
 
 namespace mcdbn {
+namespace {
+
+bool any_learns_from_views(const std::vector<std::string>& baselines, Device& device) {
+  return std::ranges::any_of(baselines, [&](const std::string& name) {
+    return make_baseline(name, device, false)->learns_from_views();
+  });
+}
+
+}  // namespace
 
 void add_training_views(const Model& model, TestRunOptions& run) {
+  if (!any_learns_from_views(run.baselines, model.network.mrbm.device())) return;
   const TrainingConfig config = settings_from_json(model.config);
   if (config.fine_tuning.steps == 0) return;
   std::vector<std::filesystem::path> files;

@@ -112,7 +112,7 @@ CameraPlacement Panel::placement_at(double t_s) const {
 }
 
 Camera Panel::camera_at(double t_s) const {
-  if (options_.camera) return rendering::scaled(*options_.camera, size_.width_px, size_.height_px);
+  if (options_.camera) return scaled(*options_.camera, size_.width_px, size_.height_px);
   Camera camera = place_camera(framed_, placement_at(t_s));
   camera.translation -= camera.camera_from_world * origin_at(t_s);
   return camera;
@@ -263,7 +263,7 @@ void render_sheet(const std::vector<Panel>& panels, const std::vector<Figure>& f
 }  // namespace
 
 void render(const std::vector<RenderClip>& clips, const fs::path& path,
-            const RenderOptions& options) {
+            const RenderOptions& options, std::vector<std::string>* notices) {
   check(clips, options);
   const bool video = path.extension() == ".mp4";
   if (!video && path.extension() != ".png") {
@@ -274,7 +274,7 @@ void render(const std::vector<RenderClip>& clips, const fs::path& path,
   figures.reserve(clips.size());
   for (const RenderClip& clip : clips) figures.emplace_back(clip.motion);
   if (!options.over.empty()) {
-    rendering::render_over(figures, path, options);
+    rendering::render_over(figures, path, options, notices);
     return;
   }
   const Size size = panel_size(options, video ? kVideoPanel : kSheetPanel);

@@ -178,18 +178,6 @@ void draw_figure(cv::Mat& image, const Camera& camera, const Figure& figure, int
   }
 }
 
-Camera scaled(Camera camera, int width_px, int height_px) {
-  const double x = static_cast<double>(width_px) / camera.width_px;
-  const double y = static_cast<double>(height_px) / camera.height_px;
-  camera.fx_px *= x;
-  camera.cx_px *= x;
-  camera.fy_px *= y;
-  camera.cy_px *= y;
-  camera.width_px = width_px;
-  camera.height_px = height_px;
-  return camera;
-}
-
 void draw_text(cv::Mat& image, const std::string& text, int x_px, int y_px, double scale) {
   const cv::Point baseline(x_px, y_px + cvRound(20 * scale));
   cv::putText(image, text, baseline, cv::FONT_HERSHEY_SIMPLEX, 0.8 * scale, kInk,

@@ -42,8 +42,6 @@ void draw_ground(cv::Mat& image, const Camera& camera, const Eigen::Vector3d& ce
                  double spacing);
 void draw_figure(cv::Mat& image, const Camera& camera, const Figure& figure, int frame,
                  Palette palette);
-/// The same view in an image of another size.
-Camera scaled(Camera camera, int width_px, int height_px);
 /// Text with its upper left corner there; `scale` 1 is about 20 px high.
 void draw_text(cv::Mat& image, const std::string& text, int x_px, int y_px, double scale);
 cv::Mat blank_panel(int width_px, int height_px);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <utility>
 
 #include "base/interruption.hpp"
 #include "base/text_file.hpp"
@@ -24,35 +26,47 @@ int frames_shown(const std::vector<Figure>& figures, double fps) {
   return std::max(1, static_cast<int>(std::min(kMost, std::round(longest_s * fps))));
 }
 
-/// The camera as it filmed pictures of that size.
-/// @throws InputError where they have another shape: figures would not lie where they were seen
-Camera of_film(const Camera& camera, const FilmReader& film, const cv::Size& picture) {
-  constexpr double kRounded = 0.01;  // of a side that was scaled to whole pixels
-  const double wider = static_cast<double>(picture.width) / camera.width_px /
-                       (static_cast<double>(picture.height) / camera.height_px);
-  if (std::abs(wider - 1) > kRounded)
-    throw InputError(fmt::format(
-        "{}: its pictures are {} x {} pixels, those of the camera {} x {}, "
-        "which is another shape",
-        film.path().string(), picture.width, picture.height, camera.width_px, camera.height_px));
-  return scaled(camera, picture.width, picture.height);
-}
+/// The camera as it filmed the film's pictures, of whatever size.
+class FilmCamera {
+ public:
+  /// @param notices collects once that the camera was scaled; may be none
+  FilmCamera(const Camera& camera, const FilmReader& film, std::vector<std::string>* notices)
+      : camera_(camera), film_(film.path().string()), notices_(notices) {}
 
-void draw_figures(cv::Mat& image, const std::vector<Figure>& figures, const FilmReader& film,
-                  const Camera& camera, double t_s) {
-  const Camera own = of_film(camera, film, image.size());
+  /// @throws InputError where they have another shape: figures would not lie where they were seen
+  Camera of(const cv::Size& picture) {
+    std::vector<std::string> notices;
+    try {
+      const Camera own = of_scaled_images(camera_, picture.width, picture.height, &notices);
+      if (auto* to = std::exchange(notices_, nullptr))
+        for (const std::string& notice : notices) to->push_back(film_ + ": " + notice);
+      return own;
+    } catch (const InputError& error) {
+      throw InputError(film_ + ": " + error.what());
+    }
+  }
+
+ private:
+  const Camera& camera_;
+  std::string film_;
+  std::vector<std::string>* notices_;
+};
+
+void draw_figures(cv::Mat& image, const std::vector<Figure>& figures, FilmCamera& camera,
+                  double t_s) {
+  const Camera own = camera.of(image.size());
   for (const Figure& figure : figures)
     draw_figure(image, own, figure, figure.frame_at(t_s), Palette::second);
 }
 
 void write_film(FilmReader& film, int frames, const std::vector<Figure>& figures,
-                const Camera& camera, const std::filesystem::path& path) {
+                FilmCamera& camera, const std::filesystem::path& path) {
   FilmWriter writer(path, film.fps());
   for (int i = 0; i < frames; ++i) {
     check_interruption();
     cv::Mat image = film.next();
     if (image.empty()) break;
-    draw_figures(image, figures, film, camera, i / film.fps());
+    draw_figures(image, figures, camera, i / film.fps());
     writer.write(image);
   }
   if (writer.frames() == 0)
@@ -62,7 +76,7 @@ void write_film(FilmReader& film, int frames, const std::vector<Figure>& figures
 
 /// Two rows of frames at even times.
 void write_sheet(FilmReader& film, int frames, const std::vector<Figure>& figures,
-                 const Camera& camera, const std::filesystem::path& path, int columns) {
+                 FilmCamera& camera, const std::filesystem::path& path, int columns) {
   constexpr int kWidth_px = 640;
   std::vector<cv::Mat> strips(2);
   const int times = 2 * columns;
@@ -72,7 +86,7 @@ void write_sheet(FilmReader& film, int frames, const std::vector<Figure>& figure
     cv::Mat image = film.next();
     if (image.empty()) break;
     if (i < shown * (frames - 1) / std::max(1, times - 1)) continue;
-    draw_figures(image, figures, film, camera, i / film.fps());
+    draw_figures(image, figures, camera, i / film.fps());
     cv::Mat cell;
     cv::resize(image, cell, {kWidth_px, kWidth_px * image.rows / image.cols}, 0, 0, cv::INTER_AREA);
     draw_text(cell, fmt::format("{:.2f} s", i / film.fps()), 8, cell.rows - 20, 0.6);
@@ -98,15 +112,18 @@ void write_sheet(FilmReader& film, int frames, const std::vector<Figure>& figure
 }  // namespace
 
 void render_over(const std::vector<Figure>& figures, const std::filesystem::path& path,
-                 const RenderOptions& options) {
+                 const RenderOptions& options, std::vector<std::string>* notices) {
   if (!options.camera)
-    throw ConfigError("a film is drawn over through the camera that filmed it; give one");
+    throw ConfigError(
+        "a film is drawn over through the camera that filmed it: give `camera`; where there is no "
+        "calibration, regenerate's `write-camera` writes the one that it found");
   FilmReader film(options.over, options.over_from);
+  FilmCamera camera(*options.camera, film, notices);
   const int frames = frames_shown(figures, film.fps());
   if (path.extension() == ".png")
-    write_sheet(film, frames, figures, *options.camera, path, options.sheet_columns);
+    write_sheet(film, frames, figures, camera, path, options.sheet_columns);
   else
-    write_film(film, frames, figures, *options.camera, path);
+    write_film(film, frames, figures, camera, path);
 }
 
 }  // namespace mcdbn::rendering

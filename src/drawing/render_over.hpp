@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "drawing/render_figure.hpp"
@@ -10,6 +11,6 @@ namespace mcdbn::rendering {
 
 /// Figures drawn over the frames of a film (options.over), to .mp4 or .png, as render() does.
 void render_over(const std::vector<Figure>& figures, const std::filesystem::path& path,
-                 const RenderOptions& options);
+                 const RenderOptions& options, std::vector<std::string>* notices);
 
 }  // namespace mcdbn::rendering

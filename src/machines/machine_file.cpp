@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/shown.hpp"
 #include "machines/machine_tensors.hpp"
 #include "mcdbn/machines/size_limits.hpp"
@@ -115,6 +117,13 @@ std::vector<ColumnScale> scales_from(const TensorFile& file, const JsonPlace& co
   return scales;
 }
 
+/// Whether any scale has columns: where nothing was scaled an MRBM may have empty ones.
+bool has_columns(const JsonPlace& scales) {
+  return std::ranges::any_of(scales.list(), [](const JsonPlace& place) {
+    return place.count(within(0, size_limits::kUnits.most)) > 0;
+  });
+}
+
 json parsed_description(const TensorFile& file) {
   return description_in(file, kKey, "a machine that mcdbn-cl fitted", kFormatVersion);
 }
@@ -152,7 +161,7 @@ nlohmann::json describe_machine(const std::filesystem::path& path) {
   std::size_t numbers = 0;
   for (const auto& [name, tensor] : content.tensors) numbers += tensor.values.size();
   about["parameters"] = numbers;
-  about["standardized"] = JsonPlace(about, file.path)["scales"].size() > 0;
+  about["standardized"] = has_columns(JsonPlace(about, file.path)["scales"]);
   about.erase("scales");
   return about;
 }

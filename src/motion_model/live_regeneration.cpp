@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <limits>
 
 #include "camera/confidence_weights.hpp"
 #include "camera/keypoint_map.hpp"
@@ -12,6 +14,7 @@
 #include "fitting/track_smoothing.hpp"
 #include "machines/running_regeneration.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "motion/resample.hpp"
 #include "motion_model/keypoint_columns.hpp"
 #include "motion_model/live_output.hpp"
 #include "motion_model/recent_track.hpp"
@@ -21,7 +24,6 @@ namespace {
 
 /// Settled frames that are kept: they give the noise, and the body's size over a second.
 constexpr double kKept_s = 2;
-constexpr double kSameRate = 1e-6;
 
 TrackFitSettings fit_of(const ClipPlacement& placement) {
   if (!placement.fit)
@@ -63,6 +65,14 @@ KnownOfClip known_of(const ClipPlacement& placement, bool detected) {
   return known;
 }
 
+/// The height of the lowest joint of a motion's first frame.
+double lowest_joint(const Motion& motion) {
+  const RowVectorD places = joint_positions(motion).row(0);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index y = 1; y < places.size(); y += 3) lowest = std::min(lowest, places[y]);
+  return lowest;
+}
+
 Track2d without_frames(Track2d track) {
   drop_first(track, track.x_px.rows());
   return track;
@@ -94,7 +104,8 @@ class LiveRegeneration::Frames {
   std::vector<LiveFrame> push(const TrackFrame& frame) {
     append(raw_, frame);
     ++pushed_;
-    return take_frames(false);
+    shows_anybody_.push_back((frame.confidence.array() > 0).any());
+    return with_seen(take_frames(false));
   }
 
   std::vector<LiveFrame> finish() {
@@ -102,7 +113,7 @@ class LiveRegeneration::Frames {
     add(finished, settle(open_));
     while (waiting_ > 0) add(finished, mean_pose());
     add(finished, output_.finish(pushed_));
-    return finished;
+    return with_seen(std::move(finished));
   }
 
   const SlidingFit& fit() const { return fit_; }
@@ -111,6 +122,15 @@ class LiveRegeneration::Frames {
  private:
   static void add(std::vector<LiveFrame>& to, std::vector<LiveFrame> more) {
     std::ranges::move(more, std::back_inserter(to));
+  }
+
+  /// Of the next frames of the track, which they are for.
+  std::vector<LiveFrame> with_seen(std::vector<LiveFrame> frames) {
+    for (LiveFrame& frame : frames) {
+      frame.seen = frame.seen && shows_anybody_.front();
+      shows_anybody_.pop_front();
+    }
+    return frames;
   }
 
   /// Frames of the model's rate that the track's make whole. @param ended no more will come
@@ -245,14 +265,17 @@ class LiveRegeneration::Frames {
     return finished;
   }
 
-  /// For a frame before the first person was seen.
+  /// For a frame before the first person was seen: above the origin, its feet on the ground.
   std::vector<LiveFrame> mean_pose() {
     --waiting_;
     const MatrixF mean = MatrixF::Zero(1, modalities_.pose_scale.output_dimension());
     const Camera camera = fit_.camera();
-    const Motion pose = modalities_.pose_features.decode(
-        modalities_.pose_in_camera(mean, camera.camera_from_world), camera.camera_from_world,
-        fit_.body(), modalities_.fps, MatrixD::Zero(1, 3));
+    const auto at_height = [&](double root) {
+      return modalities_.pose_features.decode(
+          modalities_.pose_in_camera(mean, camera.camera_from_world), camera.camera_from_world,
+          fit_.body(), modalities_.fps, Eigen::RowVector3d(0, root, 0));
+    };
+    const Motion pose = at_height(-lowest_joint(at_height(0)));
     return output_.add(pose.skeleton, pose.channels.row(0), false);
   }
 
@@ -262,6 +285,7 @@ class LiveRegeneration::Frames {
   Track2d raw_;              ///< frames of the track that those still to be taken are made of
   long long raw_first_ = 0;  ///< which frame of the track its first is
   long long pushed_ = 0, taken_ = 0;
+  std::deque<bool> shows_anybody_;  ///< frames of the track that have not come back
   Track2d recent_;                  ///< at the model's rate, settled and open
   Track2d right_;                   ///< the same, sides of the open frames put right
   Track2d joints_;                  ///< the model's joints as they show them

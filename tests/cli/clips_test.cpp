@@ -123,6 +123,12 @@ TEST_CASE("info describes clips and tracks") {
   CHECK(described.at("channels") == 9);
   CHECK(described.at("fps").get<double>() == doctest::Approx(120.0).epsilon(1e-3));
   CHECK(described.at("height_units").get<double>() == doctest::Approx(100.0));
+  CHECK(described.at("roles") == nlohmann::json{{"Hips", "pelvis"}, {"Chest", nullptr}});
+  CHECK(described.at("roles_without_joint").size() == 22);
+  CHECK(described.at("roles_without_joint").at(0) == "spine");
+  const std::string shown = run_cli("info '" + clip.string() + "'").standard_output;
+  CHECK(shown.find("  Hips                pelvis\n  Chest\n") != std::string::npos);
+  CHECK(shown.find("roles_without_joint   22\n  spine\n") != std::string::npos);
 
   const fs::path output = folder / "track.csv";
   REQUIRE(project(clip, output).exit_code == 0);

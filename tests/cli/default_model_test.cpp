@@ -58,6 +58,15 @@ TEST_CASE("the default model: info, regenerate and evaluate take it and report i
       run_cli(fmt::format("evaluate --test '{}' --baselines none --fit none", clip));
   CAPTURE(evaluated.standard_error);
   CHECK(evaluated.exit_code == 0);
+  // Its training clips are elsewhere.
+  const auto usual = [&](const std::string& more) {
+    return run_cli(fmt::format("evaluate --test '{}' --fit none {}", clip, more));
+  };
+  const CliResult alone = usual("");
+  CAPTURE(alone.standard_error);
+  CHECK(alone.exit_code == 0);
+  CHECK(alone.standard_error.find("no simpler methods") != std::string::npos);
+  CHECK(usual("--baselines usual").exit_code == 3);
 }
 
 TEST_CASE("the default model: a program without one asks for --model") {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text_file.hpp"
+#include "mcdbn/camera/track_stretches.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/track_csv.hpp"
@@ -93,6 +94,21 @@ TEST_CASE("a track that shows no person is described, and refused by its name") 
   check_run("regenerate --model " + pipeline.model().string() + " --input " + none + " -o " + out,
             3, none + ": the 2D track never shows");
   CHECK(!fs::exists(out));
+}
+
+TEST_CASE("frames of a track that show nobody: regenerate reports which, and that it is made up") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const std::string csv = (folder / "track.csv").string(), out = (folder / "out.bvh").string();
+  check_run("project " + (pipeline.motion() / "walk_s02_01.bvh").string() + " -o " + csv, 0);
+  Track2d track = read_track_csv(csv);
+  const std::string call =
+      "regenerate --model " + pipeline.model().string() + " --input " + csv + " -o " + out;
+  CHECK(run_cli(call).standard_error.find("nobody") == std::string::npos);
+  leave_out(track, {{0, 12}, {20, 1}});
+  write_track_csv(csv, track);
+  check_run(call, 0, "track.csv: nobody is seen in frames 0-11, 20: the motion there is made up\n");
 }
 
 TEST_CASE("a track that jumps to another person: info and regenerate report where") {

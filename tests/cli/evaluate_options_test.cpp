@@ -331,6 +331,59 @@ TEST_CASE("evaluate: what holds where an option is not given, and the text for p
   for (const auto& [name, scores] : wanted.at("baselines").items()) check_row(name, scores);
 }
 
+TEST_CASE("evaluate: what makes a detector's tracks is refused where tracks are exact") {
+  for (const char* option : {"--like mediapipe", "--person-height 0.2", "--person-proportions 0.2",
+                             "--detector-roll 1", "--detector-distance-to 30"}) {
+    CAPTURE(option);
+    const std::string flag = std::string(option).substr(0, std::string(option).find(' '));
+    for (const char* tracks : {"", "--tracks exact"}) {
+      const CliResult result =
+          run_cli(fmt::format("evaluate --model m --test t {} {}", option, tracks));
+      CHECK(result.exit_code == 2);
+      CHECK(result.standard_error.find(flag + " is for --tracks detector") != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("evaluate: a training clip is read for the baselines that learn from it alone") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const fs::path clip = folder / "walk_s01_01.bvh", other = folder / "walk_s01_02.bvh",
+                 run = folder / "run";
+  for (const fs::path& copy : {clip, other})
+    fs::copy_file(pipeline.motion() / copy.filename(), copy);
+  REQUIRE(train(fmt::format("'{}' '{}'", clip.string(), other.string()), run, kTiny + " --quiet")
+              .exit_code == 0);
+  const auto exit_code = [&](const char* baselines) {
+    return run_cli(fmt::format("evaluate --model '{}' --test '{}' --fit none --uncertainty-draws 0 "
+                               "--baselines {}",
+                               (run / "model.safetensors").string(),
+                               (pipeline.motion() / "walk_s02_01.bvh").string(), baselines))
+        .exit_code;
+  };
+  folder.write("walk_s01_01.bvh", "no motion");
+  CHECK(exit_code("none") == 0);
+  CHECK(exit_code("ridge_window") == 3);
+  fs::remove(clip);
+  CHECK(exit_code("none") == 0);
+  CHECK(exit_code("ridge_window") == 3);
+}
+
+TEST_CASE("evaluate: --gibbs-steps alone draws, at temperature 1") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  Call call;
+  call.model = pipeline.model();
+  call.test = {pipeline.motion() / "walk_s02_01.bvh"};
+  call.fit = false;
+  const json drawn = by_program(call, "--fit none --baselines none --gibbs-steps 2");
+  CHECK(drawn.at("temperature") == 1.0);
+  call.temperature = 1;
+  call.sampling = mcdbn::SamplingRule{2, 0, false, 1.0};
+  CHECK(without_baselines(drawn) == without_baselines(by_library(call)));
+}
+
 TEST_CASE("evaluate --protocol paper: ten samples by the network alone, by folder") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();

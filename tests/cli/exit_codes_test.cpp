@@ -71,6 +71,10 @@ TEST_CASE("exit codes: usage 2, input 3, without any device") {
            {"train " + clip + " -o " + out + " --fine-tuning-dropout 1", 2,
             "--fine-tuning-dropout must be at least 0 and below 1, not 1"},
            {"regenerate --quiet --input t.csv -o " + out, 3, "t.csv: no such file"},
+           {"regenerate --quiet --input t.csv -o " + out + ".BVH", 3, "t.csv: no such file"},
+           {"regenerate --model m --input t.csv -o " + out + ".fbx", 2, "ends in .bvh"},
+           {"regenerate --model m --to track --input c.bvh -o " + out + ".bvh", 2, "ends in .csv"},
+           {"generate --model m --seed-clip c.bvh -o " + out + ".csv", 2, "ends in .bvh"},
            {"evaluate --model m", 2, "--test"},
            {"evaluate --model m --test t --camera-elevation -89.05", 2, "--camera-elevation"},
            {"evaluate --model m --test t --camera-elevation 90", 2, "--camera-elevation"},
@@ -223,6 +227,34 @@ TEST_CASE("exit codes: bad models and tracks are 3, no such device 4") {
            {"bench --platform no-such", 4, "no-such"}})
     check_case(one);
   CHECK(!fs::exists(out));
+}
+
+TEST_CASE("exit codes: a skeleton or joint map that cannot be used is named, and not the track") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  std::string text = small_bvh(8);
+  for (const char* joint : {"Hips", "Chest"}) text.replace(text.find(joint), 5, "Stick");
+  const std::string stick = folder.write("stick.bvh", text).string(),
+                    map = folder.write("map.toml", "left_knee = \"Nobody\"\n").string(),
+                    track = (folder / "t.csv").string();
+  REQUIRE(run_cli(fmt::format("project '{}' -o {}",
+                              (pipeline.motion() / "walk_s02_01.bvh").string(), track))
+              .exit_code == 0);
+  const std::string input = "--model " + pipeline.model().string() + " --input " + track,
+                    out = " -o " + (folder / "out.bvh").string();
+  const auto check_named = [](const std::string& arguments, const std::string& words) {
+    CAPTURE(arguments);
+    const CliResult result = run_cli(arguments);
+    CAPTURE(result.standard_error);
+    CHECK(result.exit_code == 3);
+    CHECK(result.standard_error.find("error: " + words) != std::string::npos);
+  };
+  check_named("regenerate " + input + out + " --skeleton " + stick,
+              stick + ": a skeleton without a known pelvis");
+  const std::string of_map = map + ": left_knee is to be the joint Nobody";
+  check_named("regenerate " + input + out + " --joint-map " + map, of_map);
+  check_named("regenerate --follow " + input + " --joint-map " + map, of_map);
 }
 
 TEST_CASE("Ctrl-C: training stops with 130, what is unfinished, and no model") {

@@ -191,6 +191,10 @@ TEST_CASE("fit: an MRBM of three modalities, and one of them inferred from the o
                                          4});
   REQUIRE(saved.scales.size() == 3);
   CHECK(saved.scales[0].mean.cols() == 0);
+  const auto is_standardized = [&] {
+    return json::parse(output_of("info --json " + path("m.safetensors"))).at("standardized");
+  };
+  CHECK(is_standardized() == true);
   CHECK(std::abs(saved.scales[2].mean(4) - 40.0F) < 1.5F);
 
   auto& device = usual_device();
@@ -219,6 +223,9 @@ TEST_CASE("fit: an MRBM of three modalities, and one of them inferred from the o
   check_refused(infer + " --modality a=" + path("a.npy") + " --infer a", 2, "it is given");
   check_refused(infer + " --modality a=" + path("a.npy"), 2, "--modality is for --infer");
   check_refused(infer + " " + machines.bits(), 3, "an MRBM; its data are given by --modality");
+  output_of("fit" + out + "--modality a=" + path("a.npy") + " --modality b=" + path("b.npy") +
+            " --quiet");
+  CHECK(is_standardized() == false);
 }
 
 TEST_CASE("fit: a settings file, over which flags have the last word") {
@@ -291,6 +298,8 @@ TEST_CASE("fit: data and flags that do not fit are refused") {
   check_refused("fit x.npy" + out + "rbm --order 2", 2, "--order: --machine rbm has no history");
   check_refused("fit x.npy" + out + "crbm --layers 2", 2, "--layers: --machine crbm has no layers");
   check_refused("fit x.npy" + out + "dbn --standardize", 2, "--standardize: --machine dbn");
+  check_refused("fit x.npy" + out + "gaussian-rbm --gaussian v", 2,
+                "--gaussian: --machine gaussian-rbm has no modalities");
   check_refused("fit x.npy" + out + "rbm --binary-rate 0", 2, "--binary-rate must be");
   CHECK(!fs::exists(folder / "m.safetensors"));
 }

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <csignal>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "base/text_file.hpp"
 #include "library_calls.hpp"
+#include "mcdbn/camera/track_stretches.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/frame_stream.hpp"
@@ -55,7 +57,8 @@ std::string by_library(const Scene& scene, const std::string& frames,
                       : frames == "json" ? mcdbn::json_stream(out, track.fps)
                                          : mcdbn::bvh_stream(out, track.fps, true);
   const auto write = [&](const std::vector<mcdbn::LiveFrame>& finished) {
-    for (const mcdbn::LiveFrame& frame : finished) stream->write(live.skeleton(), frame.channels);
+    for (const mcdbn::LiveFrame& frame : finished)
+      stream->write(live.skeleton(), frame.channels, frame.seen);
   };
   for (int t = 0; t < track.frames(); ++t)
     write(live.push({track.x_px.row(t), track.y_px.row(t), track.confidence.row(t)}));
@@ -185,12 +188,77 @@ TEST_CASE("regenerate --follow: an output that cannot be written is named, no fr
   CHECK(mcdbn::read_text_file(scene.camera) == before);
 }
 
+TEST_CASE("regenerate --follow: a person by number who never comes is exit code 3") {
+  if (!have_device()) return;
+  const Scene scene;
+  // Of our CSV, which has one person, and of a detector's frames, a line each.
+  const fs::path detected = scene.folder / "detected";
+  REQUIRE(run_cli(fmt::format("project '{}' --like openpose --format openpose -o '{}'",
+                              (TinyPipeline::instance().motion() / "walk_s02_01.bvh").string(),
+                              detected.string()))
+              .exit_code == 0);
+  std::set<fs::path> files(fs::directory_iterator(detected), {});
+  std::string lines;
+  for (const fs::path& file : files) lines += mcdbn::read_text_file(file) + "\n";
+  for (const fs::path& track : {scene.track, scene.folder.write("lines.jsonl", lines)}) {
+    CAPTURE(track.string());
+    const CliResult second = scene.follow("--person 2 --quiet --frames json", track);
+    CHECK(second.exit_code == 3);
+    CHECK(second.standard_error.find("error: standard input: no person 2 in any frame") !=
+          std::string::npos);
+    // The frames are there all the same.
+    std::istringstream frames(second.standard_output);
+    int count = 0;
+    for (std::string line; std::getline(frames, line); ++count)
+      CHECK(nlohmann::json::parse(line).at("seen") == false);
+    CHECK(count == mcdbn::read_track_csv(scene.track).frames());
+    const CliResult first = scene.follow("--person 1 --quiet --frames json", track);
+    CHECK(first.exit_code == 0);
+    CHECK(first.standard_output.find("\"seen\":true") != std::string::npos);
+  }
+}
+
+TEST_CASE(
+    "regenerate --follow: a track in which nobody is seen gives the mean pose and a warning") {
+  if (!have_device()) return;
+  const Scene scene;
+  mcdbn::Track2d track = mcdbn::read_track_csv(scene.track);
+  const auto warned = [&](Eigen::Index hidden) {
+    leave_out(track, {{0, static_cast<int>(hidden)}});
+    write_track_csv(scene.folder / "hidden.csv", track);
+    const CliResult result = scene.follow("--quiet --frames csv", scene.folder / "hidden.csv");
+    CAPTURE(result.standard_error);
+    CHECK(result.exit_code == 0);
+    CHECK(count_lines(result.standard_output) == track.frames() + 1);
+    return result.standard_error.find("no frame shows enough of a person") != std::string::npos;
+  };
+  CHECK(!warned(track.frames() / 2));
+  CHECK(warned(track.frames()));
+}
+
+TEST_CASE("regenerate --follow: the output's ending is that of a format of frames") {
+  if (!have_device()) return;
+  const Scene scene;
+  const auto call = [&](const std::string& name, const std::string& options) {
+    return run_cli(scene.call(fmt::format("--input '{}' -o '{}' --quiet {}", scene.track.string(),
+                                          (scene.folder / name).string(), options)));
+  };
+  const CliResult refused = call("out.fbx", "");
+  CHECK(refused.exit_code == 2);
+  CHECK(refused.standard_error.find(".bvh, .csv, .json, .jsonl") != std::string::npos);
+  CHECK(!fs::exists(scene.folder / "out.fbx"));
+  CHECK(call("out.txt", "--frames csv").exit_code == 0);
+  CHECK(call("out", "").exit_code == 0);
+  CHECK(mcdbn::read_text_file(scene.folder / "out").starts_with("HIERARCHY"));
+}
+
 TEST_CASE("regenerate --follow: what cannot be followed") {
   if (!have_device()) return;
   const Scene scene;
-  for (const char* other : {"--samples 2", "--fit none", "--to track", "--method mean_pose",
-                            "--write-camera c.yml", "--uncertainty u.csv", "--temperature 0.5",
-                            "--look-ahead 100", "--person all", "--frames film"}) {
+  for (const char* other :
+       {"--samples 2", "--fit none", "--to track", "--method mean_pose", "--write-camera c.yml",
+        "--uncertainty u.csv", "--temperature 0.5", "--gibbs-steps 1", "--mrbm-gibbs-steps 1",
+        "--look-ahead 100", "--person all", "--frames film"}) {
     CAPTURE(other);
     CHECK(scene.follow(other, scene.track).exit_code == 2);
   }

@@ -136,9 +136,10 @@ TEST_CASE("generate: every option changes what its help describes") {
   rows.push_back({"--output", [&] { CHECK(text() == by_library(one).at(0)); }});
   rows.push_back({"--quiet", [&] {
                     const std::string call = one.arguments(output);
-                    CHECK(count_lines(run_cli(call).standard_error) == 3);
+                    CHECK(count_lines(run_cli(call).standard_error) == 4);
                     const std::string seen = text();
-                    CHECK(run_cli(call + " --quiet").standard_error.empty());
+                    // The warning alone is left.
+                    CHECK(count_lines(run_cli(call + " --quiet").standard_error) == 1);
                     CHECK(text() == seen);
                   }});
   check_options("generate", rows);
@@ -148,6 +149,30 @@ TEST_CASE("generate: what holds where an option is not given") {
   if (!have_device()) return;
   const Call bare{.model = TinyPipeline::instance().model(), .seed_clips = {seed_clip(1)}};
   CHECK(by_program(bare) == by_library(bare));
+}
+
+TEST_CASE("generate: a model that was not trained to run freely is reported where it does not") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const auto messages = [&](const fs::path& model) {
+    const Call call{.model = model, .seed_clips = {seed_clip(1)}, .frames = 60};
+    const CliResult result = run_cli(call.arguments(folder / "out.bvh"));
+    CAPTURE(result.standard_error);
+    CHECK(result.exit_code == 0);
+    return result.standard_error;
+  };
+  const std::string warning = "the model was not trained to run freely",
+                    what = "--preset generation";
+  const std::string usual = messages(pipeline.model());
+  CHECK(usual.find(warning) != std::string::npos);
+  CHECK(usual.find(what) != std::string::npos);
+  // This small a one hardly moves either, but it was trained for it.
+  REQUIRE(train(pipeline.training_clips(), folder / "run", kTinyGreedy + " " + what).exit_code ==
+          0);
+  const std::string trained = messages(folder / "run/model.safetensors");
+  CHECK(trained.find(" 0.5 and 1.5; ") != std::string::npos);
+  CHECK(trained.find("warning") == std::string::npos);
 }
 
 TEST_CASE("generate: a seed clip that is too short is named") {

@@ -136,7 +136,11 @@ TEST_CASE("transform: every option changes what its help describes") {
   // What these do has a test case of its own.
   rows.push_back({"--inverse", [] {}});
   rows.push_back({"--modality", [] {}});  // that of MRBMs in fit_test.cpp
-  rows.push_back({"--infer", [&] { check_refused(call + " --infer x", 3, "no MRBM"); }});
+  rows.push_back({"--infer", [&] {
+                    check_refused(use + " --infer x", 3, "no MRBM");
+                    check_refused(call + " --infer x", 2, "data: --infer takes what --modality");
+                    check_refused(use + " --infer x --inverse", 2, "--inverse excludes --infer");
+                  }});
   rows.push_back({"--steps", [&] { check_refused(call + " --steps 2", 2, "--inverse"); }});
   check_options("transform", rows);
 }

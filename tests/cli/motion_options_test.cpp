@@ -195,12 +195,18 @@ TEST_CASE("project: every option changes what its help describes") {
   const auto drawn_row = [&](const char* option, double mcdbn::DetectorCameras::*setting,
                              double value) {
     const std::string arguments = fmt::format("--random-camera {} {}", option, value);
-    return OptionRow{option, [=, &projected] {
-                       ProjectCall call;
-                       call.random.emplace().*setting = value;
-                       CHECK(projected(arguments) == track_text(clip, call));
-                       CHECK(projected(arguments) != projected("--random-camera"));
-                     }};
+    return OptionRow{
+        option, [=, &projected] {
+          ProjectCall call;
+          call.random.emplace().*setting = value;
+          CHECK(projected(arguments) == track_text(clip, call));
+          CHECK(projected(arguments) != projected("--random-camera"));
+          const CliResult alone = run_cli(fmt::format("project '{}' -o '{}' {} {}", clip.string(),
+                                                      output.string(), option, value));
+          CHECK(alone.exit_code == 2);
+          CHECK(alone.standard_error.find(std::string(option) + " requires --random-camera") !=
+                std::string::npos);
+        }};
   };
   using Cameras = mcdbn::DetectorCameras;
   check_options(
@@ -284,7 +290,9 @@ TEST_CASE("project: every option changes what its help describes") {
           const ScratchFolder other;
           mcdbn::CameraPlacement placement;
           placement.azimuth_deg = 12;
-          write_camera(other / "c.yaml", place_camera(mcdbn::load_clip(clip), placement));
+          const mcdbn::Motion motion = mcdbn::load_clip(clip);
+          write_camera(other / "c.yaml",
+                       with_unit(place_camera(motion, placement), motion.skeleton));
           CHECK(mcdbn::read_text_file(written) == mcdbn::read_text_file(other / "c.yaml"));
         }},
        {"--quiet", [&] {

@@ -126,7 +126,8 @@ TEST_CASE("regenerate --fit none leaves the network's answer, track is the defau
   };
   const auto miss_px = [&](const mcdbn::Motion& motion) {
     CHECK(motion.frames() == wanted.frames());
-    const mcdbn::Track2d seen = mcdbn::project_motion(motion, mcdbn::read_camera(camera));
+    const mcdbn::Track2d seen = mcdbn::project_motion(
+        motion, mcdbn::in_file_units(mcdbn::read_camera(camera), motion.skeleton));
     return (seen.x_px - wanted.x_px).norm() + (seen.y_px - wanted.y_px).norm();
   };
   const mcdbn::Motion fitted = regenerate("");

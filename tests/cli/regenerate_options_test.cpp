@@ -76,7 +76,7 @@ std::vector<std::string> by_library(const Call& call) {
   if (call.mrbm_gibbs_steps)
     options.sampling = {call.gibbs_steps.value_or(0), *call.mrbm_gibbs_steps, false, 1.0};
   const bool anew = call.gibbs_steps || call.mrbm_gibbs_steps;
-  options.temperature = call.temperature.value_or(options.samples == 1 ? 0.0 : anew ? 1.0 : 2.0);
+  options.temperature = call.temperature.value_or(anew ? 1.0 : options.samples == 1 ? 0.0 : 2.0);
   std::vector<std::string> texts;
   for (const mcdbn::Motion& motion :
        regenerate_clip(model, mcdbn::read_track_csv(call.track), placement, options))
@@ -239,19 +239,20 @@ TEST_CASE("regenerate: every option changes what its help describes") {
                                                                            : "";
            CHECK(run_cli(one.arguments(folder / "live.bvh") + " " + option + value).exit_code == 2);
          }});
-  rows.push_back({"--write-camera", [&] {
-                    const fs::path written = folder / "written.yaml";
-                    REQUIRE(
-                        run_cli(fmt::format("regenerate --model '{}' --input '{}' -o '{}' "
-                                            "--camera '{}' --write-camera '{}'",
-                                            one.model.string(), one.track.string(), output.string(),
-                                            (folder / "camera.yaml").string(), written.string()))
-                            .exit_code == 0);
-                    const mcdbn::Camera given = mcdbn::read_camera(folder / "camera.yaml"),
-                                        back = mcdbn::read_camera(written);
-                    CHECK(back.translation.isApprox(given.translation, 1e-6));
-                    CHECK(back.camera_from_world.isApprox(given.camera_from_world, 1e-6));
-                  }});
+  rows.push_back(
+      {"--write-camera", [&] {
+         const fs::path written = folder / "written.yaml";
+         REQUIRE(run_cli(fmt::format("regenerate --model '{}' --input '{}' -o '{}' "
+                                     "--camera '{}' --write-camera '{}'",
+                                     one.model.string(), one.track.string(), output.string(),
+                                     (folder / "camera.yaml").string(), written.string()))
+                     .exit_code == 0);
+         const mcdbn::Camera given = in_file_units(mcdbn::read_camera(folder / "camera.yaml"),
+                                                   mcdbn::read_bvh(output).skeleton),
+                             back = mcdbn::read_camera(written);
+         CHECK(back.translation.isApprox(given.translation, 1e-6));
+         CHECK(back.camera_from_world.isApprox(given.camera_from_world, 1e-6));
+       }});
   rows.push_back(
       {"--uncertainty", [&] {
          const fs::path written = folder / "sure.csv";
@@ -369,6 +370,13 @@ TEST_CASE("regenerate: what holds where an option is not given") {
   Call drawn = bare;
   drawn.temperature = 0.6;
   check_same(drawn, answer);
+  // Drawn anew in every frame a single answer is drawn, too.
+  Call anew = bare;
+  anew.gibbs_steps = 5;
+  check_same(anew, answer);
+  anew = bare;
+  anew.mrbm_gibbs_steps = 5;
+  check_same(anew, answer);
 }
 
 }  // namespace regenerate_options_test

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <cstring>
 #include <optional>
 
 #include "base/text_file.hpp"
@@ -75,12 +76,14 @@ TEST_CASE("regenerate --to track: 2D from a clip, as the library makes it") {
   CHECK(written(" --samples 2 --temperature 0.7 --seed 9 --gibbs-steps 2 --mrbm-gibbs-steps 3",
                 {"out_01.csv", "out_02.csv"}) == wanted(options));
 
-  for (const char* other : {"--fit none", "--fit track", "--skeleton clip.bvh", "--camera-pitch 3",
-                            "--camera-roll 3", "--camera-fov 50"}) {
+  for (const char* other :
+       {"--fit none", "--fit track", "--skeleton clip.bvh", "--camera-pitch 3", "--camera-roll 3",
+        "--camera-fov 50", "--format csv", "--person 1", "--fps 25", "--image-size 640 480"}) {
     CAPTURE(other);
     const CliResult refused = run_cli(plain + " " + other);
     CHECK(refused.exit_code == 2);
-    CHECK(refused.standard_error.find("is for --to pose") != std::string::npos);
+    const std::string flag(other, std::strcspn(other, " "));
+    CHECK(refused.standard_error.find(flag + " is for --to pose") != std::string::npos);
   }
   const CliResult no_clip =
       run_cli(fmt::format("regenerate --model '{}' --to track --input '{}' -o o.csv",

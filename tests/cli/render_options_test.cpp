@@ -168,6 +168,28 @@ TEST_CASE("render --over: a file that is no film is refused in one line of our o
   CHECK(result.standard_error.find("moov") == std::string::npos);
 }
 
+TEST_CASE("render --over: what it needs is named, and a camera that is scaled is reported") {
+  const ScratchFolder folder;
+  const fs::path clip = folder.write("clip.bvh", small_bvh(40)), film = folder / "film.mp4",
+                 camera = folder / "camera.yaml";
+  REQUIRE(
+      run_cli(fmt::format("render '{}' -o '{}' --image-size 96 96", clip.string(), film.string()))
+          .exit_code == 0);
+  const std::string call = fmt::format("render '{}' --over '{}' --quiet -o '{}'", clip.string(),
+                                       film.string(), (folder / "over.png").string());
+  const CliResult refused = run_cli(call);
+  CHECK(refused.exit_code == 2);
+  for (const char* word : {"--camera", "regenerate's --write-camera"})
+    CHECK(refused.standard_error.find(word) != std::string::npos);
+  write_camera(camera, place_camera(mcdbn::load_clip(clip),
+                                    {.distance = 300, .width_px = 192, .height_px = 192}));
+  const CliResult drawn = run_cli(fmt::format("{} --camera '{}'", call, camera.string()));
+  CHECK(drawn.exit_code == 0);
+  CHECK(drawn.standard_error.find(fmt::format(
+            "mcdbn-cl: warning: {}: its images are 96 x 96 px, those of the camera 192 x 192 px",
+            film.string())) != std::string::npos);
+}
+
 TEST_CASE("render: without the program that draws, the message names it") {
   const ScratchFolder folder;
   fs::create_directory(folder / "bin");

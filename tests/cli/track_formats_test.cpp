@@ -64,3 +64,27 @@ TEST_CASE("project: a detector's track in every format that has room for it, rea
   }
   CHECK(written.size() == mcdbn::track_formats().size());
 }
+
+TEST_CASE("project: a skeleton's own joints are read back as in our CSV from every format") {
+  const ScratchFolder folder;
+  REQUIRE(run_cli(fmt::format("synthesize --action walk --clips 1 --seconds 1 -o '{}'",
+                              (folder / "motion").string()))
+              .exit_code == 0);
+  const auto clip = std::filesystem::directory_iterator(folder / "motion")->path();
+  const auto projected = [&](const std::string& format) {
+    const auto path = folder / ("track_" + format);
+    REQUIRE(run_cli(fmt::format("project '{}' --format {} -o '{}'", clip.string(), format,
+                                path.string()))
+                .exit_code == 0);
+    return mcdbn::read_track(path);
+  };
+  const Track2d wanted = projected("csv");
+  CHECK(wanted.keypoints.empty());
+  for (const char* format : {"sleap", "deeplabcut"}) {
+    CAPTURE(format);
+    const Track2d read = projected(format);
+    CHECK(read.joint_names == wanted.joint_names);
+    CHECK(read.keypoints.empty());
+    CHECK(same(read.x_px, wanted.x_px));
+  }
+}

@@ -176,6 +176,13 @@ TEST_CASE("train: every option changes what its help describes") {
          CHECK(info.find("start.safetensors") != std::string::npos);
          CHECK(recorded_settings(folder / "from").at("fine-tuning.rate") ==
                mcdbn::FineTuningSettings::kRateFromModel);
+         const std::string printed =
+             "train --print-settings --fine-tuning-steps 2 "
+             "--fine-tuning-windows 4 --augment-views 1 --from ";
+         CHECK(run_cli(fmt::format("{} '{}'", printed, start.string())).standard_output ==
+               mcdbn::read_text_file(folder / "from/config.toml"));
+         CHECK(run_cli(printed + "absent").exit_code == 3);
+         CHECK(run_cli(printed + "default --hidden 99").exit_code == 2);
          CHECK(from("absent", "").exit_code == 3);
          const CliResult wider = from(fmt::format("'{}'", start.string()), "--hidden 99");
          CHECK(wider.exit_code == 2);

@@ -127,6 +127,31 @@ TEST_CASE("the paper's own settings trip the divergence guard, which names what 
   CHECK(!fs::exists(run / "model.safetensors"));
 }
 
+TEST_CASE("train --sweep: exit code 1 where every configuration failed, 0 where one did not") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const std::string test_clip = "'" + (pipeline.motion() / "walk_s02_01.bvh").string() + "'";
+  const auto swept = [&](const char* rates) {
+    const fs::path sweep = folder.write(
+        "sweep.toml", fmt::format("test = [{}]\n[grid]\ngaussian.rate = {}\n", test_clip, rates));
+    return train(pipeline.training_clips(), folder / "sweep",
+                 fmt::format("{} --quiet --sweep '{}'", kTiny, sweep.string()));
+  };
+  const fs::path log = folder / "sweep/sweep.jsonl";
+  const CliResult failed = swept("[50.0, 60.0]");
+  CAPTURE(failed.standard_error);
+  CHECK(failed.exit_code == 1);
+  CHECK(failed.standard_error.ends_with(fmt::format(
+      "error: {}: every configuration failed, for the reason in its line\n", log.string())));
+  CHECK(failed.standard_output.find("gaussian.rate=60.0") != std::string::npos);
+  CHECK(count_lines(mcdbn::read_text_file(log)) == 2);
+  const CliResult some = swept("[50.0, 0.001]");
+  CAPTURE(some.standard_error);
+  CHECK(some.exit_code == 0);
+  CHECK(count_lines(mcdbn::read_text_file(log)) == 3);
+}
+
 TEST_CASE("an unknown setting is exit code 2 and names its line") {
   const ScratchFolder folder;
   const fs::path config = folder.write("bad.toml", "order = 3\nhiden = 20\n");

@@ -9,6 +9,7 @@
 #include "corpus/training_files.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion/joint_role.hpp"
 
 namespace sweep_test {
 
@@ -111,7 +112,8 @@ TEST_CASE("sweep file: what makes no sense is refused with its line") {
             .starts_with("3: a setting is a number or true or false"));
 }
 
-TEST_CASE("sweep: a line for each configuration, failed ones too, none done twice") {
+TEST_CASE(
+    "sweep: a line for each configuration, failed ones too, none that was scored done twice") {
   const TrainingFiles files({{.subject = 1}, {.subject = 2}});
   const ScratchFolder folder;
   on_every_device([&](Device& device) {
@@ -151,6 +153,76 @@ TEST_CASE("sweep: a line for each configuration, failed ones too, none done twic
     CHECK(begun.empty());
     CHECK(lines_of(folder.write("whole.jsonl", text)) ==
           std::vector<ordered_json>{scored, diverged, refused});
+  });
+}
+
+TEST_CASE("sweep: what was scored with other clips or another skeleton is done anew in its place") {
+  const TrainingFiles files({{.subject = 1}, {.subject = 2}, {.subject = 3}});
+  const ScratchFolder folder;
+  on_every_device([&](Device& device) {
+    std::filesystem::remove_all(folder / "run");
+    const auto log = folder / "run/sweep.jsonl";
+    const auto put = [&](const char* name, std::size_t file) {
+      return folder.write(name, read_text_file(files.files()[file]));
+    };
+    const auto training = put("training.bvh", 0), test = put("test.bvh", 1);
+    TrainingConfig choices;
+    std::string person;
+    int trainings = 0;
+    /// @return how many trainings it took
+    const auto run = [&] {
+      trainings = 0;
+      const auto resolve = [&](const SweepConfiguration& varied) {
+        TrainingConfig config = tiny(varied);
+        config.skeleton = choices.skeleton;
+        config.joint_map = choices.joint_map;
+        return config;
+      };
+      Sweep sweep(device, {test}, {ListedClip(training, person)}, resolve, folder / "run");
+      const ordered_json record = sweep.run({}, [&](bool counts) {
+        if (counts) ++trainings;
+        return EpochObserver();
+      });
+      CAPTURE(record.dump());
+      CHECK(record.at("status") == "ok");
+      REQUIRE(lines_of(log).size() == 1);
+      CHECK(lines_of(log).front().at("fingerprint") == record.at("fingerprint"));
+      return trainings;
+    };
+    CHECK(run() == 1);
+    CHECK(run() == 0);
+    put("test.bvh", 2);
+    CHECK(run() == 1);
+    put("training.bvh", 1);
+    CHECK(run() == 1);
+    person = "somebody";
+    CHECK(run() == 1);
+    choices.skeleton = SkeletonUse::humanoid;
+    CHECK(run() == 1);
+    choices.joint_map = {{JointRole::head, "Neck"}};
+    CHECK(run() == 1);
+    CHECK(run() == 0);
+    // A line of an older program.
+    ordered_json older = lines_of(log).front();
+    older.erase("fingerprint");
+    write_text_file(log, older.dump() + '\n');
+    CHECK(run() == 1);
+  });
+}
+
+TEST_CASE("sweep: what failed is tried again, and its line replaced") {
+  const TrainingFiles files({{.subject = 1}, {.subject = 2}});
+  const ScratchFolder folder;
+  on_every_device([&](Device& device) {
+    std::filesystem::remove_all(folder / "run");
+    Sweep sweep(device, {files.files()[1]}, {files.files()[0]}, tiny, folder / "run");
+    const Sweep::Watch fails = [](bool) -> EpochObserver {
+      return [](const EpochReport&) { throw Error("no luck"); };
+    };
+    CHECK(sweep.run({}, fails).at("error") == "no luck");
+    const ordered_json scored = sweep.run({});
+    CHECK(scored.at("status") == "ok");
+    CHECK(lines_of(folder / "run/sweep.jsonl") == std::vector<ordered_json>{scored});
   });
 }
 

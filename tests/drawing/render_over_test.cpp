@@ -82,6 +82,26 @@ TEST_CASE("a film is drawn over from the frame where the clip begins, in its own
   CHECK(read_film(folder / "short.mp4").size() == 3);
 }
 
+TEST_CASE("a film of another size than the camera's gives one notice, of its own size none") {
+  const ScratchFolder folder;
+  const auto film = write_film(folder, 6);
+  const Motion motion = test::swinging(test::small_body(), 4);
+  const auto notices = [&](const RenderOptions& options, const char* output) {
+    std::vector<std::string> collected;
+    render({{motion, "clip"}}, folder / output, options, &collected);
+    return collected;
+  };
+  RenderOptions options = over(film, motion, 0);
+  const std::vector<std::string> scaled{
+      film.string() +
+      ": its images are 320 x 240 px, those of the camera 640 x 480 px: the camera is scaled to "
+      "them"};
+  CHECK(notices(options, "drawn.mp4") == scaled);
+  CHECK(notices(options, "drawn.png") == scaled);
+  options.camera = mcdbn::scaled(*options.camera, kWidth_px, kHeight_px);
+  CHECK(notices(options, "drawn.mp4").empty());
+}
+
 TEST_CASE("a sheet over a film shows frames at even times") {
   const ScratchFolder folder;
   const Motion motion = test::swinging(test::small_body(), 10);
@@ -105,7 +125,10 @@ TEST_CASE("what cannot be drawn over is reported") {
   };
   RenderOptions options = over(film, motion, 0);
   options.camera.reset();
-  CHECK_THROWS_AS(draw(options), ConfigError);
+  CHECK_THROWS_WITH_AS(draw(options),
+                       doctest::Contains("give `camera`; where there is no calibration, "
+                                         "regenerate's `write-camera`"),
+                       ConfigError);
   CHECK_THROWS_AS(draw(over(folder / "absent.mp4", motion, 0)), InputError);
   CHECK_THROWS_AS(draw(over(folder.write("text.mp4", "no film"), motion, 0)), InputError);
   // OpenCV would open the files, and the addresses, that these name.

@@ -98,6 +98,9 @@ TEST_CASE("small: a CDBN comes back from its file layer by layer") {
     for (std::size_t i = 0; i < 2; ++i) check_same(back[i].to_host(), layers[i]);
     CHECK(got.scales.empty());
     CHECK(describe_machine(path).at("standardized") == false);
+    // Nor is one whose scales are empty.
+    save_machine(path, {cdbn, {ColumnScale{}}});
+    CHECK(describe_machine(path).at("standardized") == false);
   });
 }
 

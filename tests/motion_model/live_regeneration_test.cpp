@@ -299,12 +299,62 @@ TEST_CASE("live: before anybody is seen it is the mean pose; who comes back is f
       }
     for (LiveFrame& frame : live.finish()) frames.push_back(std::move(frame));
     REQUIRE(frames.size() == 90);
-    for (int t = 0; t < 90; ++t) CHECK(frames[static_cast<std::size_t>(t)].seen == (t >= 20));
+    for (int t = 0; t < 90; ++t)
+      CHECK(frames[static_cast<std::size_t>(t)].seen == (t >= 65 || (t >= 20 && t < 40)));
     Motion end{live.skeleton(), 1.0 / 30, MatrixD(10, live.skeleton().channel_count())};
     for (int t = 0; t < 10; ++t)
       end.channels.row(t) = frames[static_cast<std::size_t>(80 + t)].channels;
     const Track2d shown = project_motion(end, live.camera());
     CHECK((shown.x_px - scene.track.x_px.bottomRows(10)).cwiseAbs().mean() < 5);
+  });
+}
+
+TEST_CASE("live: which frames show nobody is known at every rate") {
+  on_every_device([](Device& device) {
+    for (const double fps : {60.0, 47.0, 20.0}) {
+      CAPTURE(fps);
+      Scene scene(fps, 60);
+      const Model model = scene.model(device);
+      hide(scene.track, 0, 12);
+      hide(scene.track, 30, 10);
+      LiveRegeneration live(model, scene.track, scene.placement());
+      std::vector<LiveFrame> frames;
+      const auto add = [&](std::vector<LiveFrame> more) {
+        std::ranges::move(more, std::back_inserter(frames));
+      };
+      for (int t = 0; t < 60; ++t) add(live.push(frame_of(scene.track, t)));
+      add(live.finish());
+      REQUIRE(frames.size() == 60);
+      for (int t = 0; t < 60; ++t) {
+        CAPTURE(t);
+        const bool seen = frames[static_cast<std::size_t>(t)].seen;
+        const bool hidden = t < 12 || (t >= 30 && t < 40);
+        // The pose between the mean one and the first of the person is neither's.
+        if (t < 12 || t >= 15) CHECK(seen == !hidden);
+      }
+    }
+  });
+}
+
+TEST_CASE("live: the mean pose stands on the ground") {
+  on_every_device([](Device& device) {
+    Scene scene;
+    const Model model = scene.model(device);
+    hide(scene.track, 0, 50);
+    ClipPlacement placement = scene.placement();
+    for (const bool known : {true, false}) {
+      if (!known) placement.camera.reset();
+      LiveRegeneration live(model, scene.track, placement);
+      const Motion got = followed(live, scene.track);
+      REQUIRE(got.frames() == 50);
+      const MatrixD places = joint_positions(got);
+      const double metre = file_units_per_metre(got.skeleton);
+      for (int t = 0; t < 50; ++t) {
+        const Eigen::Map<const MatrixD> joints(places.row(t).data(), got.skeleton.joint_count(), 3);
+        CHECK(std::abs(joints.col(1).minCoeff()) < 1e-6 * metre);
+        CHECK(joints(0, 1) > 0.5 * metre);  // the hips
+      }
+    }
   });
 }
 

@@ -39,10 +39,11 @@ struct RenderOptions {
 /// A `.mp4` shows the clips side by side. A `.png` is a contact sheet of frames at even times: two
 /// rows of one clip, or one row a clip (the first, e.g. the truth, on top). Written atomically.
 /// Over a film nothing else is drawn, and of a sheet both rows show the film.
+/// @param notices if given, collects what was adapted to a film
 /// @throws InputError if there is no frame, the ending is another one, the film cannot be read, or
 ///         the file cannot be written; ConfigError if an option is out of range, or a film is to be
 ///         drawn over without a camera
 void render(const std::vector<RenderClip>& clips, const std::filesystem::path& path,
-            const RenderOptions& options = {});
+            const RenderOptions& options = {}, std::vector<std::string>* notices = nullptr);
 
 }  // namespace mcdbn

@@ -12,7 +12,9 @@ namespace mcdbn {
 /// One frame of regenerated motion.
 struct LiveFrame {
   RowVectorD channels;  ///< of LiveRegeneration::skeleton(), degrees and file units
-  bool seen = true;     ///< false: no person has been seen yet, and this is the model's mean pose
+  /// Whether the track's frame shows anybody. Where not, it is the model's mean pose until a person
+  /// is found, and later follows from the frames around.
+  bool seen = true;
 };
 
 /// 3D motion from a 2D track that is still growing: regenerate_clip for those who cannot wait for
