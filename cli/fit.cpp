@@ -99,30 +99,6 @@ void check_flags(const FitOptions& options) {
         "--standardize: --machine {} wants values from 0 to 1 as they are", options.machine));
 }
 
-/// What a machine can learn from: numbers throughout, from 0 to 1 where its units are binary.
-void check_values(const MatrixF& values, VisibleKind kind, const std::filesystem::path& file) {
-  for (Eigen::Index r = 0; r < values.rows(); ++r)
-    for (Eigen::Index c = 0; c < values.cols(); ++c) {
-      const float x = values(r, c);
-      if (!std::isfinite(x))
-        throw InputError(fmt::format("{}: row {}, column {} is {}; a fit wants numbers throughout",
-                                     file.string(), r + 1, c + 1, x));
-      if (kind == VisibleKind::binary && (x < 0.0F || x > 1.0F))
-        throw InputError(fmt::format(
-            "{}: row {}, column {} is {}; binary units want values from 0 to 1 (a Gaussian "
-            "machine takes any)",
-            file.string(), r + 1, c + 1, x));
-    }
-}
-
-void check_lengths(const std::vector<MatrixF>& data, std::size_t order,
-                   const std::filesystem::path& first) {
-  for (const MatrixF& values : data)
-    if (values.rows() > static_cast<Eigen::Index>(order)) return;
-  throw InputError(fmt::format("{}: no file has more than {} rows, the history of the machine",
-                               first.string(), order));
-}
-
 /// The data of one modality, checked, and scaled if that was asked for.
 ColumnScale prepare(std::vector<MatrixF>& data, const MatrixInput& input, VisibleKind kind,
                     bool standardize) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iostream>
+#include <utility>
 
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/base/matrix_file.hpp"
@@ -83,6 +85,39 @@ std::vector<MatrixF> scaled(const SavedMachine& saved, std::vector<MatrixF> data
 MatrixF unscaled(const SavedMachine& saved, const MatrixF& values, std::size_t modality) {
   const ColumnScale* scale = scale_of(saved, modality);
   return scale ? scale->undo(values) : values;
+}
+
+void check_values(const MatrixF& values, VisibleKind kind, const std::filesystem::path& file) {
+  for (Eigen::Index r = 0; r < values.rows(); ++r)
+    for (Eigen::Index c = 0; c < values.cols(); ++c) {
+      const float x = values(r, c);
+      if (!std::isfinite(x))
+        throw InputError(fmt::format("{}: row {}, column {} is {}; numbers are needed throughout",
+                                     file.string(), r + 1, c + 1, x));
+      if (kind == VisibleKind::binary && (x < 0.0F || x > 1.0F))
+        throw InputError(fmt::format(
+            "{}: row {}, column {} is {}; binary units need values from 0 to 1 (a Gaussian "
+            "machine takes any)",
+            file.string(), r + 1, c + 1, x));
+    }
+}
+
+void check_lengths(const std::vector<MatrixF>& data, std::size_t order,
+                   const std::filesystem::path& first) {
+  for (const MatrixF& values : data)
+    if (values.rows() > static_cast<Eigen::Index>(order)) return;
+  throw InputError(fmt::format("{}: no file has more than {} rows, the history of the machine",
+                               first.string(), order));
+}
+
+std::vector<MatrixF> checked_and_scaled(const SavedMachine& saved, const Cdbn& stack,
+                                        const MatrixInput& files) {
+  const CrbmShape shape = stack.layers.front().shape();
+  std::vector<MatrixF> data = files.read();
+  for (std::size_t i = 0; i < data.size(); ++i) check_values(data[i], shape.kind, files.files[i]);
+  data = scaled(saved, std::move(data), shape.visible, files);
+  check_lengths(data, stack.total_order(), files.files.front());
+  return data;
 }
 
 MatrixF stacked(const std::vector<MatrixF>& sequences, std::size_t first) {

@@ -45,6 +45,17 @@ std::vector<MatrixF> scaled(const SavedMachine& saved, std::vector<MatrixF> data
                             std::size_t modality = 0);
 MatrixF unscaled(const SavedMachine& saved, const MatrixF& values, std::size_t modality = 0);
 
+/// Checks what a machine can take: numbers throughout, from 0 to 1 where its units are binary.
+/// @throws InputError naming the file, row and column
+void check_values(const MatrixF& values, VisibleKind kind, const std::filesystem::path& file);
+/// Checks that at least one sequence is longer than the history. @param first file, for errors
+/// @throws InputError
+void check_lengths(const std::vector<MatrixF>& data, std::size_t order,
+                   const std::filesystem::path& first);
+/// The files' data as a stack can take them, checked and scaled. @throws InputError
+std::vector<MatrixF> checked_and_scaled(const SavedMachine& saved, const Cdbn& stack,
+                                        const MatrixInput& files);
+
 /// The rows from `first` on of each sequence, one after another.
 MatrixF stacked(const std::vector<MatrixF>& sequences, std::size_t first);
 

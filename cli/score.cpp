@@ -69,12 +69,16 @@ LogPartition partition_of(const Cdbn& stack, const AisSettings& settings) {
   return log_partition(stack.layers.front(), settings);
 }
 
-/// log p of each row as the data are: that of scaled columns less the logarithms of their scales.
+/// log p of each row as the data are: that of scaled columns, in the machine's own deviations where
+/// it has learnt some, less the logarithms of these scales.
 Score log_likelihood(const Score& free_energy, const LogPartition& partition,
-                     const SavedMachine& saved) {
+                     const SavedMachine& saved, const Crbm& machine) {
+  const auto log_sum = [](const MatrixF& deviation) {
+    return deviation.cast<double>().array().log().sum();
+  };
   double scale = 0;
-  if (!saved.scales.empty())
-    scale = saved.scales.front().deviation.cast<double>().array().log().sum();
+  if (!saved.scales.empty()) scale = log_sum(saved.scales.front().deviation);
+  if (machine.has_deviation) scale += log_sum(machine.visible_deviation.to_host());
   return {"log_likelihood", (-free_energy.values.array() - partition.value - scale).matrix()};
 }
 
@@ -87,13 +91,13 @@ struct Scores {
 Scores stack_scores(Device& device, const SavedMachine& saved, const ScoreOptions& options) {
   const Cdbn stack = stack_of(saved, options.model);
   if (options.data.files.empty()) throw ConfigError("data: no files");
-  const Sequences data = Sequences::from_host(
-      device,
-      scaled(saved, options.data.read(), stack.layers.front().shape().visible, options.data));
+  const Sequences data =
+      Sequences::from_host(device, checked_and_scaled(saved, stack, options.data));
   Scores scores{scores_of(stack, data, options.annealing.seed), {}};
   if (options.log_partition) {
     scores.partition = partition_of(stack, options.annealing);
-    scores.columns.push_back(log_likelihood(scores.columns.front(), *scores.partition, saved));
+    scores.columns.push_back(
+        log_likelihood(scores.columns.front(), *scores.partition, saved, stack.layers.front()));
   }
   return scores;
 }
@@ -129,8 +133,7 @@ void print_scores(const CommandContext& context, const Scores& scores) {
     report["log_partition"] = partition->value;
     report["log_partition_error"] = partition->standard_error;
   }
-  for (const Score& score : columns)
-    report[score.name] = score.values.size() == 0 ? 0.0 : score.values.mean();
+  for (const Score& score : columns) report[score.name] = score.values.mean();
   if (context.json) {
     std::cout << report.dump(2) << '\n';
     return;

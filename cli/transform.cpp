@@ -51,9 +51,8 @@ void run_transform(const CommandContext& context, const TransformOptions& option
   if (options.data.files.empty()) throw ConfigError("data: no files");
   if (options.steps && !options.inverse) throw ConfigError("--steps is for --inverse or --infer");
   const Cdbn stack = stack_of(saved, options.model);
-  const Sequences data = Sequences::from_host(
-      device,
-      scaled(saved, options.data.read(), stack.layers.front().shape().visible, options.data));
+  const Sequences data =
+      Sequences::from_host(device, checked_and_scaled(saved, stack, options.data));
   const Sequences result =
       options.inverse ? reconstruct(stack, data, options.steps.value_or(1)) : stack.up_pass(data);
   if (result.valid_from > 0)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/interruption.hpp"
 #include "base/random_streams.hpp"
@@ -11,6 +12,7 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion/humanoid.hpp"
 #include "motion/mean_body.hpp"
+#include "motion/mirror.hpp"
 #include "motion/resample.hpp"
 
 namespace mcdbn {
@@ -47,9 +49,14 @@ std::vector<const MatrixD*> members(const std::vector<Pair>& pairs, MatrixD Pair
 template <typename Use>
 void for_each_view(const Motion& raw, const CorpusSettings& settings, RandomKey& key,
                    const PosePool* pool, const Use& use) {
-  constexpr std::size_t kViews = 4;  // with and without mirror
-  for (std::size_t i = 0; i < std::min(kViews, settings.augment.views); ++i, ++key.step)
-    use(augmented_view(raw, settings.fps, settings.camera, settings.augment, key, true, pool));
+  constexpr int kViews = 4;  // every other one in a mirror, as chance may leave that out
+  AugmentationSettings not_by_chance = settings.augment;
+  not_by_chance.mirror = false;
+  std::optional<Motion> other;
+  if (settings.augment.mirror) other = mirrored(raw);
+  for (int i = 0; i < kViews; ++i, ++key.step)
+    use(augmented_view(other && i % 2 == 1 ? *other : raw, settings.fps, settings.camera,
+                       not_by_chance, key, true, pool));
 }
 
 Pair pair_of(const Motion& motion, const Track2d& track, const Camera& camera,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "base/shown.hpp"
 #include "machines/machine_tensors.hpp"
@@ -111,8 +112,10 @@ std::vector<ColumnScale> scales_from(const TensorFile& file, const JsonPlace& co
     const std::size_t count = place.count(within(0, size_limits::kUnits.most));
     if (m >= visible.size() || (count != 0 && count != visible[m]))
       place.fail(fmt::format("a scale of {} columns for data that are not there", count));
-    scales.push_back({get_matrix(file, scale_prefix(m) + "mean", 1, count),
-                      get_deviation(file, scale_prefix(m) + "deviation", count)});
+    // In the units of the data, which may be large.
+    constexpr float kAny = std::numeric_limits<float>::max();
+    scales.push_back({get_matrix(file, scale_prefix(m) + "mean", 1, count, kAny),
+                      get_deviation(file, scale_prefix(m) + "deviation", count, kAny)});
   }
   return scales;
 }

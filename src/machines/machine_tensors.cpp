@@ -69,19 +69,18 @@ std::string layer_prefix(const std::string& prefix, std::size_t layer) {
 }  // namespace
 
 MatrixF get_matrix(const TensorFile& file, const std::string& name, std::size_t rows,
-                   std::size_t columns) {
+                   std::size_t columns, float largest) {
   MatrixF values = file.content.get(name, file.path, static_cast<Eigen::Index>(rows),
                                     static_cast<Eigen::Index>(columns));
-  // Finite weights of any size would answer with numbers that are not.
-  constexpr float kLargestWeight = 1e6F;
-  if (!(values.array().abs() <= kLargestWeight).all())
-    throw InputError(fmt::format("{}: tensor {} holds a number that is not finite or beyond {:.0f}",
-                                 file.path, name, kLargestWeight));
+  if (!(values.array().abs() <= largest).all())
+    throw InputError(fmt::format("{}: tensor {} holds a number that is not finite or beyond {}",
+                                 file.path, name, largest));
   return values;
 }
 
-RowVectorF get_deviation(const TensorFile& file, const std::string& name, std::size_t columns) {
-  const MatrixF values = get_matrix(file, name, 1, columns);
+RowVectorF get_deviation(const TensorFile& file, const std::string& name, std::size_t columns,
+                         float largest) {
+  const MatrixF values = get_matrix(file, name, 1, columns, largest);
   if (!(values.array() > 0).all())
     throw InputError(
         fmt::format("{}: tensor {} holds a deviation that is not above 0", file.path, name));

@@ -19,11 +19,15 @@ struct TensorFile {
   std::string path;  ///< for errors
 };
 
-/// [rows x columns], all finite. @throws InputError
+/// Finite weights of any size would answer with numbers that are not.
+inline constexpr float kLargestWeight = 1e6F;
+
+/// [rows x columns], all finite and of at most `largest`. @throws InputError
 MatrixF get_matrix(const TensorFile& file, const std::string& name, std::size_t rows,
-                   std::size_t columns);
-/// [1 x columns], all above 0. @throws InputError
-RowVectorF get_deviation(const TensorFile& file, const std::string& name, std::size_t columns);
+                   std::size_t columns, float largest = kLargestWeight);
+/// [1 x columns], all above 0 as well. @throws InputError
+RowVectorF get_deviation(const TensorFile& file, const std::string& name, std::size_t columns,
+                         float largest = kLargestWeight);
 
 nlohmann::json put_crbm(Safetensors& file, const std::string& prefix, const Crbm& crbm);
 Crbm get_crbm(Device& device, const TensorFile& file, const std::string& prefix,

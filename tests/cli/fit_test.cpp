@@ -292,7 +292,7 @@ TEST_CASE("fit: data and flags that do not fit are refused") {
                 "wide.csv: 3 columns, 2 in");
   check_refused("fit " + path("holes.csv") + out + "rbm", 3, "holes.csv: row 2, column 1 is nan");
   check_refused("fit " + path("large.csv") + out + "rbm", 3,
-                "large.csv: row 2, column 2 is 2.5; binary units want");
+                "large.csv: row 2, column 2 is 2.5; binary units need");
   check_refused("fit " + path("bits.csv") + out + "cdbn --order 2", 3,
                 "no file has more than 4 rows");
   check_refused("fit x.npy" + out + "rbm --order 2", 2, "--order: --machine rbm has no history");

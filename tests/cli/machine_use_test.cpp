@@ -192,6 +192,51 @@ TEST_CASE("score: the log-likelihood of scaled data is that of the data as they 
   CHECK_FALSE(report.contains("pseudo_log_likelihood"));
 }
 
+TEST_CASE("score: the log-likelihood of a machine that learnt deviations counts them") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  mcdbn::CrbmParameters apart;  // columns that hang together with nothing are normal
+  apart.shape = {3, 2, 0, mcdbn::VisibleKind::gaussian};
+  apart.W = MatrixF::Zero(3, 2);
+  apart.A = MatrixF::Zero(0, 3);
+  apart.B = MatrixF::Zero(0, 2);
+  apart.a = MatrixF::Zero(1, 3);
+  apart.b = MatrixF::Zero(1, 2);
+  apart.visible_mean = MatrixF::Zero(1, 3);
+  apart.visible_deviation.resize(1, 3);
+  apart.visible_deviation << 3.0F, 0.5F, 2.0F;
+  const std::string model = (folder / "machine.safetensors").string();
+  mcdbn::save_machine(model, {mcdbn::Crbm(usual_device(), apart), {}});
+  MatrixF data(2, 3);
+  data << 3, 1, -2, 0, 0.5, 1;
+  mcdbn::write_matrix(folder / "data.npy", data);
+  double expected = 0;
+  for (Eigen::Index r = 0; r < 2; ++r)
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const double sd = apart.visible_deviation(0, c), u = data(r, c) / sd;
+      expected -= (u * u / 2 + std::log(sd) + 0.5 * std::log(2 * M_PI)) / 2;
+    }
+  const json report = parsed(fmt::format("score --model {} {} --json --log-partition", model,
+                                         (folder / "data.npy").string()));
+  CHECK(report.at("log_likelihood").get<double>() == doctest::Approx(expected).epsilon(1e-4));
+}
+
+TEST_CASE("score and transform: what a machine cannot take is refused as fit refuses it") {
+  if (!have_device()) return;
+  const FittedMachines& machines = FittedMachines::instance();
+  const ScratchFolder folder;
+  MatrixF data = read_matrix(machines.bits());
+  const std::string file = (folder / "data.npy").string();
+  for (const auto& [value, words] :
+       {std::pair{NAN, "row 2, column 1 is nan"}, std::pair{2.0F, "binary units need"}}) {
+    data(1, 0) = value;
+    mcdbn::write_matrix(file, data);
+    for (const char* command : {"score", "transform"})
+      check_refused(fmt::format("{} --model {} {}", command, machines.model("rbm"), file), 3,
+                    words);
+  }
+}
+
 TEST_CASE("score: an MRBM's free energy of all modalities, and each one's reconstruction") {
   if (!have_device()) return;
   const MrbmFiles files;

@@ -11,6 +11,7 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "motion/mean_body.hpp"
+#include "motion/mirror.hpp"
 #include "motion/resample.hpp"
 
 namespace training_set_test {
@@ -117,11 +118,14 @@ void check_set(const TrainingFiles& walks, const CorpusConfig& config,
   CHECK(set.frames() == frames);
   AugmentationSettings in_sight = config.augment;
   in_sight.missing = 0;
+  in_sight.mirror = false;
   RandomKey key{config.seed, 0, 196, 0};
   for (const auto& file : walks.files())
     for (int i = 0; i < views; ++i, ++key.step) {
+      const Motion raw = raw_clip(file);
       const AugmentedView view =
-          augmented_view(raw_clip(file), config.fps, config.camera, in_sight, key);
+          augmented_view(config.augment.mirror && i % 2 == 1 ? mirrored(raw).value() : raw,
+                         config.fps, config.camera, in_sight, key);
       tracks.add(own.track_features.encode(level_track(view.track, view.camera)));
       poses.add(
           own.pose_features.encode(view.motion, level_rotation(view.camera.camera_from_world)));
@@ -140,9 +144,10 @@ void check_set(const TrainingFiles& walks, const CorpusConfig& config,
 TEST_CASE("a training set: every clip encoded and scaled for itself and for its views") {
   const TrainingFiles walks(kWalks);
   CorpusConfig config = settings();
-  check_set(walks, config, {1, 1, 1}, 3);
-  config.augment.views = 9;  // four are enough for the scale
-  check_set(walks, config, {1, 1, 1}, 4);
+  for (const std::size_t views : {1, 9}) {  // four are for the scale
+    config.augment.views = views;
+    check_set(walks, config, {1, 1, 1}, 4);
+  }
 }
 
 TEST_CASE("a training set: the model's body is the mean of its people's, each counted once") {
@@ -168,7 +173,7 @@ TEST_CASE("a training set: what detectors see is scaled by their errors too") {
   const TrainingFiles walks(kWalks);
   CorpusConfig config = settings();
   config.augment.detector = 1;
-  check_set(walks, config, {1, 1, 1}, 3);
+  check_set(walks, config, {1, 1, 1}, 4);
 }
 
 TEST_CASE("a training set for the greedy stages alone is scaled by its clips alone") {
@@ -195,7 +200,7 @@ TEST_CASE("clips are seen from as many directions as were asked for, where there
   const TrainingFiles walks(kWalks);
   CorpusConfig config = settings();
   config.directions = 4;
-  check_set(walks, config, {1, 1, 1}, 3);  // views are from all around by themselves
+  check_set(walks, config, {1, 1, 1}, 4);  // views are from all around by themselves
   config.with_views = false;
   config.phases = 3;
   check_set(walks, config, {3, 2, 2}, 0, 4);

@@ -58,7 +58,7 @@ TEST_CASE("small: a CRBM comes back from its file as it was saved, scale and set
     for (const CrbmShape& shape : {CrbmShape{5, 3, 0, kBinary}, CrbmShape{3, 17, 2, kGaussian},
                                    CrbmShape{1, 1, 1, kBinary}}) {
       const CrbmParameters p = random_crbm(shape, 3, 4.0F);
-      ColumnScale scale{random_matrix(1, shape.visible, 8),
+      ColumnScale scale{3e6F * random_matrix(1, shape.visible, 8),
                         random_matrix(1, shape.visible, 9).cwiseAbs()};
       save_machine(path, {Crbm(device, p), {scale}, {{"seed", 7}}});
       const SavedMachine got = load_machine(device, path);
