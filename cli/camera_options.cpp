@@ -36,7 +36,7 @@ Camera camera_of_track(const Camera& camera, const Track2d& track, const std::st
   constexpr const char* kSetIt = "set the track's with --image-size if it is not that";
   std::vector<std::string> notices;
   try {
-    const Camera own = of_scaled_images(camera, track.width_px, track.height_px, &notices);
+    Camera own = of_scaled_images(camera, track.width_px, track.height_px, &notices);
     for (const std::string& notice : notices) spdlog::warn("{}: {}; {}", name, notice, kSetIt);
     return own;
   } catch (const InputError& error) {

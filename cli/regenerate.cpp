@@ -265,6 +265,7 @@ void check_body(const Modalities& modalities, const RegenerateOptions& options,
   });
   if (lost.empty()) return;
   std::vector<std::string_view> names;
+  names.reserve(lost.size());
   for (const JointRole role : lost) names.push_back(name_of(role));
   spdlog::warn(
       "{}: no joint is known to be {}: what they do is lost; name them with --joint-map, info "

@@ -21,27 +21,39 @@ void add_render_command(CLI::App& app, CommandContext& context) {
               context)
       ->required()
       ->type_name("FILE");
-  command
-      ->add_option("--over", render.over,
-                   "Film to draw over, through --camera, from --over-from on")
-      ->type_name("FILE");
+  CLI::Option* const over =
+      command
+          ->add_option("--over", render.over,
+                       "Film to draw over, through --camera, from --over-from on")
+          ->type_name("FILE");
   command->add_option("--over-from", render.over_from, "Frame of the film where the clips begin")
       ->check(in_range(within(0, 1e7)))
+      ->needs(over)
       ->capture_default_str();
-  command->add_flag("--overlay", render.overlay, "All clips in one picture");
-  command->add_flag("--orbit", render.orbit, "The camera goes round the figure");
+  command->add_flag("--overlay", render.overlay, "All clips in one picture")->excludes(over);
+  CLI::Option* const orbit =
+      command->add_flag("--orbit", render.orbit, "The camera goes round the figure");
   command->add_option("--orbit-speed", render.orbit_deg_per_s, "Speed of --orbit, degrees a second")
       ->check(in_range(within(-3600, 3600)))
+      ->needs(orbit)
       ->capture_default_str();
-  command->add_flag("!--still-camera", render.follow_root,
-                    "The camera sees the whole path instead of going with the figure");
+  CLI::Option* const still =
+      command->add_flag("!--still-camera", render.follow_root,
+                        "The camera sees the whole path instead of going with the figure");
   command->add_option("--video-fps", render.fps, "Frames a second of a video (default: the clip's)")
-      ->check(in_range(within(1, 240)));
+      ->check(in_range(within(1, 240)))
+      ->excludes(over);
   command->add_option("--columns", render.sheet_columns, "Frames in a row of a contact sheet")
       ->check(in_range(within(1, 64)))
       ->capture_default_str();
   add_clip_options(*command, options->preparation);
   add_camera_options(*command, options->camera);
+  CLI::Option* const camera = command->get_option("--camera");
+  for (CLI::Option* moving : {orbit, still}) moving->excludes(camera);
+  command->get_option("--image-size")
+      ->description(
+          "Width and height in pixels of each clip's picture (default: 640 720 in a video, 240 320 "
+          "in a sheet)");
   add_quiet_option(*command, context);
   command->footer("Example:\n  mcdbn-cl render truth.bvh regenerated.bvh --orbit -o compare.mp4");
   command->callback([&context, options] {

@@ -55,9 +55,9 @@ def named(model: pathlib.Path) -> dict:
 
 
 def main() -> None:
-    out, *paths = sys.argv[1:]
-    if len(paths) < 2:
+    if len(sys.argv) < 4:
         sys.exit("average_models.py OUT MODEL MODEL…")
+    out, *paths = sys.argv[1:]
     models = [read_model(path) for path in paths]
     header = models[-1][0]
     means = averaged(models)

@@ -25,6 +25,8 @@ def shared(header: dict, acknowledgement: str) -> dict:
 
 
 def main() -> None:
+    if len(sys.argv) < 4:
+        sys.exit("share_model.py MODEL OUT ACKNOWLEDGEMENT [START]")
     source, target, acknowledgement, *start = sys.argv[1:]
     header, numbers = read_model(source)
     for path in start:

@@ -37,7 +37,7 @@ class FilmCamera {
   Camera of(const cv::Size& picture) {
     std::vector<std::string> notices;
     try {
-      const Camera own = of_scaled_images(camera_, picture.width, picture.height, &notices);
+      Camera own = of_scaled_images(camera_, picture.width, picture.height, &notices);
       if (auto* to = std::exchange(notices_, nullptr))
         for (const std::string& notice : notices) to->push_back(film_ + ": " + notice);
       return own;

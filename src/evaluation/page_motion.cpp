@@ -49,6 +49,10 @@ std::vector<int> sides_of(const ReportClip& clip) {
   return sides;
 }
 
+bool has_simpler_methods(const ReportClip& clip) {
+  return std::ranges::any_of(clip.others, [](const auto& of) { return of.first != kMeanField; });
+}
+
 class ClipWriter {
  public:
   ClipWriter(const ReportClip& clip, const Detail& detail) : clip_(clip), detail_(detail) {
@@ -107,6 +111,7 @@ PageMotion page_motion(const std::vector<ReportClip>& clips, std::size_t budget_
   for (const Detail& detail : kDetails) {
     motion = {};
     motion.frame_step = detail.frame_step;
+    motion.others = detail.others || std::ranges::none_of(clips, has_simpler_methods);
     motion.samples = clips.empty() ? 0 : std::min(detail.samples, clips.front().samples.size());
     std::size_t bytes = 0;
     for (const ReportClip& clip : clips) {

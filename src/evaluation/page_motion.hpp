@@ -11,6 +11,7 @@ struct PageMotion {
   nlohmann::ordered_json clips = nlohmann::ordered_json::array();
   std::size_t left_out_clips = 0;
   std::size_t samples = 0;  ///< shown of each clip
+  bool others = true;       ///< the simpler methods' answers are shown, too
   int frame_step = 1;       ///< every so manieth frame is kept
 };
 

@@ -34,6 +34,7 @@ std::string omission(const EvaluationReport& report, const PageMotion& motion) {
   const std::size_t samples = report.clips.empty() ? 0 : report.clips.front().samples.size();
   if (motion.samples < samples)
     text += fmt::format("{} of {} samples of each clip; ", motion.samples, samples);
+  if (!motion.others) text += "no simpler methods; ";
   if (motion.frame_step > 1) text += fmt::format("one frame in {}; ", motion.frame_step);
   if (motion.left_out_clips > 0)
     text += fmt::format("{} of {} clips; ", report.clips.size() - motion.left_out_clips,

@@ -187,6 +187,7 @@ std::optional<NamedJoint> sided(const std::string& text) {
 
 std::vector<std::optional<NamedJoint>> named_joints(const std::vector<std::string>& names) {
   std::vector<std::string> texts;
+  texts.reserve(names.size());
   for (const std::string& name : names)
     texts.push_back(simplified(name.substr(name.rfind(':') + 1)));
   const std::size_t start = common_start(texts);

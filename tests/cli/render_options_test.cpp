@@ -190,6 +190,20 @@ TEST_CASE("render --over: what it needs is named, and a camera that is scaled is
             film.string())) != std::string::npos);
 }
 
+TEST_CASE("render: options that would be ignored are refused") {
+  const ScratchFolder folder;
+  const std::string call =
+      fmt::format("render '{}' -o '{}' ", folder.write("clip.bvh", small_bvh(4)).string(),
+                  (folder / "out.png").string());
+  for (const char* options :
+       {"--over f.mp4 --camera c.yml --overlay", "--over f.mp4 --camera c.yml --video-fps 5",
+        "--over-from 3", "--camera c.yml --orbit", "--camera c.yml --still-camera",
+        "--orbit-speed 20"}) {
+    CAPTURE(options);
+    CHECK(run_cli(call + options).exit_code == 2);
+  }
+}
+
 TEST_CASE("render: without the program that draws, the message names it") {
   const ScratchFolder folder;
   fs::create_directory(folder / "bin");

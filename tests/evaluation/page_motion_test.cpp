@@ -35,3 +35,22 @@ TEST_CASE(
   CHECK(motions.at(0).at("deviation_mm") == encode_series(deviation_mm));
   CHECK(!motions.at(1).contains("deviation_mm"));
 }
+
+TEST_CASE("the page holds the simpler methods' answers while there is room, and tells where not") {
+  ReportClip clip;
+  clip.name = "clip";
+  clip.point_names = {"Hips", "Head"};
+  clip.parents = {-1, 0};
+  clip.joints = 2;
+  clip.truth_mm = MatrixD::Random(600, 6) * 1000;
+  clip.track_px = MatrixD::Random(600, 4) * 1000;
+  clip.samples = {{clip.truth_mm, {}}};
+  const std::size_t alone = std::size_t{10} * 600;  // less than all frames take, more than a sixth
+  CHECK(page_motion({clip}, alone).others);         // there are none
+  clip.others["ridge_window"] = {clip.truth_mm, {}};
+  CHECK(page_motion({clip}, 1'000'000).others);
+  const PageMotion small = page_motion({clip}, alone);
+  CHECK_FALSE(small.others);
+  CHECK(small.left_out_clips == 0);
+  CHECK(small.clips.at(0).at("motions").size() == 1);
+}

@@ -6,9 +6,11 @@ const titleOf = name => report.methods[name]?.title ?? name;
 const answer = summary.model_mean_field ?? summary.model;
 
 function showAbout() {
-  const parts = [summary.model_file, `${summary.clips} clips, ${summary.frames} frames`, `protocol: ${summary.protocol}`];
+  const clips = `${summary.clips} ${summary.clips === 1 ? "clip" : "clips"}`;
+  const parts = [summary.model_file, `${clips}, ${summary.frames} frames`, `protocol: ${summary.protocol}`];
   if (summary.fit === "track") parts.push("all methods fitted to the 2D track");
-  parts.push(summary.samples > 1 ? `${summary.samples} samples a clip at temperature ${summary.temperature}` : "mean field");
+  const samples = summary.samples > 1 ? `${summary.samples} samples` : "one sample";
+  parts.push(summary.temperature > 0 ? `${samples} a clip at temperature ${summary.temperature}` : "mean field");
   if (summary.training_clips) parts.push(`trained on: ${summary.training_clips}`);
   byId("about").textContent = parts.join(" · ");
   byId("omission").textContent = report.omission;

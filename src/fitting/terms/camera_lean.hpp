@@ -2,6 +2,8 @@
 
 #include <ceres/sized_cost_function.h>
 
+#include <utility>
+
 #include "fitting/camera_doubt.hpp"
 
 namespace mcdbn {
@@ -11,8 +13,8 @@ namespace mcdbn {
 class CameraLean : public ceres::SizedCostFunction<2, 3> {
  public:
   /// @param right level, of unit length, camera axes
-  CameraLean(const ExpectedLean& expected, const Eigen::Vector3d& right)
-      : expected_(expected), right_(right) {}
+  CameraLean(const ExpectedLean& expected, Eigen::Vector3d right)
+      : expected_(expected), right_(std::move(right)) {}
   bool Evaluate(double const* const* unknowns, double* residuals,
                 double** jacobians) const override;
 
