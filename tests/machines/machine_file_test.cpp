@@ -155,6 +155,7 @@ TEST_CASE("a machine's file that is not whole is refused, and the message names 
     for (const auto& [name, tensor] : whole.tensors)
       for (const float odd : {std::nanf(""), std::numeric_limits<float>::infinity(), -1e38F}) {
         CAPTURE(name);
+        if (name == "scale.0.mean" && std::isfinite(odd)) continue;  // data may be as large
         Safetensors content = whole;
         content.tensors[name].values.back() = odd;
         CHECK(contains(complaint(device, path, content), "tensor " + name + " holds"));
