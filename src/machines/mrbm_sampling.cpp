@@ -19,6 +19,7 @@ std::vector<Matrix> reconstruct(const Mrbm& mrbm, const std::vector<Rows>& modal
   std::iota(all.begin(), all.end(), 0);
   const Matrix hidden(mrbm.device(), modalities[0].count, mrbm.hidden());
   std::vector<Matrix> result;
+  result.reserve(modalities.size());
   for (const Rows& rows : modalities) result.emplace_back(mrbm.device(), rows.count, rows.columns);
   const std::vector<Rows> own(result.begin(), result.end());
   for (std::size_t step = 0; step < steps; ++step) {
