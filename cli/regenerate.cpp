@@ -3,14 +3,11 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "base/counted.hpp"
 #include "camera_options.hpp"
 #include "clip_options.hpp"
 #include "commands.hpp"
@@ -19,7 +16,6 @@
 #include "fit_option.hpp"
 #include "follow.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/camera/track_stretches.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "mcdbn/formats/joint_map.hpp"
@@ -29,6 +25,7 @@
 #include "mcdbn/motion/humanoid_rig.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "output_ending.hpp"
+#include "regeneration_reports.hpp"
 #include "sample_path.hpp"
 #include "sampling_options.hpp"
 #include "track_options.hpp"
@@ -118,74 +115,6 @@ void check_output_ending(const RegenerateOptions& options) {
     check_ending(options.output, {options.to == kToTrack ? ".csv" : ".bvh"});
 }
 
-void report(const std::filesystem::path& path, int frames, double fps) {
-  spdlog::info("{}: {} at {:.4g} fps", path.string(), counted(frames, "frame"), fps);
-}
-
-/// Warns what is assumed of a camera without calibration.
-/// @param found pitch or roll was estimated from the clip
-void report_assumed(const Camera& camera, bool found) {
-  const Eigen::Vector3d up = camera.camera_from_world.col(1);
-  const auto deg = [](double angle) { return std::round(angle * 1800 / EIGEN_PI) / 10 + 0.0; };
-  spdlog::warn(
-      "no --camera: assumed to look down by {:g} degrees and to be turned by {:g}{}, with a "
-      "vertical field of view of {:.4g} degrees; set what is known with --camera-pitch, "
-      "--camera-roll, --camera-fov",
-      deg(std::asin(std::clamp(-up.z(), -1.0, 1.0))), deg(std::atan2(-up.x(), -up.y())),
-      found ? " (from feet on level ground)" : "",
-      2 * std::atan(0.5 * camera.height_px / camera.fy_px) * 180 / EIGEN_PI);
-}
-
-/// Of frames counted from 0, as the track's file numbers them.
-class FileFrames {
- public:
-  /// @param numbers [frames] the file's
-  explicit FileFrames(const std::vector<long long>& numbers) : numbers_(numbers) {}
-
-  std::string described(std::vector<FrameRange> ranges) const {
-    for (FrameRange& range : ranges)
-      range = {number(range.first),
-               number(range.first + range.frames - 1) - number(range.first) + 1};
-    return mcdbn::described(ranges);
-  }
-  std::string described(std::vector<SideSwap> swaps) const {
-    for (SideSwap& swap : swaps)
-      for (int* frame : {&swap.first_frame, &swap.last_frame}) *frame = number(*frame);
-    return mcdbn::described(swaps);
-  }
-
- private:
-  int number(int frame) const {
-    return static_cast<int>(numbers_[static_cast<std::size_t>(frame)]);
-  }
-  const std::vector<long long>& numbers_;
-};
-
-/// Warns what was missing in the track and what was wrong with it.
-/// @param name of the track, for messages
-void report(const std::string& name, const Track2d& track, const FileFrames& frames,
-            const TrackFindings& findings) {
-  const TrackFeatures::FillCount& filled = findings.filled;
-  const std::vector<FrameRange>& stretches = findings.stretches.stretches;
-  if (stretches.size() > 1)
-    spdlog::warn(
-        "{}: jumps to another place, as if to another person: frames {} are regenerated each by "
-        "themselves, with one body",
-        name, frames.described(stretches));
-  if (const auto& strays = findings.stretches.strays; !strays.empty())
-    spdlog::warn("{}: another person in frames {}: left out", name, frames.described(strays));
-  if (!findings.swaps.empty())
-    spdlog::warn("{}: {}; put right", name, frames.described(findings.swaps));
-  if (const auto nobody = frames_of_nobody(track); !nobody.empty())
-    spdlog::warn("{}: nobody is seen in frames {}: the motion there is made up", name,
-                 frames.described(nobody));
-  if (!filled.unseen.empty())
-    spdlog::warn("{}: {} are in no column: inferred", name, fmt::join(filled.unseen, ", "));
-  if (filled.interpolated + filled.missing > 0)
-    spdlog::warn("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
-                 name, filled.interpolated, filled.missing);
-}
-
 /// What `work` returns. Errors of an input begin with the name.
 template <typename Work>
 auto with_name(const std::string& name, const Work& work) {
@@ -194,26 +123,6 @@ auto with_name(const std::string& name, const Work& work) {
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", name, error.what()));
   }
-}
-
-/// The usual deviation of a joint but the root along an axis, and the least sure joints'.
-void report_uncertainty(const Motion& motion, const MatrixD& deviations) {
-  if (deviations.size() == 0) return;
-  const Skeleton& skeleton = motion.skeleton;
-  std::vector<std::pair<double, std::string>> joints;
-  for (int joint = 1; joint < skeleton.joint_count(); ++joint)
-    joints.emplace_back(std::sqrt(deviations.middleCols(3 * joint, 3).squaredNorm() /
-                                  static_cast<double>(3 * deviations.rows())),
-                        skeleton.joints[static_cast<std::size_t>(joint)].name);
-  std::ranges::sort(joints, std::greater());
-  double squares = 0;
-  for (const auto& [deviation, name] : joints) squares += deviation * deviation;
-  if (joints.empty()) return;
-  spdlog::info(
-      "joints are off by a standard deviation of {:.3g} in the file's unit along each axis, "
-      "{} most, by {:.3g}",
-      std::sqrt(squares / static_cast<double>(joints.size())), joints.front().second,
-      joints.front().first);
 }
 
 /// By the model, or by a simpler method if there is one. Errors of the track begin with its name.
@@ -257,9 +166,7 @@ void check_body(const Modalities& modalities, const RegenerateOptions& options,
   const Skeleton& wanted = placement.skeleton ? *placement.skeleton : own;
   const SkeletonRoles roles = with_name(
       options.joint_map.string(), [&] { return skeleton_roles(wanted, placement.joint_map); });
-  if (std::ranges::all_of(own.joints,
-                          [&](const Joint& joint) { return wanted.find(joint.name) >= 0; }))
-    return;
+  if (!is_other_skeleton(modalities, wanted)) return;
   const std::vector<JointRole> lost = with_name(options.skeleton.string(), [&] {
     return lost_roles(HumanoidRig({wanted, 1.0, placement.skeleton_channels}, roles).roles());
   });
@@ -319,7 +226,7 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
     const std::string name = person_name(options.input, person, people.size());
     const auto motions = regenerate_named(name, model, simpler.get(), people[person], placement,
                                           regeneration, findings);
-    report(name, people[person], FileFrames(read.frame_numbers), findings);
+    report_findings(name, people[person], read.frame_numbers, findings);
     if (!placement.camera) {
       report_assumed(findings.camera, finds_angles(model.modalities, placement));
       placement.camera = findings.camera;  // all others stand in the first one's world
@@ -330,7 +237,7 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
     for (std::size_t i = 0; i < motions.size(); ++i) {
       const auto path = sample_path(output, i, motions.size());
       write_bvh(path, motions[i]);
-      report(path, motions[i].frames(), motions[i].fps());
+      report_written(path, motions[i].frames(), motions[i].fps());
     }
     report_uncertainty(motions.front(), findings.uncertainty);
     if (!options.uncertainty.empty())
@@ -358,7 +265,7 @@ void regenerate_tracks(const Model& model, const RegenerateOptions& options,
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const auto path = sample_path(options.output, i, tracks.size());
     write_track_csv(path, tracks[i]);
-    report(path, tracks[i].frames(), tracks[i].fps);
+    report_written(path, tracks[i].frames(), tracks[i].fps);
   }
 }
 

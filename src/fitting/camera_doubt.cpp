@@ -17,7 +17,6 @@ std::optional<CameraDoubt> doubt_of(const KnownOfClip& known, const Modalities& 
   CameraDoubt doubt;
   doubt.usual = {pitch_rad(up) - pitch_rad(up_now), roll_from_to_rad(up_now, up),
                  settings.pitch_deg * kRadiansPerDegree, settings.roll_deg * kRadiansPerDegree};
-  doubt.right = level_right(up_now);
   doubt.pitch_known = known.view.pitch_deg.has_value();
   doubt.roll_known = known.view.roll_deg.has_value();
   doubt.focal_known = known.view.field_of_view_deg.has_value();

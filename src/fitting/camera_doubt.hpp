@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 
 #include "mcdbn/fitting/track_fit.hpp"
@@ -16,9 +15,8 @@ struct ExpectedLean {
 
 /// What is not known of a camera.
 struct CameraDoubt {
-  ExpectedLean usual;              ///< as cameras stand
-  ExpectedLean balanced;           ///< as makes the body stand over its feet
-  Eigen::Vector3d right{1, 0, 0};  ///< level_right of the assumed camera
+  ExpectedLean usual;     ///< as cameras stand
+  ExpectedLean balanced;  ///< as makes the body stand over its feet
   bool pitch_known = false, roll_known = false, focal_known = false;
   double log_focal = 0;  ///< expected
   double log_focal_deviation = 1;

@@ -61,7 +61,7 @@ struct PosteriorPoint {
   Eigen::VectorXd log_lengths;    ///< by length, the body's over the skeleton's
   Eigen::VectorXd ground_m;       ///< heights that feet stand at, above the camera
   Eigen::Vector3d lean{0, 0, 0};  ///< turn of the world otherwise than the camera is assumed to
-                                  ///< stand, radians, camera axes: about CameraDoubt::right and z
+                                  ///< stand, radians, camera axes: about level_right and z
   double log_focal = 0;           ///< the camera's focal length over the assumed one
   double energy = 0;              ///< −log of how likely the solution is, but for a constant
 

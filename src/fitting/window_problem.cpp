@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "fitting/camera_angles.hpp"
 #include "fitting/free_axes.hpp"
 #include "fitting/robust_residuals.hpp"
 #include "fitting/terms/camera_lean.hpp"
@@ -270,20 +271,21 @@ void WindowProblem::add_ground() {
 
 void WindowProblem::add_camera() {
   const CameraDoubt& camera = *clip_.camera;
+  const Eigen::Vector3d right = level_right(clip_.up);
   problem_.AddParameterBlock(x_.lean.data(), 3);
   Eigen::Matrix3Xd free(3, 0);
   const auto set_free = [&](const Eigen::Vector3d& axis) {
     free.conservativeResize(3, free.cols() + 1);
     free.rightCols<1>() = axis;
   };
-  if (!camera.pitch_known) set_free(camera.right);
+  if (!camera.pitch_known) set_free(right);
   if (!camera.roll_known) set_free(Eigen::Vector3d::UnitZ());
   if (free.cols() == 0)
     problem_.SetParameterBlockConstant(x_.lean.data());
   else
     problem_.SetManifold(x_.lean.data(), new FreeAxes(std::move(free)));
   for (const ExpectedLean& expected : {camera.usual, camera.balanced})
-    problem_.AddResidualBlock(new CameraLean(expected, camera.right), nullptr, x_.lean.data());
+    problem_.AddResidualBlock(new CameraLean(expected, right), nullptr, x_.lean.data());
   problem_.AddResidualBlock(new LinearTerm({1}, Eigen::VectorXd::Constant(1, camera.log_focal),
                                            camera.log_focal_deviation),
                             nullptr, &x_.log_focal);

@@ -10,6 +10,7 @@
 #include "camera/body_places.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
+#include "mcdbn/motion/humanoid_rig.hpp"
 #include "mcdbn/motion/skeleton_roles.hpp"
 
 namespace mcdbn {
@@ -115,12 +116,9 @@ std::size_t joint_count(const SeenPeople& people, const std::string& file) {
 bool are_a_skeletons(const std::vector<std::string>& names) {
   if (are_a_detectors(names)) return false;
   const SkeletonRoles roles = roles_by_name(names);
-  constexpr std::array kLimbs{JointRole::left_hip,   JointRole::left_knee,
-                              JointRole::left_ankle, JointRole::left_shoulder,
-                              JointRole::left_elbow, JointRole::left_wrist};
-  if (!std::ranges::all_of(
-          kLimbs, [&](JointRole left) { return roles.has(left) && roles.has(other_side(left)); }))
-    return false;
+  for (const auto& limb : kPersonsLimbs)
+    for (const JointRole left : limb)
+      if (!roles.has(left) || !roles.has(other_side(left))) return false;
   const auto places = std::ranges::count_if(
       keypoints_of(names), [](const Keypoint& keypoint) { return keypoint.role.has_value(); });
   return std::ssize(joint_roles()) - std::ssize(roles.missing()) > places;

@@ -20,9 +20,6 @@ using enum JointRole;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// What a person has of each side, and the skeleton of a person, too.
-constexpr std::array kPersonsLimbs{std::array{left_hip, left_knee, left_ankle},
-                                   std::array{left_shoulder, left_elbow, left_wrist}};
 constexpr std::string_view kNeckOrHead = "neck or head";
 
 bool lacks_head(const SkeletonRoles& roles) {

@@ -27,6 +27,11 @@ Motion with_frames(Motion motion, Eigen::Index frames) {
   return motion;
 }
 
+bool has_joints_of(const Skeleton& own, const Skeleton& other) {
+  return std::ranges::all_of(own.joints,
+                             [&](const Joint& joint) { return other.find(joint.name) >= 0; });
+}
+
 /// A skeleton that is wanted and has other joints than the model: the model's own is regenerated
 /// with its limbs, the humanoid with all its bones, and the motion put on it by roles.
 class OtherSkeleton {
@@ -52,11 +57,6 @@ class OtherSkeleton {
   }
 
  private:
-  static bool has_joints_of(const Skeleton& own, const Skeleton& other) {
-    return std::ranges::all_of(own.joints,
-                               [&](const Joint& joint) { return other.find(joint.name) >= 0; });
-  }
-
   const Skeleton& own_;
   std::optional<HumanoidRig> target_;
   SkeletonRoles roles_;
@@ -219,6 +219,10 @@ void join(MatrixD& whole, const MatrixD& rows, const TrackPart& part) {
 }
 
 }  // namespace
+
+bool is_other_skeleton(const Modalities& modalities, const Skeleton& wanted) {
+  return !has_joints_of(modalities.pose_features.skeleton(), wanted);
+}
 
 std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d& track,
                                     const ClipPlacement& wanted, const PoseAnswer& single,

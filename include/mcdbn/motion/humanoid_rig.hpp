@@ -66,6 +66,11 @@ class HumanoidRig {
   std::vector<Eigen::Vector3d> local_;
 };
 
+/// What a person has of each side, and the skeleton of a person, too; of the left.
+inline constexpr std::array kPersonsLimbs{
+    std::array{JointRole::left_hip, JointRole::left_knee, JointRole::left_ankle},
+    std::array{JointRole::left_shoulder, JointRole::left_elbow, JointRole::left_wrist}};
+
 /// The rig of a person's motion; the joints' roles follow from their names.
 /// @param joint_map roles given by hand, of one skeleton or of several: those of joints that this
 ///        one has not are left out

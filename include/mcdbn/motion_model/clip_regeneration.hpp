@@ -35,6 +35,10 @@ std::vector<Motion> regenerate_clip(const Model& model, const Track2d& track,
                                     const RegenerationOptions& options,
                                     TrackFindings* findings = nullptr);
 
+/// Whether a skeleton lacks joints of the model: regenerate_clip then puts the model's motion on it
+/// by roles.
+bool is_other_skeleton(const Modalities& modalities, const Skeleton& wanted);
+
 /// Several answers.
 using PoseAnswers = std::function<std::vector<PosePrior>(const MatrixF& features)>;
 

@@ -1,0 +1,104 @@
+#include "regeneration_reports.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "base/counted.hpp"
+#include "mcdbn/camera/track_stretches.hpp"
+
+namespace mcdbn::cli {
+namespace {
+
+/// Of frames counted from 0, as the track's file numbers them.
+class FileFrames {
+ public:
+  /// @param numbers [frames] the file's
+  explicit FileFrames(const std::vector<long long>& numbers) : numbers_(numbers) {}
+
+  std::string described(std::vector<FrameRange> ranges) const {
+    for (FrameRange& range : ranges)
+      range = {number(range.first),
+               number(range.first + range.frames - 1) - number(range.first) + 1};
+    return mcdbn::described(ranges);
+  }
+  std::string described(std::vector<SideSwap> swaps) const {
+    for (SideSwap& swap : swaps)
+      for (int* frame : {&swap.first_frame, &swap.last_frame}) *frame = number(*frame);
+    return mcdbn::described(swaps);
+  }
+
+ private:
+  int number(int frame) const {
+    return static_cast<int>(numbers_[static_cast<std::size_t>(frame)]);
+  }
+  const std::vector<long long>& numbers_;
+};
+
+}  // namespace
+
+void report_written(const std::filesystem::path& path, int frames, double fps) {
+  spdlog::info("{}: {} at {:.4g} fps", path.string(), counted(frames, "frame"), fps);
+}
+
+void report_assumed(const Camera& camera, bool found) {
+  const Eigen::Vector3d up = camera.camera_from_world.col(1);
+  const auto deg = [](double angle) { return std::round(angle * 1800 / EIGEN_PI) / 10 + 0.0; };
+  spdlog::warn(
+      "no --camera: assumed to look down by {:g} degrees and to be turned by {:g}{}, with a "
+      "vertical field of view of {:.4g} degrees; set what is known with --camera-pitch, "
+      "--camera-roll, --camera-fov",
+      deg(std::asin(std::clamp(-up.z(), -1.0, 1.0))), deg(std::atan2(-up.x(), -up.y())),
+      found ? " (from feet on level ground)" : "",
+      2 * std::atan(0.5 * camera.height_px / camera.fy_px) * 180 / EIGEN_PI);
+}
+
+void report_findings(const std::string& name, const Track2d& track,
+                     const std::vector<long long>& numbers, const TrackFindings& findings) {
+  const FileFrames frames(numbers);
+  const TrackFeatures::FillCount& filled = findings.filled;
+  const std::vector<FrameRange>& stretches = findings.stretches.stretches;
+  if (stretches.size() > 1)
+    spdlog::warn(
+        "{}: jumps to another place, as if to another person: frames {} are regenerated each by "
+        "themselves, with one body",
+        name, frames.described(stretches));
+  if (const auto& strays = findings.stretches.strays; !strays.empty())
+    spdlog::warn("{}: another person in frames {}: left out", name, frames.described(strays));
+  if (!findings.swaps.empty())
+    spdlog::warn("{}: {}; put right", name, frames.described(findings.swaps));
+  if (const auto nobody = frames_of_nobody(track); !nobody.empty())
+    spdlog::warn("{}: nobody is seen in frames {}: the motion there is made up", name,
+                 frames.described(nobody));
+  if (!filled.unseen.empty())
+    spdlog::warn("{}: {} are in no column: inferred", name, fmt::join(filled.unseen, ", "));
+  if (filled.interpolated + filled.missing > 0)
+    spdlog::warn("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
+                 name, filled.interpolated, filled.missing);
+}
+
+void report_uncertainty(const Motion& motion, const MatrixD& deviations) {
+  if (deviations.size() == 0) return;
+  const Skeleton& skeleton = motion.skeleton;
+  std::vector<std::pair<double, std::string>> joints;
+  for (int joint = 1; joint < skeleton.joint_count(); ++joint)
+    joints.emplace_back(std::sqrt(deviations.middleCols(3 * joint, 3).squaredNorm() /
+                                  static_cast<double>(3 * deviations.rows())),
+                        skeleton.joints[static_cast<std::size_t>(joint)].name);
+  std::ranges::sort(joints, std::greater());
+  double squares = 0;
+  for (const auto& [deviation, name] : joints) squares += deviation * deviation;
+  if (joints.empty()) return;
+  spdlog::info(
+      "joints are off by a standard deviation of {:.3g} in the file's unit along each axis, "
+      "{} most, by {:.3g}",
+      std::sqrt(squares / static_cast<double>(joints.size())), joints.front().second,
+      joints.front().first);
+}
+
+}  // namespace mcdbn::cli

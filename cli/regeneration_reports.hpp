@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mcdbn/motion_model/clip_regeneration.hpp"
+
+namespace mcdbn::cli {
+
+void report_written(const std::filesystem::path& path, int frames, double fps);
+
+/// Warns what is assumed of a camera without calibration.
+/// @param found pitch or roll was estimated from the clip
+void report_assumed(const Camera& camera, bool found);
+
+/// Warns what was missing in the track and what was wrong with it.
+/// @param name of the track, for messages  @param numbers of its frames, the file's own
+void report_findings(const std::string& name, const Track2d& track,
+                     const std::vector<long long>& numbers, const TrackFindings& findings);
+
+/// The usual deviation of a joint but the root along an axis, and the least sure joints'.
+void report_uncertainty(const Motion& motion, const MatrixD& deviations);
+
+}  // namespace mcdbn::cli
