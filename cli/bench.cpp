@@ -101,6 +101,8 @@ double minibatches_s(Device& device, double seconds) {
 }
 
 void run_bench(const CommandContext& context, const BenchOptions& options) {
+  if (options.tune && options.seconds == 0)
+    throw ConfigError("--tune with --seconds 0: single runs would decide; give it more seconds");
   Device device = Device::open({context.platform, context.device});
   if (options.tune) {
     const TuningNotice notice = [](const std::string& measured) { spdlog::info("{}", measured); };

@@ -12,7 +12,8 @@
 //
 // With a temperature other than 0 units are drawn as SAMPLE specifies, 1 or 3 (tile.clh), phase
 // 2 · step for the hidden ones and 2 · step + 1 for the absent ones; the last step's absent ones stay
-// probabilities.
+// probabilities. After CHAIN_PHASES phases they begin anew, with the random numbers' step
+// `steps_apart` further on.
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 SAMPLE=1,3 GROUP=1,64 STEPS= BINARY=
@@ -24,13 +25,16 @@
 #undef SAMPLE
 #define SAMPLE 1
 #endif
+#define CHAIN_PHASES 0x4000u  // kChainPhases of mrbm_chain.hpp
 #include "mean_field.clh"
 
 // Probabilities of this tile become what lies between them and their draws.
 INLINE void draw_tile(local float* x, const int ld, const int count, int column, int row0,
-                      float temperature, uint4 random, int phase) {
+                      float temperature, uint4 random, uint steps_apart, int pass) {
   if (temperature == 0.0f) return;
-  random.w += (uint)phase;
+  const uint phase = (random.w & 0xffffu) + (uint)pass;
+  random.z += phase / CHAIN_PHASES * steps_apart;
+  random.w = (random.w & 0xffff0000u) + phase % CHAIN_PHASES;
   for (int c = 0; c < count; ++c) draw_rows(x, ld, column + c * VEC, row0, temperature, random);
 }
 
@@ -39,7 +43,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
     int indexed, int first, int shift, int rows, global const int* layout, int p, int q,
     global const float* parameters, global const float* transposed, global float* drive,
     global float* absent, int absent_offset, int absent_ld, int steps, int doubled,
-    float temperature, uint4 random) {
+    float temperature, uint4 random, uint steps_apart) {
   local float x[ROWS * X_LD];  // the present modality, then the absent one
   local float h[ROWS * H_LD];
   const int row0 = get_group_id(0) * ROWS;
@@ -67,7 +71,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
     const int units = step > 0 ? Q : doubled ? P : 0;
     global const float* weights = step > 0 ? w_q : w_p;
     SHARED_UNITS(units, weights, drive, {
-      draw_tile(h, H_LD, count, column, row0, temperature, random, 2 * step);
+      draw_tile(h, H_LD, count, column, row0, temperature, random, steps_apart, 2 * step);
     });
     SYNC();
     ABSENT_UNITS(Q, wt_q, a_q, 0, {
@@ -75,7 +79,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
         store_first_rows(sum, count, absent, absent_ld, column, rows - row0);
       } else {
         keep_tile(sum, count, x, X_LD, column);
-        draw_tile(x, X_LD, count, column, row0, temperature, random, 2 * step + 1);
+        draw_tile(x, X_LD, count, column, row0, temperature, random, steps_apart, 2 * step + 1);
       }
     });
     SYNC();

@@ -8,12 +8,15 @@
 namespace mcdbn {
 namespace {
 
+/// A checkpoint is the same on every device that needs no more than this, as most do.
+constexpr std::size_t kUsualAlignmentBits = 4096;
+
 /// Floats at whose multiples a part of a buffer may begin (CL_DEVICE_MEM_BASE_ADDR_ALIGN).
 std::size_t alignment_floats(const Device& device) {
   const auto bits = checked(device.info().name, "asking for its alignment", [&] {
     return device.queue().getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_MEM_BASE_ADDR_ALIGN>();
   });
-  return std::max<std::size_t>(bits / 8 / sizeof(float), kColumnPad);
+  return std::max<std::size_t>(bits, kUsualAlignmentBits) / 8 / sizeof(float);
 }
 
 std::size_t rounded_up(std::size_t value, std::size_t to) {

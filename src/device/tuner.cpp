@@ -10,6 +10,7 @@
 #include "device/gemm.hpp"
 #include "device/median_time.hpp"
 #include "device/peak.hpp"
+#include "device/tuning_fields.hpp"
 #include "mcdbn/device/matrix.hpp"
 
 namespace mcdbn {
@@ -20,19 +21,19 @@ constexpr double kWorthwhile = 0.97;
 
 /// `to` with what `from` has otherwise than the default.
 Tuning with_changes(Tuning to, const Tuning& from, const Tuning& usual) {
-  for (const auto parameter :
-       {&Tuning::vector_width, &Tuning::largest_rows, &Tuning::accumulators, &Tuning::group,
-        &Tuning::update_rows, &Tuning::update_columns, &Tuning::product_columns})
-    if (from.*parameter != usual.*parameter) to.*parameter = from.*parameter;
+  for (const auto& [name, value] : kTuningFields)
+    if (from.*value != usual.*value) to.*value = from.*value;
   return to;
 }
 
-std::string described(const Tuning& tuning) {
-  return fmt::format(
-      "vector width {}, rows {}, accumulators {}, group {}, update rows {}, columns {}, "
-      "product columns {}",
-      tuning.vector_width, tuning.largest_rows, tuning.accumulators, tuning.group,
-      tuning.update_rows, tuning.update_columns, tuning.product_columns);
+/// What it has otherwise than the default: "vector width 8, group 64".
+std::string described(const Tuning& tuning, const Tuning& usual) {
+  std::string text;
+  for (const auto& [name, value] : kTuningFields)
+    if (tuning.*value != usual.*value)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, tuning.*value);
+  std::ranges::replace(text, '_', ' ');
+  return text.empty() ? "the default" : text;
 }
 
 /// The rival's time as a share of the best's: the median over pairs measured side by side, as a
@@ -46,18 +47,25 @@ double paired_ratio(const TunedTime& time_s, const Tuning& rival, const Tuning& 
   return upper_median(std::move(ratios));
 }
 
-/// CLBlast's product within the rounding error of two float sums of k terms (Higham 3.5) of the
-/// host's in double.
+/// CLBlast's products, A·B and Aᵀ·B, within the rounding error of two float sums of k terms (Higham
+/// 3.5) of the host's in double.
 bool clblast_is_right(Device& device, Eigen::Index m, Eigen::Index n, Eigen::Index k) {
   const MatrixF a = MatrixF::Random(m, k), b = MatrixF::Random(k, n);
-  Matrix c(device, static_cast<std::size_t>(m), static_cast<std::size_t>(n));
-  GemmOptions options;
-  options.backend = GemmBackend::clblast;
-  gemm(Matrix::from_host(device, a), Matrix::from_host(device, b), c, options);
   const MatrixD want = a.cast<double>() * b.cast<double>();
   const MatrixD bound = static_cast<double>(k + 2) * 0x1p-24 *
                         (a.cwiseAbs().cast<double>() * b.cwiseAbs().cast<double>());
-  return ((c.to_host().cast<double>() - want).cwiseAbs().array() <= bound.array()).all();
+  const Matrix right = Matrix::from_host(device, b);
+  Matrix c(device, static_cast<std::size_t>(m), static_cast<std::size_t>(n));
+  const auto is_right = [&] {
+    return ((c.to_host().cast<double>() - want).cwiseAbs().array() <= bound.array()).all();
+  };
+  GemmOptions options;
+  options.backend = GemmBackend::clblast;
+  gemm(Matrix::from_host(device, a), right, c, options);
+  if (!is_right()) return false;
+  gemm_transposed_a(Matrix::from_host(device, MatrixF(a.transpose())), right, c, 1.0F, 0.0F,
+                    GemmBackend::clblast);
+  return is_right();
 }
 
 double product_s(Device& device, std::size_t size, GemmBackend backend, double seconds) {
@@ -87,7 +95,8 @@ Tuning fastest_tuning(const DeviceInfo& info, const Tuning& usual, const TunedTi
     if (rival == usual) continue;
     const Tuning merged = with_changes(best, rival, usual);
     const double ratio = paired_ratio(time_s, merged, best);
-    if (notice) notice(fmt::format("{}: {:.2f} of the best so far", described(merged), ratio));
+    if (notice)
+      notice(fmt::format("{}: {:.2f} of the best so far", described(merged, usual), ratio));
     if (ratio < kWorthwhile) best = merged;
   }
   return best;
@@ -103,12 +112,17 @@ std::int64_t clblast_threshold(Device& device, double seconds, const TuningNotic
       notice(
           fmt::format("product of size {}: CLBlast takes {:.2f} of ours", size, clblast_s / own_s));
     if (clblast_s >= kWorthwhile * own_s) continue;
-    const auto side = static_cast<Eigen::Index>(size);
-    if (clblast_is_right(device, side, side, side) && clblast_is_right(device, side + 1, 33, side))
-      return static_cast<std::int64_t>(size * size * size);
+    // Larger products than that go to CLBlast, too, where it may take another kernel.
+    bool right = true;
+    for (std::size_t checked = size; right && checked <= kSizes.back(); checked *= 2) {
+      const auto side = static_cast<Eigen::Index>(checked);
+      right = clblast_is_right(device, side, side, side) &&
+              clblast_is_right(device, side + 1, 33, side);
+    }
+    if (right) return static_cast<std::int64_t>(size * size * size);
     if (notice)
-      notice(fmt::format("CLBlast's product of size {} is wrong on {}; it stays unused", size,
-                         device.info().name));
+      notice(fmt::format("CLBlast's products from size {} on are wrong on {}; it stays unused",
+                         size, device.info().name));
     return 0;
   }
   return 0;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/user_cache.hpp"
+#include "device/tuning_fields.hpp"
 #include "mcdbn/device/device.hpp"
 
 namespace mcdbn {
@@ -79,18 +80,8 @@ std::optional<Tuning> load_tuning(const DeviceInfo& info) {
   try {
     const auto json = nlohmann::json::parse(*entry);
     Tuning tuning;
-    tuning.vector_width = json.at("vector_width");
-    tuning.largest_rows = json.at("largest_rows");
-    tuning.accumulators = json.at("accumulators");
-    tuning.group = json.at("group");
-    tuning.update_rows = json.at("update_rows");
-    tuning.update_columns = json.at("update_columns");
-    tuning.product_columns = json.at("product_columns");
-    tuning.transposed_columns = json.at("transposed_columns");
-    tuning.product_rows = json.at("product_rows");
-    tuning.transposed_rows = json.at("transposed_rows");
-    tuning.summed_rows = json.at("summed_rows");
-    tuning.unroll = json.at("unroll");
+    for (const TuningField& field : kTuningFields)
+      tuning.*field.value = json.at(std::string(field.name));
     tuning.clblast_from = json.at("clblast_from");
     if (makes_sense(tuning)) return tuning;
   } catch (const nlohmann::json::exception&) {
@@ -100,19 +91,9 @@ std::optional<Tuning> load_tuning(const DeviceInfo& info) {
 }
 
 void store_tuning(const DeviceInfo& info, const Tuning& tuning) {
-  const nlohmann::json json = {{"vector_width", tuning.vector_width},
-                               {"largest_rows", tuning.largest_rows},
-                               {"accumulators", tuning.accumulators},
-                               {"group", tuning.group},
-                               {"update_rows", tuning.update_rows},
-                               {"update_columns", tuning.update_columns},
-                               {"product_columns", tuning.product_columns},
-                               {"transposed_columns", tuning.transposed_columns},
-                               {"product_rows", tuning.product_rows},
-                               {"transposed_rows", tuning.transposed_rows},
-                               {"summed_rows", tuning.summed_rows},
-                               {"unroll", tuning.unroll},
-                               {"clblast_from", tuning.clblast_from}};
+  nlohmann::json json = {{"clblast_from", tuning.clblast_from}};
+  for (const TuningField& field : kTuningFields)
+    json[std::string(field.name)] = tuning.*field.value;
   write_cache_entry(kKind, key_of(info), json.dump());
 }
 

@@ -92,12 +92,13 @@ BenchStep epoch_step(Device& device, std::size_t frames) {
     ContrastiveDivergence cd;
     LossAccumulator losses;
     RandomKey key;
-    State(Device& device, const CrbmShape& shape, std::size_t count, std::size_t batch)
+    State(Device& device, const CrbmShape& shape, std::size_t count, std::size_t batch,
+          const CdSettings& settings)
         : frames(Matrix::from_host(device,
                                    random_frames(shape.order + count, shape.visible, shape.kind))),
           schedule(device, rows_after(shape.order, count), batch),
           crbm(device, CrbmParameters::random(shape, kWeightDeviation, {})),
-          cd(crbm, batch),
+          cd(crbm, batch, settings),
           losses(device, 1, batch) {}
     static std::vector<std::int32_t> rows_after(std::size_t order, std::size_t count) {
       std::vector<std::int32_t> rows(count);
@@ -107,15 +108,19 @@ BenchStep epoch_step(Device& device, std::size_t frames) {
   };
   const CrbmShape shape{96, 300, 5, VisibleKind::gaussian};
   constexpr std::size_t kBatch = 100;
-  const auto state = std::make_shared<State>(device, shape, frames, kBatch);
-  return {{{"layer", "epoch"}, {"frames", frames}, {"batch", kBatch}}, 0.0, [state] {
+  const CdSettings settings = LearningSettings{}.gaussian;
+  const CdRule rule = cd_rule_for(settings, 1);
+  const auto state = std::make_shared<State>(device, shape, frames, kBatch, settings);
+  return {{{"layer", "epoch"}, {"frames", frames}, {"batch", kBatch}, {"k", rule.gibbs_steps}},
+          0.0,
+          [state, rule] {
             MinibatchSchedule& schedule = state->schedule;
             schedule.shuffle(state->key);
             for (std::size_t i = 0; i < schedule.batch_count(); ++i) {
               ++state->key.step;
               state->cd.step(Rows::indexed(state->frames, schedule.index(), schedule.first_of(i),
                                            schedule.batch()),
-                             {}, state->key, state->losses);
+                             rule, state->key, state->losses);
             }
           }};
 }

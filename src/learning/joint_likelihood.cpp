@@ -47,7 +47,10 @@ void JointLikelihood::make_stacks() {
 void JointLikelihood::visit_state(TrainingState& state) {
   MrbmChains::visit_state(state);
   state.number("started", started_);
-  if (!particles_.empty()) state.matrix("particles", particles_);
+  if (particles_.empty()) return;
+  // Without the rows that fill up the device's blocks.
+  Matrix particles = particles_.part(0, batch_, particles_.columns());
+  state.matrix("particles", particles);
 }
 
 void JointLikelihood::run_minibatch(std::span<const Rows> visible, const LearningStep& step,

@@ -23,6 +23,7 @@ PersistentContrastiveDivergence::PersistentContrastiveDivergence(
     : ContrastiveDivergence(crbm, largest_batch,
                             settings.fast_rate > 0.0 ? std::nullopt : std::move(tile), settings,
                             optimizer),
+      batch_(largest_batch),
       particles_(Matrix::like(hidden_data_)) {
   if (settings.fast_rate <= 0.0) return;
   fast_ = Matrix::like(crbm.parameters().all());
@@ -34,7 +35,9 @@ PersistentContrastiveDivergence::PersistentContrastiveDivergence(
 void PersistentContrastiveDivergence::visit_state(TrainingState& state) {
   ContrastiveDivergence::visit_state(state);
   state.number("fresh", fresh_);
-  state.matrix("particles", particles_);
+  // Without the rows that fill up the device's blocks.
+  Matrix particles = particles_.part(0, batch_, particles_.columns());
+  state.matrix("particles", particles);
   if (!fast_machine_) return;
   state.matrix("fast", fast_);
   state.matrix("fast_sum", fast_sum_);

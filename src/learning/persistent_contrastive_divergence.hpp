@@ -42,6 +42,7 @@ class PersistentContrastiveDivergence : public ContrastiveDivergence {
  private:
   void composed_chain(const Rows& rows, const CdRule& rule, const RandomKey& key);
 
+  std::size_t batch_;
   Matrix particles_;
   bool fresh_ = true;
   Matrix fast_, fast_sum_;            // [1 x floats]

@@ -44,7 +44,8 @@ Mcdbn random_start(Device& device, const std::vector<Modality>& modalities,
     code.visible = learning.hidden;
     code.kind = VisibleKind::binary;
   }
-  MrbmParameters mrbm = MrbmParameters::random(shape, 1.0, {learning.seed, next++, kStream, 0});
+  MrbmParameters mrbm = MrbmParameters::random(shape, 1.0, {learning.seed, next, kStream, 0});
+  next += static_cast<std::uint32_t>(modalities.size());
   const double shared = 1.0 / std::sqrt(static_cast<double>(learning.hidden));
   for (MatrixF& W : mrbm.W) W *= static_cast<float>(shared);
   const std::size_t last = modalities.size() - 1;

@@ -11,7 +11,7 @@ enum WeightPhase : std::uint16_t { kWeightsW = 1, kWeightsA, kWeightsB };
 
 MatrixF normal_matrix(Eigen::Index rows, Eigen::Index columns, double deviation, RandomKey key,
                       WeightPhase phase) {
-  key.phase = phase;
+  key.phase = static_cast<std::uint16_t>(key.phase + phase);
   MatrixF values(rows, columns);
   for (Eigen::Index r = 0; r < rows; ++r)
     for (Eigen::Index c = 0; c < columns; ++c)

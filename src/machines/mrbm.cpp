@@ -73,7 +73,7 @@ MrbmParameters MrbmParameters::random(const MrbmShape& shape, double deviation,
   MrbmParameters parameters = zeros(shape);
   for (std::size_t m = 0; m < shape.modalities.size(); ++m) {
     RandomKey own = key;
-    own.step = static_cast<std::uint32_t>(m);
+    own.step += static_cast<std::uint32_t>(m);
     parameters.W[m] =
         CrbmParameters::random({shape.modalities[m].visible, shape.hidden}, deviation, own).W;
   }

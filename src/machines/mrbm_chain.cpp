@@ -55,7 +55,9 @@ GemmOptions units_options(VisibleKind kind, const Rows& units, const MrbmChainOp
   epilogue.sample = &units;
   epilogue.temperature = options.temperature;
   epilogue.random = options.random;
-  epilogue.random.phase = static_cast<std::uint16_t>(options.random.phase + pass);
+  const std::size_t phase = options.random.phase + pass;
+  epilogue.random.phase = static_cast<std::uint16_t>(phase % kChainPhases);
+  epilogue.random.step += static_cast<std::uint32_t>(phase / kChainPhases) * options.steps_apart;
   return epilogue;
 }
 
@@ -133,7 +135,7 @@ void MrbmChain::fused(const Rows& present, const MrbmChainOptions& options, cons
          to_int(present_[0]), to_int(absent_[0]), mrbm_.parameters().all().buffer(),
          mrbm_.transposed().all().buffer(), drive_.buffer(), absent.matrix->buffer(),
          absent.offset(), absent.stride(), to_int(options.steps), options.doubled ? 1 : 0,
-         options.temperature, random_argument(options.random));
+         options.temperature, random_argument(options.random), options.steps_apart);
 }
 
 /// Absent modalities are zeros: what the present ones give, or twice that.

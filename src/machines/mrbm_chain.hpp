@@ -18,9 +18,14 @@ struct MrbmChainOptions {
   bool doubled = false;
   Sampling sampling = Sampling::bernoulli;  ///< or concrete; Gaussian units draw as such
   /// The draws are those of row r of the chain. Each step has a phase for the hidden units, then
-  /// one for each absent modality.
+  /// one for each absent modality. After kChainPhases of them they begin anew, with a
+  /// `RandomKey::step` that is `steps_apart` further on.
   RandomKey random = {};
+  std::uint32_t steps_apart = 1;
 };
+
+/// Phases are below 0x8000, and chains may be longer.
+inline constexpr std::size_t kChainPhases = 0x4000;
 
 /// What mrbm_shape.clh needs but for STEPS.
 Defines shape_defines(const Mrbm& mrbm);

@@ -45,6 +45,7 @@ std::vector<Matrix> sample(const Mrbm& mrbm, const std::vector<Matrix>& modaliti
   options.steps = settings.steps;
   options.temperature = 1.0F;
   options.random = {settings.seed, 0, random_streams::kChains, 0};
+  options.steps_apart = 2;  // step 1 is that of the last draw
   MrbmChain(mrbm, given, rows).run({result.begin(), result.end()}, options);
   if (settings.means) return result;
   for (std::size_t m = 0; m < result.size(); ++m) {

@@ -109,6 +109,7 @@ void infer_samples(const Mcdbn& network, const Frames& frames, std::size_t wante
   chain.steps = options.sampling.mrbm_gibbs_steps;
   chain.temperature = static_cast<float>(options.drawn_share());
   if (options.sampling.steady) chain.sampling = Sampling::concrete;
+  chain.steps_apart = static_cast<std::uint32_t>(frames.total);
   const std::size_t count = sequences * options.samples;
   std::vector<std::int32_t> start;
   for (std::size_t i = 0; i < count; ++i)

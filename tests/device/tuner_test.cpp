@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -24,7 +25,28 @@ DeviceInfo some_cpu() {
   return info;
 }
 
+DeviceInfo some_gpu() {
+  DeviceInfo info;
+  info.is_gpu = true;
+  info.largest_group = info.largest_group_sides[0] = 1024;
+  return info;
+}
+
 }  // namespace
+
+TEST_CASE("tuner: whichever candidate is the fastest is found, on a CPU and on a GPU") {
+  for (const DeviceInfo& info : {some_cpu(), some_gpu()}) {
+    const Tuning usual = default_tuning(info);
+    for (const Tuning& favourite : tuning_candidates(info, usual)) {
+      std::vector<std::string> notices;
+      CHECK(fastest_tuning(
+                info, usual, [&](const Tuning& tuning) { return tuning == favourite ? 1.0 : 2.0; },
+                [&](const std::string& notice) { notices.push_back(notice); }) == favourite);
+      for (std::size_t i = 0; i < notices.size(); ++i)  // each is another
+        CHECK(std::ranges::count(notices, notices[i]) == 1);
+    }
+  }
+}
 
 TEST_CASE("tuner: the winners of one parameter after another are put together") {
   const Tuning usual = default_tuning(some_cpu());

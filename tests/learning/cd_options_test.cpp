@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "device/every_device.hpp"
+#include "device/training_state.hpp"
 #include "learning/persistent_contrastive_divergence.hpp"
 #include "learning/within_bounds.hpp"
 #include "machines/cdbn_decoder.hpp"
@@ -226,6 +227,40 @@ TEST_CASE("small: persistent chains go on where they were, as the double referen
   changed.gibbs_steps = 1;
   changed.sparsity_strength = 0.3;
   check_everywhere<PersistentContrastiveDivergence>(changed);
+}
+
+TEST_CASE("small: persistent chains of a checkpoint go on in blocks of other rows") {
+  const Scene scene({5, 6, 2, VisibleKind::gaussian}, settings());
+  on_every_device([&](Device& device) {
+    const Matrix frames = Matrix::from_host(device, scene.frames);
+    const IndexBuffer index(device, scene.rows);
+    LossAccumulator losses(device, 1, kBatch);
+    const auto step = [&](PersistentContrastiveDivergence& trainer, std::size_t number) {
+      trainer.step(Rows::indexed(frames, index, number * kBatch, kBatch), scene.rule(number),
+                   scene.key(number), losses);
+    };
+    const RowTile tile{.vector_width = 4, .rows = 3, .update_rows = 4};
+    Crbm undisturbed(device, scene.start);
+    PersistentContrastiveDivergence whole(undisturbed, kBatch, tile, scene.settings);
+    step(whole, 0);
+    TrainingState::Content content;
+    TrainingState saving = TrainingState::saving(content);
+    whole.visit_state(saving);
+    const CrbmParameters after_one = undisturbed.to_host();
+    step(whole, 1);
+    RowTile other = tile;
+    other.rows = 2;
+    for (const auto& resumed_tile : {std::optional(other), std::optional<RowTile>()}) {
+      Crbm crbm(device, after_one);
+      PersistentContrastiveDivergence resumed(crbm, kBatch, resumed_tile, scene.settings);
+      TrainingState restoring = TrainingState::restoring(content);
+      resumed.visit_state(restoring);
+      step(resumed, 1);
+      CHECK(resumed.particles().to_host().topRows(kBatch) ==
+            whole.particles().to_host().topRows(kBatch));
+      check_close("W", crbm.to_host().W, undisturbed.to_host().W.cast<double>());
+    }
+  });
 }
 
 TEST_CASE("small: fast weights move the chains and no parameter, as the double reference's do") {

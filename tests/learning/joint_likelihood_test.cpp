@@ -4,6 +4,7 @@
 
 #include "device/every_device.hpp"
 #include "device/fitting_tiles.hpp"
+#include "device/training_state.hpp"
 #include "learning/mrbm_rules_scene.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "reference/crbm_enumeration.hpp"
@@ -128,6 +129,29 @@ TEST_CASE("every tile of the fused joint likelihood gives the same bits, by two 
       CHECK(got.a == want->a);
       CHECK(got.b == want->b);
     }
+  });
+}
+
+TEST_CASE("small: chains of a checkpoint of the joint likelihood go on in blocks of other rows") {
+  const MrbmSettings settings{.rate = 0.01, .gibbs_steps = 2, .persistent = true};
+  on_every_device([&](Device& device) {
+    Mrbm undisturbed(device, two().start);
+    JointLikelihood whole(undisturbed, 7, RowTile{.vector_width = 4, .rows = 3, .update_rows = 4},
+                          settings);
+    run(device, two(), whole, 1);
+    TrainingState::Content content;
+    TrainingState saving = TrainingState::saving(content);
+    whole.visit_state(saving);
+    const MrbmParameters after_one = undisturbed.to_host();
+    run(device, two(), whole, 1);
+    Mrbm mrbm(device, after_one);
+    JointLikelihood resumed(mrbm, 7, RowTile{.vector_width = 4, .rows = 2, .update_rows = 4},
+                            settings);
+    TrainingState restoring = TrainingState::restoring(content);
+    resumed.visit_state(restoring);
+    run(device, two(), resumed, 1);
+    CHECK(mrbm.to_host().W == undisturbed.to_host().W);
+    CHECK(mrbm.to_host().b == undisturbed.to_host().b);
   });
 }
 

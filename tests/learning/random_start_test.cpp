@@ -64,7 +64,7 @@ TEST_CASE("the start of fine-tuning: every matrix drawn on its own, at the size 
     const reference::UnrolledModel own = in_double(on_host(start)),
                                    middle = reference::centered(own);
     // The MRBM draws first, then the layers of 2D from below, then those of 3D.
-    std::uint32_t number = 1;
+    std::uint32_t number = 2;  // one for each modality of the MRBM
     for (const std::size_t m : {0, 1}) {
       REQUIRE(own.stacks[m].size() == 3);
       for (std::size_t i = 0; i < 3; ++i) {
@@ -95,6 +95,35 @@ TEST_CASE("the start of fine-tuning: every matrix drawn on its own, at the size 
       CHECK(largest(middle.mrbm.visible_bias[m]) < 1e-5);
     }
     CHECK(largest(middle.mrbm.hidden_bias) < 1e-5);
+  });
+}
+
+TEST_CASE("no two matrices of the start are the same numbers, of three modalities either") {
+  LearningSettings config = settings();
+  config.hidden = config.mrbm_hidden = kPose;  // all alike in size
+  std::vector<Modality> modalities{{"one", kPose, VisibleKind::gaussian},
+                                   {"two", kPose, VisibleKind::gaussian},
+                                   {"three", kPose, VisibleKind::gaussian}};
+  on_every_device([&](Device& device) {
+    const Mcdbn start = random_start(device, modalities, config);
+    std::vector<MatrixD> drawn;
+    const auto take = [&](const Matrix& W) {
+      MatrixD numbers = W.to_host().topRows(kPose).cast<double>();
+      numbers.diagonal().setZero();  // which passes on
+      drawn.push_back(numbers / numbers.norm());
+    };
+    for (const Matrix& W : start.mrbm.W) take(W);
+    for (const Cdbn& cdbn : start.cdbns)
+      for (const Crbm& layer : cdbn.layers)
+        for (const Matrix* matrix : {&layer.W, &layer.A, &layer.B}) take(*matrix);
+    REQUIRE(drawn.size() == 3 + 3 * 3 * 3);
+    for (std::size_t i = 0; i < drawn.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        CAPTURE(i);
+        CAPTURE(j);
+        // Of 72 numbers drawn apart the correlation is 0.12 times a normal one.
+        CHECK(std::abs((drawn[i].array() * drawn[j].array()).sum()) < 0.7);
+      }
   });
 }
 

@@ -174,8 +174,8 @@ TEST_CASE("small: a row's history begins `order` rows before it, by number and b
 TEST_CASE("random weights: each matrix has draws of its own, biases are zero") {
   const RandomKey key{5, 3, 2, 9};
   const CrbmParameters p = CrbmParameters::random({6, 6, 1, VisibleKind::binary}, 0.25, key);
-  // W, A and B in that order are phases 1, 2 and 3, whatever the key's own phase is.
-  std::uint16_t phase = 0;
+  // W, A and B in that order are the phases after the key's own.
+  std::uint16_t phase = 9;
   for (const MatrixF* matrix : {&p.W, &p.A, &p.B}) {
     const RandomKey own{5, 3, 2, ++phase};
     for (std::uint32_t r = 0; r < 6; ++r)
@@ -226,7 +226,7 @@ TEST_CASE("random MRBM weights: each modality has draws of its own") {
   const MrbmParameters p = MrbmParameters::random(two_modalities(4, 4, 3), 0.5, {8, 6, 2, 5});
   for (std::uint32_t m = 0; m < 2; ++m) {
     CHECK((p.a[m] == MatrixF::Zero(1, 4)));
-    const RandomKey own{8, m, 2, 1};  // the step is the modality
+    const RandomKey own{8, 6 + m, 2, 6};  // a step for each modality
     for (std::uint32_t r = 0; r < 4; ++r)
       for (std::uint32_t c = 0; c < 3; ++c)
         CHECK(p.W[m](r, c) == static_cast<float>(0.5 * random_normal(own, r, c)));

@@ -67,7 +67,9 @@ struct Problem {
     return reference::bounded_clamped_chain(
         model(), static_cast<int>(present), values, chain, [&](int pass, Eigen::Index units) {
           RandomKey key = options.random;
-          key.phase = static_cast<std::uint16_t>(pass);
+          const int phase = key.phase + pass;  // 0x4000 of them, then the next step
+          key.phase = static_cast<std::uint16_t>(phase & 0x3fff);
+          key.step += static_cast<std::uint32_t>(phase >> 14) * options.steps_apart;
           MatrixD u(values.rows(), units);
           for (Eigen::Index r = 0; r < u.rows(); ++r)
             for (Eigen::Index c = 0; c < u.cols(); ++c)
@@ -115,8 +117,10 @@ double check_rows(const MatrixF& got, const Bounded& want) {
   return static_cast<double>(checked) / static_cast<double>(got.rows());
 }
 
+/// @param phase the first; far on, it is that of a long chain
 void check_against_reference(Device& device, const std::vector<Case>& cases, float temperature,
-                             bool doubled = false, Sampling sampling = Sampling::bernoulli) {
+                             bool doubled = false, Sampling sampling = Sampling::bernoulli,
+                             std::uint16_t phase = 0) {
   for (const Case& test : cases)
     for (const std::size_t present : kModalities) {
       const Problem problem(test);
@@ -124,6 +128,8 @@ void check_against_reference(Device& device, const std::vector<Case>& cases, flo
            present, ", temperature ", temperature);
       MrbmChainOptions options = problem.options(temperature, doubled);
       options.sampling = sampling;
+      options.random.phase = phase;
+      options.steps_apart = 5;
       const Bounded want = problem.want(present, options);
       const auto tile = chosen_tile(device, problem);
       REQUIRE(tile);
@@ -159,6 +165,14 @@ TEST_CASE("small: the chain with concrete draws is the reference's, every row of
     for (const float temperature : {1.0F, 0.3F})
       check_against_reference(device, kSmallCases, temperature, false, Sampling::concrete);
     check_against_reference(device, {kOddCase}, 1.0F, false, Sampling::concrete);
+  });
+}
+
+TEST_CASE("small: a long chain's draws are of further steps, not the first ones again") {
+  on_every_device([](Device& device) {
+    for (const unsigned phase : {0x3ffeU, 0x3fffU, 0x7fffU, 0xfffdU})
+      check_against_reference(device, {kSmallCases[1]}, 1.0F, false, Sampling::concrete,
+                              static_cast<std::uint16_t>(phase));
   });
 }
 

@@ -56,7 +56,9 @@ struct Problem {
     const auto numbers = [&](const auto& number) {
       return [&number, key = o.random](int pass, Eigen::Index units) {
         RandomKey own = key;
-        own.phase = static_cast<std::uint16_t>(key.phase + pass);
+        const int phase = key.phase + pass;  // 0x4000 of them, then the next step
+        own.phase = static_cast<std::uint16_t>(phase & 0x3fff);
+        own.step += static_cast<std::uint32_t>(phase >> 14);
         return MatrixD(
             MatrixD::NullaryExpr(Eigen::Index{kRows}, units, [&](Eigen::Index r, Eigen::Index c) {
               return number(own, static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c));
@@ -141,6 +143,15 @@ TEST_CASE("small: a chain of three modalities draws hidden units, then each abse
   const Problem problem({{4, kBinary}, {7, kBinary}, {3, kBinary}}, 5);
   problem.check({true, false, false}, options_with(2, 1.0F));
   problem.check({false, true, true}, options_with(3, 1.0F));
+}
+
+TEST_CASE("small: a long chain draws Gaussian units, too, from further steps") {
+  const Problem problem({{4, kGaussian}, {7, kBinary}, {3, kGaussian}}, 5);
+  for (const unsigned phase : {0x3fffU, 0x7ffeU, 0xfffbU}) {
+    MrbmChainOptions options = options_with(2, 1.0F);
+    options.random.phase = static_cast<std::uint16_t>(phase);
+    problem.check({true, false, false}, options);
+  }
 }
 
 TEST_CASE("small: an MRBM wants two modalities or more, each with a name of its own") {

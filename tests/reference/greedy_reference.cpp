@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kPoseStream = 0, kTrackStream = 64, kMrbmStream = 128;
 constexpr int kShufflePhase = 0x7000, kNoisePhase = 0x7200;
-constexpr int kWeightsW = 1, kWeightsA = 2, kWeightsB = 3;
+constexpr int kWeightsW = 0x7101, kWeightsA = 0x7102, kWeightsB = 0x7103;
 
 RandomKey random_key(const GreedyPlan& plan, int stream, int step, int phase) {
   return {plan.seed, static_cast<std::uint32_t>(step), static_cast<std::uint16_t>(stream),

@@ -40,6 +40,7 @@ struct CrbmParameters {
 
   static CrbmParameters zeros(const CrbmShape& shape);
   /// W, A and B drawn from N(0, deviation²), biases zero.
+  /// @param key theirs are the three phases that follow its own
   static CrbmParameters random(const CrbmShape& shape, double deviation, const RandomKey& key);
   /// What stands in a machine's buffer (Crbm::parameter_shapes), or in one of gradients;
   /// visible_mean is zero, visible_deviation one.

@@ -33,6 +33,8 @@ struct MrbmParameters {
 
   static MrbmParameters zeros(const MrbmShape& shape);
   /// Every W drawn from N(0, deviation²), biases zero.
+  /// @param key of the first modality's W, as CrbmParameters::random takes it; each further one's
+  ///        is a step further on
   static MrbmParameters random(const MrbmShape& shape, double deviation, const RandomKey& key);
   /// What stands in a machine's buffer (Mrbm::parameter_shapes), or in one of gradients.
   static MrbmParameters read(const Parameters& from, const MrbmShape& shape);
