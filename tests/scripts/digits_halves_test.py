@@ -10,6 +10,7 @@ Fails where there is no OpenCL device, unless MCDBN_ALLOW_NO_DEVICE is set.
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import unittest
@@ -23,9 +24,10 @@ class DigitsHalves(unittest.TestCase):
     cli, python = None, None
 
     def test_minvi_infers_one_half_from_the_other_better_than_the_joint_likelihood(self):
-        done = subprocess.run([self.python, SCRIPT, "--cli", self.cli, "--seeds", "1", "--epochs", "60",
+        cli, python = pathlib.Path(self.cli).resolve(), os.path.abspath(shutil.which(self.python))
+        done = subprocess.run([python, SCRIPT, "--cli", f"./{cli.name}", "--seeds", "1", "--epochs", "60",
                                "--rules", f"{MINVI.split()[1]},{JOINT.split()[-1]}", "--no-classifier",
-                               "--json"], capture_output=True, text=True, check=False)
+                               "--json"], capture_output=True, text=True, check=False, cwd=cli.parent)
         self.assertEqual(done.returncode, 0, done.stderr)
         results = {name: of_seeds[0] for name, of_seeds in json.loads(done.stdout).items()}
         self.assertEqual(set(results), {MINVI, JOINT, MEAN})

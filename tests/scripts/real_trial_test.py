@@ -38,6 +38,8 @@ with (here / "calls.jsonl").open("a") as calls:
     calls.write(json.dumps(sys.argv[1:]) + "\\n")
 known = "known" if "--camera" in options else "unknown"
 shutil.copy(here / f"{pathlib.Path(options['--input']).name}_{known}.bvh", options["-o"])
+if (here / "failing").exists():
+    sys.exit(1)
 if "--write-camera" in options:
     shutil.copy(here / "camera.json", options["--write-camera"])
 """
@@ -143,6 +145,7 @@ class RealTrial(unittest.TestCase):
         # The second file of RTMPose shows the first row.
         openpose(self.data / "pose2sim_rtmpose_S00P00T01/cam03", HALPE_26, range(-1, FRAMES), 4)
         self.model = self.folder / "model.safetensors"
+        self.model.write_text("a model")
         (self.folder / "camera.json").write_text(json.dumps(
             {"R": {"type_id": "opencv-matrix", "rows": 3, "cols": 3, "dt": "d", "data": sum(FOUND, [])}}))
         self.program = self.folder / "program"
@@ -155,11 +158,11 @@ class RealTrial(unittest.TestCase):
     def lay_answer(self, name, places, frames=FRAMES):
         bvh(self.folder / f"{name}.bvh", places, frames)
 
-    def run_script(self, *arguments):
-        done = subprocess.run([sys.executable, SCRIPT, self.model, "--data", self.data, "--cli",
-                               self.program, "--work", self.folder / "work", "--methods", "model",
-                               *arguments], capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, 0, done.stderr)
+    def run_script(self, *arguments, code=0):
+        done = subprocess.run([sys.executable, "-B", SCRIPT, self.model, "--data", self.data, "--cli",
+                               "./program", "--work", self.folder / "work", "--methods", "model",
+                               *arguments], capture_output=True, text=True, check=False, cwd=self.folder)
+        self.assertEqual(done.returncode, code, done.stderr)
         return [[cell.strip() for cell in line.strip("|").split("|")]
                 for line in done.stdout.splitlines() if line.startswith("|")]
 
@@ -201,6 +204,48 @@ class RealTrial(unittest.TestCase):
         self.assertEqual(self.run_script("--cameras", "1", "--joints"), rows)
         self.assertEqual(len(self.calls()), 5)
 
+    def test_answers_are_those_of_this_model_and_program_and_of_these_tracks(self):
+        def lay_answers(aside_m):
+            for name in ("cam01_json", "truth_cam01"):
+                for known in ("known", "unknown"):
+                    self.lay_answer(f"{name}_{known}", lambda frame, joint: (
+                        world(frame, joint)[0] + aside_m, *world(frame, joint)[1:]))
+
+        def root_mm():
+            return int(self.run_script("--cameras", "1")[2][7])
+
+        lay_answers(0.1)
+        self.assertEqual(root_mm(), 100)
+        self.assertEqual(len(self.calls()), 4)
+        lay_answers(0.2)
+        self.assertEqual(root_mm(), 100)  # what is there
+        self.model.write_text("another")
+        self.assertEqual(root_mm(), 200)
+        self.assertEqual(len(self.calls()), 8)
+        lay_answers(0.3)
+        self.program.write_text(PROGRAM + "\n")
+        self.assertEqual(root_mm(), 300)
+        self.assertEqual(len(self.calls()), 12)
+        lay_answers(0.4)
+        frame = next((self.data / TRIAL / "pose/cam01_json").iterdir())
+        frame.write_text(frame.read_text() + "\n")
+        self.assertEqual(root_mm(), 400)
+        self.assertEqual(len(self.calls()), 14)  # the projected truth is as it was
+        calibration = self.data / "S00_Calibration/Calib_qualisys.toml"
+        calibration.write_text(calibration.read_text() + "\n")
+        lay_answers(0.5)
+        self.assertEqual(root_mm(), 500)
+        self.assertEqual(len(self.calls()), 18)
+        # What another model began to replace is no longer the first one's.
+        self.model.write_text("a third")
+        lay_answers(0.6)
+        (self.folder / "failing").touch()
+        self.run_script("--cameras", "1", code=1)
+        (self.folder / "failing").unlink()
+        lay_answers(0.7)
+        self.model.write_text("another")
+        self.assertEqual(root_mm(), 700)
+
     def test_turned_and_taller_answers_and_the_mean_of_cameras(self):
         def turned(frame, joint):
             # By 60 degrees about the middle of the hips: as far off as it is from their axis.
@@ -239,7 +284,7 @@ class RealTrial(unittest.TestCase):
         self.assertEqual(rows["OpenPose", "yes"], ["0", "0", "0", "0", "2", "3.0", "3.0", ""])
 
     def test_missing_data_is_reported(self):
-        done = subprocess.run([sys.executable, SCRIPT, self.model, "--data", self.folder / "none"],
+        done = subprocess.run([sys.executable, "-B", SCRIPT, self.model, "--data", self.folder / "none"],
                               capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(done.stdout.startswith("skipped: no data"))

@@ -61,9 +61,9 @@ class Scripts(unittest.TestCase):
         self.temporary.cleanup()
 
     @staticmethod
-    def run_program(*arguments):
+    def run_program(*arguments, folder=None):
         return subprocess.run([str(a) for a in arguments], capture_output=True, text=True,
-                              check=False)
+                              check=False, cwd=folder)
 
     @classmethod
     def run_cli(cls, *arguments):
@@ -228,8 +228,14 @@ fine-tuning.from-greedy = false
 
     def test_reproduce_paper(self):
         out = self.folder / "out"
+        # A folder is the action that the link to it names, clips may lie anywhere.
+        (self.folder / "walk").rename(self.folder / "walkers")
+        (self.folder / "walk").symlink_to("walkers")
+        clip = next((self.folder / "clap").iterdir())
+        clip.symlink_to(clip.rename(self.folder / clip.name))
+        cli = pathlib.Path(self.cli).resolve()
         result = self.run_program(SCRIPTS / "reproduce_paper", self.folder, "-o", out, "--cli",
-                                  self.cli, "--samples", 2, "--train", TINY)
+                                  f"./{cli.name}", "--samples", 2, "--train", TINY, folder=cli.parent)
         self.assertEqual(result.returncode, 0, result.stderr)
         with open(out / "comparison.csv", newline="", encoding="utf-8") as file:
             rows = {row["action"]: row for row in csv.DictReader(file)}

@@ -17,6 +17,7 @@ import unittest
 sys.dont_write_bytecode = True
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/worth_table"
+sys.path.insert(0, str(SCRIPT.parent))
 PROGRAM = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else None
 # Reports how many settings a model was trained with, and how many clips it is scored on.
 STAND_IN = """#!/usr/bin/env python3
@@ -52,10 +53,14 @@ class WorthTable(unittest.TestCase):
         self.program.write_text(STAND_IN)
         self.program.chmod(0o755)
 
+    def run_script(self, *options):
+        return subprocess.run([sys.executable, "-B", SCRIPT, "augmentations", "out.csv", "--train", "clips.toml",
+                               "--test", "walks=a.bvh,b.bvh", "waves=c.bvh", "--program", "./program", *options],
+                              cwd=self.folder, capture_output=True, text=True, check=False)
+
     def table(self, *options):
-        subprocess.run([SCRIPT, "augmentations", self.folder / "out.csv", "--train", "clips.toml", "--test",
-                        "walks=a.bvh,b.bvh", "waves=c.bvh", "--program", self.program, *options],
-                       check=True)
+        done = self.run_script(*options)
+        self.assertEqual(done.returncode, 0, done.stderr)
         with (self.folder / "out.csv").open() as file:
             return list(csv.DictReader(file))
 
@@ -85,6 +90,49 @@ class WorthTable(unittest.TestCase):
         self.assertEqual(self.table("--rows", "without l"), first)
         self.assertEqual(len(self.calls()), done)
         self.assertEqual(len(self.table("--rows", "without l", "--seed", "2")), 6)
+
+    def test_a_table_of_other_settings_is_refused(self):
+        clip = self.folder / "walk.bvh"
+        clip.write_text("a clip")
+        (self.folder / "clips.toml").write_text('[[clip]]\nfile = "walk.bvh"\n')
+        (self.folder / "b.bvh").write_text("a test clip")
+        first = self.table("--rows", "without leaning")
+        done = len(self.calls())
+
+        def refused(*options):
+            result = self.run_script("--rows", "without leaning", *options)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("out.csv: was made with other clips, another --more or another program", result.stderr)
+            self.assertEqual(len(self.calls()), done)
+
+        refused("--more", "--hidden", "9")
+        clip.write_text("another")
+        refused()
+        clip.write_text("a clip")
+        (self.folder / "b.bvh").write_text("another")
+        refused()
+        (self.folder / "b.bvh").write_text("a test clip")
+        self.program.write_text(STAND_IN + "\n")
+        refused()
+        self.program.write_text(STAND_IN)
+        self.assertEqual(self.table("--rows", "without leaning"), first)
+
+    def test_a_file_that_is_no_such_table_is_left_as_it_is(self):
+        out = self.folder / "out.csv"
+        out.write_text("other,columns\n1,2")
+        result = self.run_script()
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("has other columns", result.stderr)
+        self.assertEqual(out.read_text(), "other,columns\n1,2")
+
+    def test_a_row_that_was_cut_off_is_made_again(self):
+        whole = [{**row, "train_s": ""} for row in self.table("--rows", "without l")]
+        out = self.folder / "out.csv"
+        out.write_bytes(out.read_bytes()[:-20])
+        done = len(self.calls())
+        again = [{**row, "train_s": ""} for row in self.table("--rows", "without l")]
+        self.assertEqual(again, whole)
+        self.assertEqual(len(self.calls()), done + 3)
 
     @unittest.skipUnless(PROGRAM, "no program")
     def test_every_row_changes_settings_that_the_program_has(self):

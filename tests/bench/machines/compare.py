@@ -20,7 +20,7 @@ def main():
     parser.add_argument("--only", choices=["digits", "rbm", "walks"], default=None)
     parser.add_argument("--walks", type=Path, default=Path("../shared/data/cmu/walk"),
                         help="folder of BVH files named PERSON_NUMBER.bvh")
-    parser.add_argument("--cli", type=Path, default=program.CLI, help="the program")
+    parser.add_argument("--cli", default=program.CLI, help="the program")
     options = parser.parse_args()
     print(f"{cpu_model()}; medians of {options.rounds} rounds, all in turn.")
     wanted = [options.only] if options.only else ["digits", "rbm", "walks"]
