@@ -31,7 +31,7 @@ bool interruption_requested() noexcept {
 }
 
 void check_interruption() {
-  if (requested && deferred == 0) throw Interrupted("interrupted");
+  if (requested && !interruption_deferred()) throw Interrupted("interrupted");
 }
 
 void run_interruptibly(std::function<void()> call) {
@@ -61,6 +61,10 @@ InterruptionDeferred::InterruptionDeferred() noexcept {
 
 InterruptionDeferred::~InterruptionDeferred() {
   --deferred;
+}
+
+bool interruption_deferred() noexcept {
+  return deferred > 0;
 }
 
 }  // namespace mcdbn

@@ -30,4 +30,7 @@ class InterruptionDeferred {
   InterruptionDeferred& operator=(const InterruptionDeferred&) = delete;
 };
 
+/// Whether one lives on this thread: a thread that works for this one needs one of its own.
+bool interruption_deferred() noexcept;
+
 }  // namespace mcdbn

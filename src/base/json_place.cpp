@@ -15,6 +15,8 @@ using nlohmann::json;
 
 namespace {
 
+constexpr std::size_t kLongestPath = 100;  // that messages show; keys may be of any length
+
 std::string kind_in_words(const json& value) {
   if (value.is_null()) return "nothing (null)";
   if (value.is_boolean()) return "a truth value";
@@ -26,10 +28,15 @@ std::string kind_in_words(const json& value) {
 
 }  // namespace
 
+JsonPlace::JsonPlace(const json& value, const JsonPlace& from, const std::string& step)
+    : value_(&value), file_(from.file_), path_(from.path_ + step) {
+  // One more than is shown, so that messages tell that it is cut.
+  if (path_.size() > kLongestPath) path_ = path_.substr(path_.size() - kLongestPath - 1);
+}
+
 std::string JsonPlace::where() const {
-  constexpr std::size_t kLongest = 100;  // of a path; keys may be of any length
-  if (path_.empty()) return file_;
-  return fmt::format("{}: {}", file_, printable_end(path_, kLongest));
+  if (path_.empty()) return *file_;
+  return fmt::format("{}: {}", *file_, printable_end(path_, kLongestPath));
 }
 
 void JsonPlace::fail(const std::string& what) const {

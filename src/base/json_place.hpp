@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ namespace mcdbn {
 class JsonPlace {
  public:
   JsonPlace(const nlohmann::json& value, std::string file)
-      : value_(&value), file_(std::move(file)) {}
+      : value_(&value), file_(std::make_shared<const std::string>(std::move(file))) {}
 
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -47,11 +48,11 @@ class JsonPlace {
   std::vector<std::string> texts() const;
 
  private:
-  JsonPlace(const nlohmann::json& value, const JsonPlace& from, const std::string& step)
-      : value_(&value), file_(from.file_), path_(from.path_ + step) {}
+  JsonPlace(const nlohmann::json& value, const JsonPlace& from, const std::string& step);
 
   const nlohmann::json* value_;
-  std::string file_, path_;
+  std::shared_ptr<const std::string> file_;
+  std::string path_;  ///< its end where it is longer than messages show
 };
 
 }  // namespace mcdbn

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <ostream>
@@ -44,9 +45,9 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
 }
 
-/// The number that the whole cell is; NaN where it is empty.
+/// The number that the whole cell is; NaN where it is empty, also between quotes.
 std::optional<float> number(std::string_view cell) {
-  if (cell.empty()) return std::numeric_limits<float>::quiet_NaN();
+  if (cell.empty() || cell == "\"\"") return std::numeric_limits<float>::quiet_NaN();
   if (cell.front() == '+') cell.remove_prefix(1);
   double value = 0;  // so that what is too small for a float is 0, not an error
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
@@ -66,43 +67,76 @@ class CsvReader {
       add_line(trimmed(text.substr(0, end)), line);
       text.remove_prefix(std::min(end + 1, text.size()));
     }
+    if (columns_ == 1 && empty_ > 0) {
+      --empty_;  // the last line of the file is none
+      add_unknown_rows();
+    }
     if (rows_ == 0) throw InputError(name_ + ": no numbers");
     return Eigen::Map<const MatrixF>(values_.data(), rows_, columns_);
   }
 
  private:
   void add_line(std::string_view text, std::size_t line) {
-    if (text.empty()) return;
-    Eigen::Index column = 0;
-    for (bool last = false; !last; ++column) {
-      const auto comma = text.find(',');
-      last = comma == std::string_view::npos;
-      const std::string_view cell = trimmed(text.substr(0, comma));
+    if (text.empty()) {
+      ++empty_;
+      return;
+    }
+    const bool is_first = !seen_;
+    seen_ = true;
+    if (is_first && is_header(text)) {
+      empty_ = 0;
+      return;
+    }
+    row_.clear();
+    for_each_cell(text, [&](std::string_view cell) {
       const std::optional<float> value = number(cell);
-      if (!value && !seen_) {  // a header
-        seen_ = true;
-        columns_ = 0;
-        values_.clear();
-        return;
-      }
       if (!value)
         throw InputError(fmt::format("{}:{}: {} in column {} is no number", name_, line,
-                                     shown(cell), column + 1));
-      values_.push_back(*value);
-      if (!last) text.remove_prefix(comma + 1);
-    }
-    if (columns_ == 0) columns_ = column;
-    if (column != columns_)
+                                     shown(cell), row_.size() + 1));
+      row_.push_back(*value);
+    });
+    if (columns_ == 0) columns_ = std::ssize(row_);
+    if (std::ssize(row_) != columns_)
       throw InputError(fmt::format("{}:{}: {} columns, {} in the lines before it", name_, line,
-                                   column, columns_));
-    seen_ = true;
+                                   row_.size(), columns_));
+    if (columns_ == 1) add_unknown_rows();
+    empty_ = 0;
+    values_.insert(values_.end(), row_.begin(), row_.end());
     ++rows_;
   }
 
+  /// Of a file of one column: an empty line is an empty cell.
+  void add_unknown_rows() {
+    values_.insert(values_.end(), empty_, std::numeric_limits<float>::quiet_NaN());
+    rows_ += static_cast<Eigen::Index>(empty_);
+  }
+
+  template <typename Visit>
+  static void for_each_cell(std::string_view text, const Visit& visit) {
+    for (;;) {
+      const auto comma = text.find(',');
+      visit(trimmed(text.substr(0, comma)));
+      if (comma == std::string_view::npos) return;
+      text.remove_prefix(comma + 1);
+    }
+  }
+
+  /// Words and no number. A word among numbers is no column's name: the line would be lost.
+  static bool is_header(std::string_view text) {
+    bool words = false, numbers = false;
+    for_each_cell(text, [&](std::string_view cell) {
+      const std::optional<float> value = number(cell);
+      words = words || !value;
+      numbers = numbers || (value && !std::isnan(*value));
+    });
+    return words && !numbers;
+  }
+
   std::string name_;
-  std::vector<float> values_;
+  std::vector<float> values_, row_;
   Eigen::Index rows_ = 0, columns_ = 0;
-  bool seen_ = false;  ///< a header or a line of numbers
+  std::size_t empty_ = 0;  ///< empty lines before this one
+  bool seen_ = false;      ///< a header or a line of numbers
 };
 
 MatrixF matrix_of(const Safetensors& content, const std::string& file, const std::string& tensor) {
@@ -117,6 +151,9 @@ MatrixF matrix_of(const Safetensors& content, const std::string& file, const std
   if (shape.size() != 2)
     throw InputError(fmt::format("{}: tensor {} has {} dimensions; 2 are wanted", file,
                                  found->first, shape.size()));
+  if (shape[1] == 0 && shape[0] > 0)
+    throw InputError(
+        fmt::format("{}: tensor {} has {} rows without columns", file, found->first, shape[0]));
   return Eigen::Map<const MatrixF>(found->second.values.data(), static_cast<Eigen::Index>(shape[0]),
                                    static_cast<Eigen::Index>(shape[1]));
 }

@@ -201,6 +201,8 @@ MatrixF npy_matrix(std::string_view bytes) {
   if (shape.empty() || shape.size() > 2)
     fail(fmt::format("{} dimensions; 2 are wanted", shape.size()));
   const std::size_t rows = shape[0], columns = shape.size() == 1 ? 1 : shape[1];
+  // Nothing in the file bounds their number.
+  if (columns == 0 && rows > 0) fail(fmt::format("{} rows without columns", rows));
   MatrixF values(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
   for (std::size_t r = 0; r < rows; ++r)
     for (std::size_t c = 0; c < columns; ++c)

@@ -1,7 +1,9 @@
 #include "base/output_file.hpp"
 
 #include <fmt/format.h>
+#include <linux/magic.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,16 +21,33 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Where links lead, which may be to what does not exist yet.
-fs::path followed(fs::path path) {
+/// The path, and where its links lead one after the other; the last may not exist yet.
+std::vector<fs::path> links_from(const fs::path& path) {
   constexpr int kMostLinks = 40;  // as Linux follows
+  std::vector<fs::path> chain{path};
   std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
-    const fs::path target = fs::read_symlink(path, error);
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(chain.back(), error)); ++i) {
+    const fs::path target = fs::read_symlink(chain.back(), error);
     if (error) break;
-    path = path.parent_path() / target;
+    chain.push_back(chain.back().parent_path() / target);
   }
-  return path;
+  return chain;
+}
+
+fs::path followed(const fs::path& path) {
+  return links_from(path).back();
+}
+
+bool is_in_proc(const fs::path& path) {
+  const fs::path folder = path.parent_path().empty() ? "." : path.parent_path();
+  struct statfs system {};
+  return ::statfs(folder.c_str(), &system) == 0 && system.f_type == PROC_SUPER_MAGIC;
+}
+
+/// Whether a link leads to what a program holds open, as /dev/stdout and /dev/fd/3 do: who opened
+/// it goes on writing to it, not to a new file of its name.
+bool is_held_open(const fs::path& path) {
+  return std::ranges::any_of(links_from(path), is_in_proc);
 }
 
 /// Short, so that any name that fits its folder can be written.
@@ -104,6 +123,9 @@ void check_replaceable(const fs::path& path) {
   } else if (type != fs::file_type::regular) {
     throw InputError(
         fmt::format("{}: is {}, which is not replaced; name a file", path.string(), kind_of(type)));
+  } else if (is_held_open(path)) {
+    throw InputError(
+        fmt::format("{}: is an open file, which is not replaced; name a file", path.string()));
   }
   const OutputBatch* batch = OutputBatch::current;
   const auto identity = OutputBatch::identity_of(path);

@@ -19,8 +19,8 @@ enum class OutputKind { file, file_or_folder };
 class OutputFile {
  public:
   /// Takes nothing from the disk yet.
-  /// @throws InputError if the place is taken by a device, a pipe or a folder with files, or by
-  /// what an OutputBatch must not replace
+  /// @throws InputError if the place is taken by a device, a pipe, an open file (/dev/stdout) or a
+  /// folder with files, or by what an OutputBatch must not replace
   explicit OutputFile(const std::filesystem::path& path);
   /// Removes what was not put in place.
   ~OutputFile();

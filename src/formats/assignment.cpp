@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "base/interruption.hpp"
+
 namespace mcdbn {
 namespace {
 
@@ -12,6 +14,7 @@ std::vector<int> assign_rows(const MatrixD& costs) {
   std::vector<double> row_potential(rows + 1), column_potential(columns + 1);
   std::vector<int> row_of(columns + 1), before(columns + 1);
   for (int row = 1; row <= rows; ++row) {
+    check_interruption();
     std::vector<double> slack(columns + 1, kInfinity);
     std::vector<bool> visited(columns + 1, false);
     row_of[0] = row;

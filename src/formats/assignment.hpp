@@ -10,6 +10,7 @@ namespace mcdbn {
 /// Hungarian method with potentials (Kuhn 1955, Munkres 1957; shortest augmenting paths after
 /// Jonker and Volgenant 1987), O(rows² · columns).
 /// @param costs [rows x columns], finite
+/// @throws Interrupted
 /// @return [rows] the column of each, -1 where there are fewer columns than rows
 std::vector<int> cheapest_assignment(const MatrixD& costs);
 

@@ -79,11 +79,13 @@ CameraRig read_cameras(const std::filesystem::path& path) {
   }
   CameraRig rig = found->read(source);
   if (rig.cameras.empty()) throw InputError(fmt::format("{}:1: holds no camera", path.string()));
-  for (std::string& line : rig.assumed) line = fmt::format("{} ({})", line, found->name);
+  for (std::vector<std::string>* lines : {&rig.assumed, &rig.stated})
+    for (std::string& line : *lines) line = fmt::format("{} ({})", line, found->name);
   return rig;
 }
 
-Camera read_camera(const std::filesystem::path& path, std::vector<std::string>* assumed) {
+Camera read_camera(const std::filesystem::path& path, std::vector<std::string>* assumed,
+                   std::vector<std::string>* stated) {
   const auto [file, name] = file_and_name(path);
   CameraRig rig = read_cameras(file);
   if (!name && rig.cameras.size() > 1)
@@ -95,9 +97,12 @@ Camera read_camera(const std::filesystem::path& path, std::vector<std::string>* 
   if (found == rig.cameras.end())
     throw InputError(fmt::format("{}: has no camera {}; there are: {}", file.string(), *name,
                                  fmt::join(names_of(rig), ", ")));
-  if (assumed)
-    for (const std::string& line : rig.assumed)
-      assumed->push_back(fmt::format("{}: {}", path.string(), line));
+  const auto collect = [&](const std::vector<std::string>& lines, std::vector<std::string>* to) {
+    if (!to) return;
+    for (const std::string& line : lines) to->push_back(fmt::format("{}: {}", path.string(), line));
+  };
+  collect(rig.assumed, assumed);
+  collect(rig.stated, stated);
   return found->camera;
 }
 

@@ -48,9 +48,13 @@ CameraRig read(const CameraSource& source) {
     if (!(*camera.unit_m > 0))
       throw InputError(storage.where("unit_m") + " is not above 0; give metres");
   }
-  return {
-      {{"camera", camera}},
-      {camera.unit_m ? "its world is y-up" : "its world is y-up and in the motion's file units"}};
+  CameraRig rig{{{"camera", camera}}, {}};
+  // Only our own files have a unit.
+  if (camera.unit_m)
+    rig.stated = {"its world is y-up"};
+  else
+    rig.assumed = {"its world is y-up and in the motion's file units"};
+  return rig;
 }
 
 }  // namespace

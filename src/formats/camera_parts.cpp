@@ -10,6 +10,7 @@
 #include <opencv2/core/eigen.hpp>
 
 #include "mcdbn/base/errors.hpp"
+#include "motion/nearest_rotation.hpp"
 
 namespace mcdbn {
 
@@ -112,10 +113,12 @@ Eigen::Matrix3d rotation_of(const std::vector<double>& values, const std::string
     throw InputError(where + " is not 3x3 nor a rotation vector; give one of them");
   }
   constexpr double kRounding = 1e-3;  // what people print with three decimals still passes
-  if (!((result * result.transpose() - Eigen::Matrix3d::Identity()).norm() <= kRounding) ||
-      result.determinant() < 0)
+  constexpr double kExact = 1e-12;
+  const double off = (result * result.transpose() - Eigen::Matrix3d::Identity()).norm();
+  if (!(off <= kRounding) || result.determinant() < 0)
     throw InputError(where + " is not a rotation; its rows must be orthonormal and right-handed");
-  return result;
+  // OpenCV projects by the nearest rotation, and rays have to be those of what is projected.
+  return off > kExact ? nearest_rotation(result) : result;
 }
 
 void set_pose(Camera& camera, const Eigen::Matrix3d& camera_from_world,

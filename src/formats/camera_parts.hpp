@@ -39,6 +39,7 @@ int pixels_of(double value, const std::string& where);
 void guess_size(Camera& camera);
 
 /// @param values 3 numbers of a rotation vector (radians), or 9 of a matrix, row by row
+/// @return orthonormal: of a matrix that was rounded the nearest rotation
 Eigen::Matrix3d rotation_of(const std::vector<double>& values, const std::string& where);
 
 /// Where the camera is, turned to a world with +y up.

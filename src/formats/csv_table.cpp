@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <limits>
 
 #include "base/interruption.hpp"
@@ -20,12 +21,6 @@ char separator_of(std::string_view line) {
   for (const char separator : {';', '\t'})
     if (std::ranges::count(line, separator) > std::ranges::count(line, best)) best = separator;
   return best;
-}
-
-std::string_view without_quotes(std::string_view cell) {
-  if (cell.size() < 2 || cell.front() != cell.back()) return cell;
-  return cell.front() == '"' || cell.front() == '\'' ? trimmed(cell.substr(1, cell.size() - 2))
-                                                     : cell;
 }
 
 }  // namespace
@@ -53,6 +48,11 @@ double CsvTable::number_in(const Line& line, std::size_t column) const {
   const std::optional<double> value = number(cell);
   if (!value) fail(line, fmt::format("{} in column {} is not a number", shown(cell), column + 1));
   return *value;
+}
+
+double CsvTable::confidence_in(const Line& line, std::optional<std::size_t> column) const {
+  const double value = column ? number_in(line, *column) : 1.0;
+  return std::isnan(value) ? 1.0 : value;
 }
 
 void CsvTable::require_cells(const Line& line, std::size_t cells) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,9 @@ class CsvTable {
   /// The number in a cell; NaN where it is empty, or the line ends before it. @throws InputError
   /// `file:line: what`
   double number_in(const Line& line, std::size_t column) const;
+  /// The same, but 1 where there is no column or the cell is empty: what was seen without a
+  /// confidence was seen.
+  double confidence_in(const Line& line, std::optional<std::size_t> column) const;
   /// @throws InputError if the line has another number of cells
   void require_cells(const Line& line, std::size_t cells) const;
   [[noreturn]] void fail(const Line& line, const std::string& what) const;

@@ -27,6 +27,12 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
+std::string_view without_quotes(std::string_view cell) {
+  if (cell.size() < 2 || cell.front() != cell.back()) return cell;
+  return cell.front() == '"' || cell.front() == '\'' ? trimmed(cell.substr(1, cell.size() - 2))
+                                                     : cell;
+}
+
 std::optional<double> number(std::string_view text) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   double value = 0;

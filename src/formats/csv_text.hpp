@@ -12,6 +12,9 @@ std::string_view trimmed(std::string_view text);
 /// The parts between separators, each trimmed.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
+/// What stands between the quotes, " or ', of a cell that has them.
+std::string_view without_quotes(std::string_view cell);
+
 /// The number that the whole of `text` is, if it is one; `nan` is one, infinity is not.
 std::optional<double> number(std::string_view text);
 

@@ -3,11 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 
-#include "camera/body_places.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
@@ -37,47 +33,6 @@ const std::vector<CountedSets>& counted_sets() {
   return sets;
 }
 
-/// Bones that are there in every joint set of a human, or not at all.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kBones{{
-    {"left_shoulder", "left_elbow"},
-    {"right_shoulder", "right_elbow"},
-    {"left_elbow", "left_wrist"},
-    {"right_elbow", "right_wrist"},
-    {"left_hip", "left_knee"},
-    {"right_hip", "right_knee"},
-    {"left_knee", "left_ankle"},
-    {"right_knee", "right_ankle"},
-    {"left_shoulder", "right_shoulder"},
-    {"left_hip", "right_hip"},
-    {"nose", "left_eye"},
-    {"nose", "right_eye"},
-    {"left_eye", "left_ear"},
-    {"right_eye", "right_ear"},
-}};
-
-std::ptrdiff_t index_of(const JointSet& set, std::string_view place) {
-  const auto found = std::ranges::find_if(set.keypoints, [&](const Keypoint& keypoint) {
-    return place_name_of(keypoint.name) == place;
-  });
-  return found == set.keypoints.end() ? -1 : found - set.keypoints.begin();
-}
-
-/// The mean length of the bones that the joints make as this set, over all people.
-double mean_bone(const SeenPeople& people, const JointSet& set) {
-  double sum = 0, bones = 0;
-  for (const auto& [from, to] : kBones) {
-    const std::ptrdiff_t a = index_of(set, from), b = index_of(set, to);
-    if (a < 0 || b < 0) continue;
-    for (const auto& [number, frame] : people.frames)
-      for (const SeenPerson& person : frame) {
-        if (!(person.confidence[a] > 0) || !(person.confidence[b] > 0)) continue;
-        sum += std::hypot(person.x_px[a] - person.x_px[b], person.y_px[a] - person.y_px[b]);
-        ++bones;
-      }
-  }
-  return bones > 0 ? sum / bones : std::numeric_limits<double>::infinity();
-}
-
 /// {"x": […], "y": […], "visible": […]}
 SeenPerson person_of_lists(const JsonPlace& keypoints) {
   SeenPerson person;
@@ -98,7 +53,7 @@ void set_length(SeenPeople& people, std::size_t joints) {
         values->resize(joints);
 }
 
-/// Joints of every person. @throws InputError if they differ
+/// Joints of every person. @throws InputError if they differ, or are too many
 std::size_t joint_count(const SeenPeople& people, const std::string& file) {
   std::size_t count = 0;
   for (const auto& [number, frame] : people.frames)
@@ -108,6 +63,7 @@ std::size_t joint_count(const SeenPeople& people, const std::string& file) {
                                      number, person.x_px.size()));
       count = person.x_px.size();
     }
+  require_joints(count, file);
   return count;
 }
 
@@ -133,9 +89,7 @@ bool is_joint_count(std::size_t joints) {
 void name_joints_by_count(SeenPeople& people, const std::string& file,
                           const std::vector<std::string>& names) {
   const std::size_t count = joint_count(people, file);
-  if (count == 0)
-    throw NoPersonSeen(
-        fmt::format("{}: no person in any frame, so its joints are not known", file));
+  if (count == 0) throw NoPersonSeen(file);
   const auto counted = std::ranges::find(counted_sets(), count, &CountedSets::joints);
   const bool more_than_body = counted != counted_sets().end() && counted->whole_body;
   if (names.size() == count && !more_than_body) {
@@ -149,21 +103,16 @@ void name_joints_by_count(SeenPeople& people, const std::string& file,
     people.keypoints = keypoints_of(people.joint_names);
     return;
   }
-  std::string likeliest = counted->sets.front();
-  double shortest = std::numeric_limits<double>::infinity();
-  for (const std::string& name : counted->sets)
-    if (const double length = mean_bone(people, joint_set(name)); length < shortest) {
-      shortest = length;
-      likeliest = name;
-    }
-  SeenPeople named = people_of_set(likeliest);
+  const std::string& usual = counted->sets.front();
+  if (counted->sets.size() > 1) people.possible_sets = counted->sets;
+  SeenPeople named = people_of_set(usual);
   people.joint_names = std::move(named.joint_names);
   people.keypoints = std::move(named.keypoints);
   if (more_than_body)
     people.notices.push_back(
         fmt::format("{} joints: {}, of which the {} of the body are taken ({}); face and hands are "
                     "left out",
-                    count, counted->whole_body, people.joint_names.size(), likeliest));
+                    count, counted->whole_body, people.joint_names.size(), usual));
   set_length(people, people.joint_names.size());
 }
 

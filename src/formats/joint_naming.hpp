@@ -13,7 +13,8 @@ namespace mcdbn {
 /// The content holds no person, and its joints are known only from people.
 class NoPersonSeen : public InputError {
  public:
-  using InputError::InputError;
+  explicit NoPersonSeen(const std::string& file)
+      : InputError(file + ": no person in any frame, so its joints are not known") {}
 };
 
 /// Whether a body has so many joints in one of the known joint sets, with or without face and
@@ -21,11 +22,11 @@ class NoPersonSeen : public InputError {
 bool is_joint_count(std::size_t joints);
 
 /// Names the joints. Where the file gives as many names as joints, those; else the joint
-/// set of that count, of several the one that makes the shortest limbs (BODY_25 and BODY_25B have
-/// the same count). Faces and hands behind a body's joints (133, 135, 136) are left out, with a
-/// notice, also where the file names them. Other counts become joint_0, joint_1 … without roles,
-/// with a notice.
-/// @throws InputError if the counts differ; NoPersonSeen
+/// set of that count, of several the usual one, with all of them as SeenPeople::possible_sets
+/// (BODY_25 and BODY_25B have the same count). Faces and hands behind a body's joints (133, 135,
+/// 136) are left out, with a notice, also where the file names them. Other counts become joint_0,
+/// joint_1 … without roles, with a notice.
+/// @throws InputError if the counts differ or are above kMostJoints; NoPersonSeen
 void name_joints_by_count(SeenPeople& people, const std::string& file,
                           const std::vector<std::string>& names = {});
 

@@ -88,6 +88,19 @@ json parse_lines(std::string_view text, const std::string& file) {
 
 }  // namespace
 
+bool shows_nobody(const json& content) {
+  if (content.is_array()) return std::ranges::all_of(content, shows_nobody);
+  if (!content.is_object()) return content.is_null();
+  if (content.contains("x")) return false;  // a landmark, whatever is null of it
+  bool any = content.empty();
+  for (const json& value : content) {
+    if (!value.is_structured() && !value.is_null()) continue;
+    if (!shows_nobody(value)) return false;
+    any = true;
+  }
+  return any;
+}
+
 json parse_json(std::string_view text, const std::string& file) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::string readable;

@@ -8,6 +8,10 @@
 
 namespace mcdbn {
 
+/// Whether a track's JSON shows nobody: null, an empty list or object, or lists and objects of
+/// nothing else. In objects there may be numbers and texts beside them, but no x.
+bool shows_nobody(const nlohmann::json& content);
+
 /// Python's NaN and Infinity are read, too, as null. JSON lines, a value in each line, are a list
 /// of them. @throws InputError `file:line: what`
 nlohmann::json parse_json(std::string_view text, const std::string& file);

@@ -64,7 +64,7 @@ bool is_frame_column(std::string_view name) {
   return false;
 }
 
-struct Joint {
+struct JointColumns {
   std::optional<std::size_t> x, y, confidence;
 };
 
@@ -88,7 +88,7 @@ class ColumnsReader {
       if (is_frame_column(header.cells[k])) frame_ = k;
       const auto column = column_of(header.cells[k]);
       if (!column || column->quantity == Quantity::depth) continue;
-      Joint& joint = joint_of(column->joint);
+      JointColumns& joint = joint_of(column->joint);
       auto& place = column->quantity == Quantity::x   ? joint.x
                     : column->quantity == Quantity::y ? joint.y
                                                       : joint.confidence;
@@ -99,7 +99,7 @@ class ColumnsReader {
     if (joints_.empty()) table_.fail(header, "no landmarks: columns NAME_x and NAME_y");
   }
 
-  Joint& joint_of(const std::string& name) {
+  JointColumns& joint_of(const std::string& name) {
     const auto found = std::ranges::find(names_, name);
     const auto index = static_cast<std::size_t>(found - names_.begin());
     if (found == names_.end()) {
@@ -121,11 +121,10 @@ class ColumnsReader {
   void read_frame(const CsvTable::Line& line) {
     table_.require_cells(line, table_.lines().front().cells.size());
     SeenPerson person;
-    for (const Joint& joint : joints_) {
+    for (const JointColumns& joint : joints_) {
       person.x_px.push_back(table_.number_in(line, *joint.x));
       person.y_px.push_back(table_.number_in(line, *joint.y));
-      person.confidence.push_back(joint.confidence ? table_.number_in(line, *joint.confidence)
-                                                   : 1.0);
+      person.confidence.push_back(table_.confidence_in(line, joint.confidence));
     }
     mark_missing(person);
     auto number = static_cast<long long>(people_.frames.size());
@@ -142,7 +141,7 @@ class ColumnsReader {
   std::string file_;
   std::optional<std::size_t> frame_;
   std::vector<std::string> names_;
-  std::vector<Joint> joints_;
+  std::vector<JointColumns> joints_;
   SeenPeople people_;
 };
 

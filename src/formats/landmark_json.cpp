@@ -23,13 +23,15 @@ constexpr std::array kBodyKeys{"landmarks", "pose_landmarks", "poseLandmarks", "
 constexpr int kDepth = 6;  // lists in lists down to a body
 constexpr std::array kFrameKeys{"frame", "frame_id", "frame_idx", "frame_number", "frameNumber"};
 constexpr std::array kConfidenceKeys{"visibility", "score", "confidence", "presence", "v"};
+constexpr std::array kScoresKeys{"keypoint_scores", "scores"};  // of all landmarks of a body
 constexpr std::array kNameKeys{"name", "part"};
 
-/// The value of the first of these keys that an object has.
+/// The value of the first of these keys under which an object has one: MediaPipe's landmarks have
+/// null for what is not known of them.
 template <typename Keys>
 std::optional<JsonPlace> any_of_keys(const JsonPlace& place, const Keys& keys) {
   for (const char* key : keys)
-    if (place.has(key)) return place[key];
+    if (place.has(key) && !place[key].value().is_null()) return place[key];
   return {};
 }
 
@@ -127,15 +129,23 @@ class LandmarkReader {
   }
 
   /// A body, or a list of them, or an object around either. Nothing: no person was found.
-  void add_bodies(const JsonPlace& place, std::vector<LandmarkBody>& bodies, int depth = 0) {
+  /// @param scores confidences beside them, nested as they are
+  void add_bodies(const JsonPlace& place, std::vector<LandmarkBody>& bodies, int depth = 0,
+                  const std::optional<JsonPlace>& scores = {}) {
     if (depth > kDepth) place.fail("no landmarks down to here");
     if (place.value().is_null() || place.size() == 0) return;
     if (is_body(place)) {
       bodies.push_back(body_of(place));
+      if (scores) take_scores(bodies.back(), *scores);
     } else if (place.is_list()) {
-      for (const JsonPlace& body : place.list()) add_bodies(body, bodies, depth + 1);
+      for (std::size_t i = 0; i < place.size(); ++i)
+        add_bodies(place.at(i), bodies, depth + 1,
+                   scores ? std::optional(scores->at(i)) : std::nullopt);
     } else if (place.is_object()) {
-      if (const auto inside = any_of_keys(place, kBodyKeys)) add_bodies(*inside, bodies, depth + 1);
+      const auto inside = any_of_keys(place, kBodyKeys);
+      auto beside = any_of_keys(place, kScoresKeys);
+      if (beside && !beside->is_list()) beside.reset();  // of the body as a whole
+      if (inside) add_bodies(*inside, bodies, depth + 1, beside);
     } else {
       place.fail("neither landmarks nor a list of them");
     }
@@ -147,7 +157,8 @@ class LandmarkReader {
     if (place.is_list()) {
       for (const JsonPlace& landmark : place.list()) {
         add_landmark(landmark, body);
-        if (const auto name = any_of_keys(landmark, kNameKeys)) names.push_back(name->text());
+        if (const auto name = any_of_keys(landmark, kNameKeys); name && name->value().is_string())
+          names.push_back(name->text());
       }
     } else {
       names = keys_by_number(place.keys());
@@ -158,6 +169,15 @@ class LandmarkReader {
       if (names != names_) place.fail("other landmarks than in the bodies before it");
     }
     return body;
+  }
+
+  static void take_scores(LandmarkBody& body, const JsonPlace& scores) {
+    std::vector<double> confidence = scores.numbers();
+    if (confidence.size() != body.person.x_px.size())
+      scores.fail(
+          fmt::format("{} scores of {} joints", confidence.size(), body.person.x_px.size()));
+    body.person.confidence = std::move(confidence);
+    body.thirds.assign(body.thirds.size(), -1);
   }
 
   static void add_landmark(const JsonPlace& place, LandmarkBody& body) {

@@ -73,7 +73,10 @@ class RowsReader {
   SeenPeople read() {
     for (std::size_t i = 1; i < table_.lines().size(); ++i) find_name(table_.lines()[i]);
     sort_numbers();
-    if (!header_.person && header_.id && landmarks_come_again()) header_.person = header_.id;
+    if (!numbered_) joints_ = names_.size();
+    require_joints(joints_, file_);
+    if (!header_.person && header_.id && header_.id != header_.landmark && landmarks_come_again())
+      header_.person = header_.id;
     for (std::size_t i = 1; i < table_.lines().size(); ++i) read_row(table_.lines()[i]);
     SeenPeople people;
     for (auto& [frame, bodies] : frames_) {
@@ -136,16 +139,22 @@ class RowsReader {
   void read_row(const CsvTable::Line& line) {
     const long long person = header_.person ? whole(line, *header_.person) : 0;
     SeenPerson& body = frames_[whole(line, *header_.frame)][person];
-    const std::size_t joints = numbered_ ? joints_ : names_.size();
+    constexpr double kNoRow = -1;  // a confidence that comes to be missing
     if (body.x_px.empty()) {
-      body.x_px.assign(joints, kNan);
-      body.y_px.assign(joints, kNan);
-      body.confidence.assign(joints, 0);
+      body.x_px.assign(joints_, kNan);
+      body.y_px.assign(joints_, kNan);
+      body.confidence.assign(joints_, kNoRow);
     }
-    const std::size_t joint = columns_.at(std::string(line.cells[*header_.landmark]));
+    const std::string_view landmark = line.cells[*header_.landmark];
+    const std::size_t joint = columns_.at(std::string(landmark));
+    if (body.confidence[joint] != kNoRow)
+      table_.fail(line,
+                  fmt::format("landmark {} comes twice in frame {}; {}", shown(landmark),
+                              shown(line.cells[*header_.frame]),
+                              header_.person ? "remove one row" : "add a column person, a number"));
     body.x_px[joint] = table_.number_in(line, *header_.x);
     body.y_px[joint] = table_.number_in(line, *header_.y);
-    body.confidence[joint] = header_.confidence ? table_.number_in(line, *header_.confidence) : 1.0;
+    body.confidence[joint] = table_.confidence_in(line, header_.confidence);
   }
 
   CsvTable table_;

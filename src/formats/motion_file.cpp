@@ -22,6 +22,11 @@ bool ends_in(const fs::path& path, std::string_view extension) {
   return own == extension;
 }
 
+/// What macOS puts beside files on disks of others: `._NAME`, with no motion in it.
+bool is_of_macos(const fs::path& path) {
+  return path.filename().string().starts_with("._");
+}
+
 /// The ASF of an AMC: the one whose name begins the AMC's, before an underscore or as a whole; the
 /// longest if there are more; else the only one in the folder.
 fs::path skeleton_beside(const fs::path& amc) {
@@ -30,7 +35,7 @@ fs::path skeleton_beside(const fs::path& amc) {
   fs::path best, last;
   std::size_t length = 0, count = 0;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (!ends_in(entry.path(), ".asf")) continue;
+    if (!ends_in(entry.path(), ".asf") || is_of_macos(entry.path())) continue;
     last = entry.path();
     ++count;
     const std::string own = entry.path().stem().string();
@@ -50,7 +55,11 @@ fs::path skeleton_beside(const fs::path& amc) {
 }  // namespace
 
 bool is_motion_file(const fs::path& path) {
-  return ends_in(path, ".bvh") || ends_in(path, ".amc");
+  return (ends_in(path, ".bvh") || ends_in(path, ".amc")) && !is_of_macos(path);
+}
+
+fs::path skeleton_file_of(const fs::path& path) {
+  return ends_in(path, ".amc") ? skeleton_beside(path) : fs::path();
 }
 
 Motion parse_motion(std::string_view text, const fs::path& path,
@@ -58,8 +67,8 @@ Motion parse_motion(std::string_view text, const fs::path& path,
   if (ends_in(path, ".asf"))
     throw InputError(
         fmt::format("{}: is a skeleton; name the .amc files that hold its motion", path.string()));
-  if (!ends_in(path, ".amc")) return parse_bvh(text, path.string(), warnings);
-  const fs::path skeleton = skeleton_beside(path);
+  const fs::path skeleton = skeleton_file_of(path);
+  if (skeleton.empty()) return parse_bvh(text, path.string(), warnings);
   return parse_asf_amc(read_text_file(skeleton), skeleton.string(), text, path.string(), warnings);
 }
 

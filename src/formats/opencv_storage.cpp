@@ -19,6 +19,21 @@ double stated_numbers(const cv::FileNode& matrix) {
   return numbers;
 }
 
+/// The numbers of a list, also of lists in it, one after the other. @return whether it holds no
+/// more
+bool add_numbers(const cv::FileNode& list, std::vector<double>& numbers) {
+  for (const cv::FileNode& entry : list) {
+    if (entry.isSeq()) {
+      if (!add_numbers(entry, numbers)) return false;
+    } else if (entry.isInt() || entry.isReal()) {
+      numbers.push_back(entry.real());
+    } else {
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 OpencvStorage::OpencvStorage(const CameraSource& source) : source_(source) {
@@ -72,8 +87,10 @@ OpencvStorage::Values OpencvStorage::matrix(const std::string& name) const {
   try {
     if (found.isSeq()) {
       std::vector<double> list;
-      found >> list;
-      values = cv::Mat(list, true);
+      if (add_numbers(found, list)) {
+        values = cv::Mat(list, true);
+        if (list.size() == 9) values = values.reshape(1, 3);
+      }
     } else if (!found.isMap() ||
                stated_numbers(found) <= static_cast<double>(found["data"].size())) {
       // Else OpenCV would make room for as many as the file declares before it counts them.

@@ -15,7 +15,8 @@ class OpencvStorage {
 
   bool has(const std::string& name) const;
   double number(const std::string& name) const;
-  /// A matrix, or a plain list of numbers.
+  /// A matrix, or a plain list of numbers, also row by row in lists: a column, or 3x3 if it has
+  /// nine.
   struct Values {
     int rows, columns;
     std::vector<double> values;  ///< row by row, finite

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "base/interruption.hpp"
 #include "formats/assignment.hpp"
 #include "formats/person_box.hpp"
 
@@ -25,7 +26,7 @@ constexpr int kFewJoints = 3;
 constexpr double kOverlapWeight = 0.5, kJointWeight = 0.5;
 /// A body that was found in parts is the one known before, not the new part.
 constexpr double kYouth = 0.3;
-constexpr int kFewFrames = 5;
+constexpr std::size_t kFewFrames = 5;
 
 double overlap(const PersonBox& a, const PersonBox& b) {
   const Point extent =
@@ -39,7 +40,10 @@ class Follower {
   Follower(const Frames& frames, int patience) : frames_(frames), patience_(patience) {}
 
   std::vector<Followed> run() {
-    for (std::size_t frame = 0; frame < frames_.size(); ++frame) add_frame(static_cast<int>(frame));
+    for (std::size_t frame = 0; frame < frames_.size(); ++frame) {
+      check_interruption();
+      add_frame(static_cast<int>(frame));
+    }
     std::vector<Followed> people;
     people.reserve(paths_.size());
     for (Path& path : paths_) people.push_back(std::move(path.seen));
@@ -50,8 +54,7 @@ class Follower {
   struct Path {
     Followed seen;
     int last_frame;
-    SeenPerson pose;  ///< where each joint was seen last, moved along with the body since then
-    int frames = 1;
+    SeenPerson pose;   ///< where each joint was seen last, moved along with the body since then
     Point step{0, 0};  ///< a frame
   };
 
@@ -64,9 +67,11 @@ class Follower {
     if (!awaited.empty() && !people.empty()) {
       MatrixD costs(static_cast<Eigen::Index>(awaited.size()),
                     static_cast<Eigen::Index>(people.size()));
-      for (Eigen::Index i = 0; i < costs.rows(); ++i)
+      for (Eigen::Index i = 0; i < costs.rows(); ++i) {
+        check_interruption();
         for (Eigen::Index k = 0; k < costs.cols(); ++k)
           costs(i, k) = cost(paths_[awaited[i]], people[k], frame);
+      }
       const std::vector<int> person_of = cheapest_assignment(costs);
       for (std::size_t i = 0; i < awaited.size(); ++i) {
         const int person = person_of[i];
@@ -77,8 +82,7 @@ class Follower {
     }
     for (std::size_t person = 0; person < people.size(); ++person) {
       if (known[person]) continue;
-      paths_.push_back({Followed(frames_.size(), -1), frame, people[person]});
-      paths_.back().seen[frame] = static_cast<int>(person);
+      paths_.push_back({{{frame, static_cast<int>(person)}}, frame, people[person]});
     }
   }
 
@@ -93,9 +97,8 @@ class Follower {
       path.pose.y_px[joint] = visible ? seen.y_px[joint] : path.pose.y_px[joint] + moved.y();
       if (visible) path.pose.confidence[joint] = seen.confidence[joint];
     }
-    path.seen[frame] = person;
+    path.seen.push_back({frame, person});
     path.last_frame = frame;
-    ++path.frames;
   }
 
   /// Of the joints that both show; of none: of the boxes.
@@ -135,7 +138,7 @@ class Follower {
       return kForbidden;
     return distance + kOverlapWeight * (1 - overlap(awaited, found)) +
            kJointWeight * (1 - static_cast<double>(common) / either) +
-           (path.frames < kFewFrames ? kYouth : 0.0);
+           (path.seen.size() < kFewFrames ? kYouth : 0.0);
   }
 
   const Frames& frames_;
@@ -164,11 +167,9 @@ bool numbered(const Frames& frames) {
 std::vector<Followed> by_number(const Frames& frames) {
   std::map<long long, Followed> people;
   for (std::size_t frame = 0; frame < frames.size(); ++frame)
-    for (std::size_t person = 0; person < frames[frame].size(); ++person) {
-      Followed& followed = people[*frames[frame][person].id];
-      followed.resize(frames.size(), -1);
-      followed[frame] = static_cast<int>(person);
-    }
+    for (std::size_t person = 0; person < frames[frame].size(); ++person)
+      people[*frames[frame][person].id].push_back(
+          {static_cast<int>(frame), static_cast<int>(person)});
   std::vector<Followed> result;
   result.reserve(people.size());
   for (auto& [id, followed] : people) result.push_back(std::move(followed));
@@ -177,8 +178,7 @@ std::vector<Followed> by_number(const Frames& frames) {
 
 double size_of(const Followed& followed, const Frames& frames) {
   double sum = 0;
-  for (std::size_t frame = 0; frame < frames.size(); ++frame)
-    if (followed[frame] >= 0) sum += box_of(frames[frame][followed[frame]]).area();
+  for (const auto& [frame, person] : followed) sum += box_of(frames[frame][person]).area();
   return sum;
 }
 

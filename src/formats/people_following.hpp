@@ -6,8 +6,13 @@
 
 namespace mcdbn {
 
-/// One person over the frames: for each frame which of those seen in it, -1: none.
-using Followed = std::vector<int>;
+/// Which of a frame's people it is.
+struct Sighting {
+  int frame, person;
+};
+
+/// One person over the frames, in their order: those in which they are seen.
+using Followed = std::vector<Sighting>;
 
 /// Matches the people of each frame to those of the frames before. Where the file numbers its
 /// people, each number once a frame, its numbers count. Else those of a frame are assigned to those
@@ -18,6 +23,7 @@ using Followed = std::vector<int>;
 /// over which the reach grows.
 /// @param patience frames for which a person may be unseen
 /// @return the people, the largest first: by the sum of their boxes over all frames
+/// @throws Interrupted
 std::vector<Followed> follow_people(const std::vector<std::vector<SeenPerson>>& frames,
                                     int patience);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/numbers.hpp"
 #include "formats/frame_numbers.hpp"
@@ -22,6 +23,12 @@ std::optional<ImageSize> SeenPeople::size_of_image(const TrackReadOptions& optio
 
 bool SeenPeople::takes_default_size(const TrackReadOptions& options) const {
   return !options.image_size && !options.camera_image && image_size && !image_size_is_given;
+}
+
+void require_joints(std::size_t joints, const std::string& file) {
+  if (joints > kMostJoints)
+    throw InputError(
+        fmt::format("{}: {} joints of a person; at most {} are read", file, joints, kMostJoints));
 }
 
 SeenPeople people_of_set(std::string_view set) {
@@ -93,10 +100,20 @@ bool shows_anyone(const Track2d& track, int frame) {
 }
 
 std::vector<int> frames_to_list(const Track2d& track) {
+  const int last = track.frames() - 1;
+  int shown = 0;
+  for (int frame = 0; frame <= last; ++frame) shown += shows_anyone(track, frame) ? 1 : 0;
+  const bool sparse = last >= kSparse * shown;
   std::vector<int> frames;
-  for (int frame = 0; frame < track.frames(); ++frame)
-    if (shows_anyone(track, frame) || frame == 0 || frame + 1 == track.frames())
-      frames.push_back(frame);
+  int step = 0;
+  for (int frame = 0; frame <= last; ++frame) {
+    if (!shows_anyone(track, frame) && frame != 0 && frame != last &&
+        !(sparse && frame % kSparse == 0))
+      continue;
+    frames.push_back(frame);
+    step = std::gcd(step, frame);
+  }
+  if (step > 1) frames.insert(frames.begin() + 1, 1);
   return frames;
 }
 

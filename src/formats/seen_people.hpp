@@ -13,6 +13,12 @@ namespace mcdbn {
 
 class JsonPlace;
 
+/// More joints of a person, and more people in a frame, are refused: no detector answers so many
+/// (MediaPipe's holistic model has 553 joints), and what is kept of a film grows with them.
+inline constexpr std::size_t kMostJoints = 600, kMostPeople = 500;
+/// Frames by number may be so many times those that are there; beyond, the numbers are no time.
+inline constexpr long long kSparse = 10;
+
 /// One person in one frame, each [joints]. A joint that was not seen: NaN and confidence 0.
 struct SeenPerson {
   std::vector<double> x_px, y_px, confidence;
@@ -23,6 +29,9 @@ struct SeenPerson {
 struct SeenPeople {
   std::vector<std::string> joint_names;
   std::vector<Keypoint> keypoints;  ///< as in Track2d
+  /// Where several joint sets have the count of joints, they, the usual one first, whose names
+  /// joint_names are: likely_joint_set.hpp chooses.
+  std::vector<std::string> possible_sets;
   /// By the file's own numbers of frames.
   std::map<long long, std::vector<SeenPerson>> frames;
   std::optional<double> fps;
@@ -37,6 +46,9 @@ struct SeenPeople {
   /// Whether that is the format's default.
   bool takes_default_size(const TrackReadOptions& options) const;
 };
+
+/// @throws InputError if a person has more than kMostJoints
+void require_joints(std::size_t joints, const std::string& file);
 
 /// Joints of one of joint_sets().
 SeenPeople people_of_set(std::string_view set);
@@ -61,8 +73,9 @@ std::vector<double> numbers_of(const Track2d& track, int frame);
 /// Whether the frame shows any joint.
 bool shows_anyone(const Track2d& track, int frame);
 
-/// The frames that a list of people has entries of: those that show anyone, and the first and the
-/// last one, so that none is lost.
+/// The frames that a list of people has entries of: those that show anyone, and of the others as
+/// many as it takes to read all of them back: the first and the last one, the second where the
+/// numbers would have a step in common, and every tenth where nearly all would be left out.
 std::vector<int> frames_to_list(const Track2d& track);
 
 /// The joint set that the track's columns are, of those that the format has.

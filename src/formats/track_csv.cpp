@@ -44,9 +44,9 @@ class TrackReader {
       if (line.front() == '#') {
         read_comment(line.substr(1));
       } else if (columns_.empty()) {
-        read_header(split(line, ','));
+        read_header(cells_of(line));
       } else {
-        read_row(split(line, ','));
+        read_row(cells_of(line));
       }
     }
     if (columns_.empty()) fail("no header line; name the columns joint_x_px, joint_y_px, ...");
@@ -64,8 +64,16 @@ class TrackReader {
     throw InputError(fmt::format("{}:{}: {}", name_, line_, what));
   }
 
+  static std::vector<std::string_view> cells_of(std::string_view line) {
+    std::vector<std::string_view> cells = split(line, ',');
+    for (std::string_view& cell : cells) cell = without_quotes(cell);
+    return cells;
+  }
+
   /// `fps=30 width_px=1920 height_px=1080` among any other words.
   void read_comment(std::string_view comment) {
+    // Spreadsheets fill the line up to the table's width.
+    comment = comment.substr(0, comment.find_last_not_of(", \t") + 1);
     for (const std::string_view word : split(comment, ' ')) {
       const auto equals = word.find('=');
       if (equals == std::string_view::npos) continue;

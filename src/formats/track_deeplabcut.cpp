@@ -94,6 +94,10 @@ class DeepLabCutReader {
     }
     if (columns_.empty()) table_.fail(*coords, "no columns x and y");
     if (individuals_.empty()) individuals_.emplace_back();
+    require_joints(parts_.size(), file_);
+    if (individuals_.size() > kMostPeople)
+      table_.fail(*individuals, fmt::format("{} individuals; at most {} are followed",
+                                            individuals_.size(), kMostPeople));
   }
 
   /// Indices of a video's frames, or the numbers in the names of labelled images; none if they are
@@ -125,9 +129,14 @@ class DeepLabCutReader {
       auto& values = column.quantity == 'x'   ? person.x_px
                      : column.quantity == 'y' ? person.y_px
                                               : person.confidence;
-      values[column.part] = table_.number_in(line, column.column);
+      values[column.part] = column.quantity == 'l' ? table_.confidence_in(line, column.column)
+                                                   : table_.number_in(line, column.column);
     }
     for (SeenPerson& person : frame) mark_missing(person);
+    // A line may be short, and each individual has room for all parts.
+    std::erase_if(frame, [](const SeenPerson& person) {
+      return std::ranges::none_of(person.confidence, [](double sure) { return sure > 0; });
+    });
     people_.frames.emplace(number, std::move(frame));
   }
 

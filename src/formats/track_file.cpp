@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "formats/joint_naming.hpp"
 #include "formats/other_files.hpp"
 #include "formats/track_formats.hpp"
 #include "formats/track_reading.hpp"
@@ -30,6 +31,8 @@ const TrackFormat& format_to_read(const TrackSource& source, const std::string& 
   if (const TrackFormat* recognised = format_of(source)) return *recognised;
   if (source.is_folder() && source.json_files().empty())
     throw InputError(fmt::format("{}: no .json files in this folder", source.name()));
+  if (const auto content = source.first_json_if_any(); content && shows_nobody(content->value()))
+    throw NoPersonSeen(source.name());
   // For JSON that cannot be parsed the error names the line.
   if (source.is_folder()) source.json_of(source.json_files().front());
   if (const char first = source.first_letter(); first == '{' || first == '[') source.json();

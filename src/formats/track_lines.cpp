@@ -8,7 +8,9 @@
 
 #include "base/shown.hpp"
 #include "formats/csv_text.hpp"
+#include "formats/image_shares.hpp"
 #include "formats/joint_naming.hpp"
+#include "formats/likely_joint_set.hpp"
 #include "formats/person_choice.hpp"
 #include "formats/track_formats.hpp"
 #include "formats/track_reading.hpp"
@@ -71,9 +73,10 @@ class TrackLines::Reader {
   /// A JSON line is an entry of a list of frames, as in a file of such lines.
   SeenPeople people_of_json(std::string_view line) {
     const TrackSource source(fmt::format("[{}]", line), fmt::format("{}:{}", name_, line_));
-    source.json();  // throws where it is no JSON
+    if (!format_ && !options_.format.empty()) format_ = &track_format(options_.format);
+    // Of whatever format: a camera may run for long before anybody comes.
+    if (shows_nobody(source.json().value())) return {};
     if (!format_) {
-      if (!options_.format.empty()) format_ = &track_format(options_.format);
       for (const TrackFormat& format : track_formats())
         if (!format_ && format.recognises(source)) format_ = &format;
       if (!format_) fail("not a frame of a 2D track in a known format");
@@ -96,12 +99,14 @@ class TrackLines::Reader {
   TrackFrame frame_of(SeenPeople seen) {
     std::vector<SeenPerson> people;
     if (!seen.frames.empty()) people = std::move(seen.frames.begin()->second);
-    const double far = farthest(people);
-    if (far > kFarthest_px) fail(fmt::format("a coordinate of {:.3g}, which is no pixel", far));
-    const bool has_person = far > 0;
     // A CSV gives the joints in its header, JSON in a frame with a person.
-    if (!is_known_ && (!json_ || has_person)) learn(seen, people);
-    if (!is_known_) return TrackFrame::unseen(0);
+    const bool is_first = !is_known_ && (!json_ || farthest(people) > 0);
+    if (!is_known_ && !is_first) return TrackFrame::unseen(0);
+    if (is_first) learn_image(seen, people);
+    if (shares_) shares_to_px(people, {like_.width_px, like_.height_px});
+    if (const double far = farthest(people); far > kFarthest_px)
+      fail(fmt::format("a coordinate of {:.3g}, which is no pixel", far));
+    if (is_first) learn_joints(seen, people);
     TrackFrame frame = TrackFrame::unseen(like_.joint_count());
     // Rows are of one person: there is no second.
     const bool of_one = !json_ && !people.empty() && choice_.number() == 1;
@@ -114,35 +119,40 @@ class TrackLines::Reader {
     for (Eigen::Index joint = 0; joint < frame.joints(); ++joint) {
       const auto at = static_cast<std::size_t>(joint);
       if (!(person.confidence[at] > 0)) continue;
-      frame.x_px[joint] = person.x_px[at] * (shares_ ? like_.width_px : 1);
-      frame.y_px[joint] = person.y_px[at] * (shares_ ? like_.height_px : 1);
+      frame.x_px[joint] = person.x_px[at];
+      frame.y_px[joint] = person.y_px[at];
       frame.confidence[joint] = std::min(person.confidence[at], 1.0);
     }
     return frame;
   }
 
-  void learn(const SeenPeople& seen, const std::vector<SeenPerson>& people) {
+  void learn_image(const SeenPeople& seen, const std::vector<SeenPerson>& people) {
     const std::optional<ImageSize> size = seen.size_of_image(options_);
     if (!size) fail("a frame does not give the image's size: set it with `image-size`");
+    like_.width_px = size->width_px;
+    like_.height_px = size->height_px;
+    shares_ = !seen.in_pixels && are_shares({people}, fmt::format("{}:{}", name_, line_));
+  }
+
+  /// @param people in pixels
+  void learn_joints(SeenPeople& seen, const std::vector<SeenPerson>& people) {
     if (seen.takes_default_size(options_))
       notices_.push_back(
           fmt::format("the track does not give the image's size: {} x {} px are taken; set it with "
                       "`image-size`",
-                      size->width_px, size->height_px));
+                      like_.width_px, like_.height_px));
     if (!options_.fps && !seen.fps)
       notices_.push_back(fmt::format(
           "the track does not give its rate: {} frames a second are taken; set it with `fps`",
           kUsualFps));
-    shares_ = !seen.in_pixels && farthest(people) <= kLargestShare;
     if (shares_)
       notices_.push_back(fmt::format("coordinates are shares of the image, taken as {} x {} px",
-                                     size->width_px, size->height_px));
+                                     like_.width_px, like_.height_px));
+    name_likeliest_set(seen, {people});
     notices_.insert(notices_.end(), seen.notices.begin(), seen.notices.end());
     like_.joint_names = seen.joint_names;
     like_.keypoints = seen.keypoints;
     like_.fps = options_.fps.value_or(seen.fps.value_or(kUsualFps));
-    like_.width_px = size->width_px;
-    like_.height_px = size->height_px;
     for (MatrixD* values : {&like_.x_px, &like_.y_px, &like_.confidence})
       values->resize(0, like_.joint_count());
     is_known_ = true;

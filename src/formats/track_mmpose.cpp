@@ -6,7 +6,11 @@
 // Ultralytics' Results.summary().
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/text_file.hpp"
+#include "formats/frame_numbers.hpp"
+#include "formats/image_numbers.hpp"
 #include "formats/joint_naming.hpp"
 #include "formats/track_formats.hpp"
 
@@ -29,30 +33,58 @@ bool is_instance(const JsonPlace& place) {
   return place.has("keypoints") && (scores_key(place) != nullptr || place["keypoints"].has("x"));
 }
 
+/// The first entry of a list that shows anybody: before it no person may have been found.
+std::optional<JsonPlace> first_shown(const JsonPlace& list) {
+  for (std::size_t i = 0; list.is_list() && i < list.size(); ++i)
+    if (const JsonPlace entry = list.at(i); !shows_nobody(entry.value())) return entry;
+  return {};
+}
+
 /// rtmlib answers with all people of an image at once: people x joints x 2, people x joints.
 bool holds_people(const JsonPlace& instance) {
   if (scores_key(instance) == nullptr) return false;
-  JsonPlace place = instance["keypoints"];
-  for (int depth = 0; depth < 2; ++depth) {
-    if (!place.is_list() || place.size() == 0) return false;
-    place = place.at(0);
-  }
-  return place.is_list();
+  std::optional<JsonPlace> place = instance["keypoints"];
+  for (int depth = 0; depth < 2 && place; ++depth) place = first_shown(*place);
+  return place && place->is_list();
+}
+
+/// The key of a frame's people; none: no frame.
+const char* people_key(const JsonPlace& place) {
+  for (const char* key : {"instances", "predictions"})
+    if (place.has(key) && place[key].is_list()) return key;
+  return nullptr;
 }
 
 bool is_frame(const JsonPlace& place) {
-  return place.has("instances") && place["instances"].is_list();
+  return people_key(place) != nullptr;
+}
+
+/// Frames or instances, in lists.
+bool holds_instances(const JsonPlace& place, int depth = 0) {
+  constexpr int kDepth = 4;
+  if (is_instance(place) || is_frame(place)) return true;
+  const auto first = depth < kDepth ? first_shown(place) : std::nullopt;
+  return first && holds_instances(*first, depth + 1);
+}
+
+/// An object with lists of instances under the numbers or names of images.
+bool is_by_image(const JsonPlace& content) {
+  if (!content.is_object() || content.size() == 0) return false;
+  const std::vector<std::string> keys = content.keys();
+  const auto numbers = frame_numbers(keys);
+  if (!std::ranges::all_of(numbers, [](const auto& number) { return number.has_value(); }))
+    return false;
+  for (const std::string& key : keys)
+    if (const JsonPlace image = content[key]; !shows_nobody(image.value()))
+      return image.is_list() && holds_instances(image);
+  return false;
 }
 
 bool recognises(const TrackSource& source) {
   const auto content = source.first_json_if_any();
   if (!content) return false;
-  if (content->has("instance_info") || content->has("predictions")) return true;
-  if (is_frame(*content) || is_instance(*content)) return true;
-  if (!content->is_list() || content->size() == 0) return false;
-  const JsonPlace first = content->at(0);
-  return is_instance(first) || is_frame(first) ||
-         (first.is_list() && first.size() > 0 && is_instance(first.at(0)));
+  return content->has("instance_info") || content->has("predictions") ||
+         holds_instances(*content) || is_by_image(*content);
 }
 
 std::vector<SeenPerson> people_at_once(const JsonPlace& keypoints, const JsonPlace& scores) {
@@ -79,10 +111,13 @@ std::vector<SeenPerson> people_of_instance(const JsonPlace& instance) {
   return {person_of_instance(instance)};
 }
 
+/// Of instances, or of lists of them, as of an image in a batch.
 std::vector<SeenPerson> people_of(const JsonPlace& instances) {
   std::vector<SeenPerson> people;
   for (const JsonPlace& instance : instances.list())
-    for (SeenPerson& person : people_of_instance(instance)) people.push_back(std::move(person));
+    for (SeenPerson& person :
+         instance.is_list() ? people_of(instance) : people_of_instance(instance))
+      people.push_back(std::move(person));
   return people;
 }
 
@@ -90,6 +125,12 @@ const char* frame_key(const JsonPlace& entry) {
   for (const char* key : {"frame_id", "frame", "frame_idx", "frame_index"})
     if (entry.has(key) && entry[key].value().is_number()) return key;
   return nullptr;
+}
+
+std::vector<SeenPerson> people_of_frame(const JsonPlace& frame) {
+  if (frame.value().is_null()) return {};
+  const char* key = people_key(frame);
+  return people_of(frame.is_list() ? frame : frame[key == nullptr ? "instances" : key]);
 }
 
 /// Frames with instances, lists of instances, or the instances of one image.
@@ -111,9 +152,18 @@ void add_list(SeenPeople& people, const JsonPlace& list) {
       for (SeenPerson& person : people_of_instance(frame)) seen.push_back(std::move(person));
       continue;
     }
-    if (!people.frames.emplace(number, people_of(frame.is_list() ? frame : frame["instances"]))
-             .second)
+    if (!people.frames.emplace(number, people_of_frame(frame)).second)
       frame.fail(fmt::format("a second frame {}", number));
+  }
+}
+
+void add_images(SeenPeople& people, const JsonPlace& content) {
+  const ImageNumbers numbers(content.keys());
+  for (const std::string& name : content.keys()) {
+    const JsonPlace image = content[name];
+    const long long number = numbers.of(image, name);
+    if (!people.frames.emplace(number, people_of_frame(image)).second)
+      image.fail(fmt::format("a second frame {}", number));
   }
 }
 
@@ -145,7 +195,9 @@ void add_content(SeenPeople& people, const JsonPlace& content) {
   else if (content.has("predictions"))
     add_list(people, content["predictions"]);
   else if (is_frame(content))
-    people.frames.emplace(0, people_of(content["instances"]));
+    people.frames.emplace(0, people_of_frame(content));
+  else if (is_by_image(content))
+    add_images(people, content);
   else if (content.is_object() && holds_people(content))
     add_film(people, content["keypoints"], content[scores_key(content)]);
   else if (content.is_object())
@@ -165,7 +217,9 @@ std::vector<SeenPerson> people_of_image(const JsonPlace& content) {
 SeenPeople read(const TrackSource& source) {
   if (source.is_folder()) {
     SeenPeople people = people_of_folder(source, people_of_image);
-    name_joints_by_count(people, source.name());
+    const auto first = source.first_json_if_any();
+    name_joints_by_count(people, source.name(),
+                         first ? names_in(*first) : std::vector<std::string>{});
     return people;
   }
   SeenPeople people;

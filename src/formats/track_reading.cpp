@@ -9,6 +9,8 @@
 #include <limits>
 #include <numeric>
 
+#include "formats/image_shares.hpp"
+#include "formats/likely_joint_set.hpp"
 #include "formats/people_following.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/camera.hpp"
@@ -21,8 +23,8 @@ namespace {
 using Frames = std::vector<std::vector<SeenPerson>>;
 
 constexpr ImageSize kUsualImage{1920, 1080};
-/// Frames by number may be so many times those that are there; beyond, the numbers are no time.
-constexpr long long kSparse = 10, kFewFrames = 100;
+/// So many frames may be left out of any film.
+constexpr long long kFewFrames = 100;
 
 struct Extent {
   double least_x = 1e300, most_x = -1e300, least_y = 1e300, most_y = -1e300;
@@ -65,6 +67,14 @@ Frames frames_by_number(SeenPeople& seen, TrackReading& reading) {
   return frames;
 }
 
+void require_people(const Frames& frames, const std::vector<long long>& numbers,
+                    const std::string& file) {
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (frames[i].size() > kMostPeople)
+      throw InputError(fmt::format("{}: {} people in frame {}; at most {} are followed", file,
+                                   frames[i].size(), numbers[i], kMostPeople));
+}
+
 Extent extent_of(Frames& frames) {
   Extent extent;
   for_each_joint(frames, [&](double x, double y, double) {
@@ -99,31 +109,24 @@ ImageSize guessed_image(const Extent& extent) {
   return {std::max(whole(extent.most_x), 1), std::max(whole(extent.most_y), 1)};
 }
 
-/// Whether a fifth of the coordinates are below 0, as no picture shows a body.
-bool is_about_zero(Frames& frames) {
-  int below = 0, all = 0;
-  for_each_joint(frames, [&](double x, double y, double) {
-    below += (x < 0 ? 1 : 0) + (y < 0 ? 1 : 0);
-    all += 2;
-  });
-  return 5 * below > all;
-}
-
 /// Coordinates that are shares of the image become pixels. @return the image's size
 ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadOptions& options,
                         const std::string& file, std::vector<std::string>& notices) {
-  const Extent extent = extent_of(frames);
   const std::optional<ImageSize> known = seen.size_of_image(options);
   if (seen.takes_default_size(options))
     notices.push_back(fmt::format(
         "the file does not give the image's size: {} x {} px are taken; set it with `image-size`",
         known->width_px, known->height_px));
-  if (extent.most_x < extent.least_x) return known.value_or(kUsualImage);  // nothing was seen
+  const ImageSize size = known.value_or(kUsualImage);
+  const bool shares = !seen.in_pixels && are_shares(frames, file);
+  if (shares)
+    for (auto& people : frames) shares_to_px(people, size);
+  const Extent extent = extent_of(frames);
+  if (extent.most_x < extent.least_x) return size;  // nothing was seen
   const double farthest =
       std::max({-extent.least_x, -extent.least_y, extent.most_x, extent.most_y});
   if (farthest > kFarthest_px)
     throw InputError(fmt::format("{}: a coordinate of {:.3g}, which is no pixel", file, farthest));
-  const bool shares = !seen.in_pixels && farthest <= kLargestShare;
   if (!shares) {
     if (known) return *known;
     const ImageSize guess = guessed_image(extent);
@@ -133,19 +136,9 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
         guess.width_px, guess.height_px, extent.most_x, extent.most_y));
     return guess;
   }
-  if (is_about_zero(frames))
-    throw InputError(
-        fmt::format("{}: its coordinates lie about 0: a body in space (world landmarks, "
-                    "metres), not places in an image",
-                    file));
-  const ImageSize size = known.value_or(kUsualImage);
   notices.push_back(fmt::format(
       "coordinates are shares of the image, taken as {} x {} px{}", size.width_px, size.height_px,
       known ? "" : ", for the file does not give its size; set it with `image-size`"));
-  for_each_joint(frames, [&](double& x, double& y, double) {
-    x *= size.width_px;
-    y *= size.height_px;
-  });
   return size;
 }
 
@@ -183,9 +176,8 @@ Track2d track_of(const SeenPeople& seen, const Frames& frames, const Followed& f
   track.x_px = track.y_px =
       MatrixD::Constant(rows, joints, std::numeric_limits<double>::quiet_NaN());
   track.confidence = MatrixD::Zero(rows, joints);
-  for (Eigen::Index frame = 0; frame < rows; ++frame) {
-    if (followed[frame] < 0) continue;
-    const SeenPerson& person = frames[frame][followed[frame]];
+  for (const auto& [frame, who] : followed) {
+    const SeenPerson& person = frames[frame][who];
     for (Eigen::Index joint = 0; joint < joints; ++joint) {
       track.x_px(frame, joint) = person.x_px[joint];
       track.y_px(frame, joint) = person.y_px[joint];
@@ -196,17 +188,16 @@ Track2d track_of(const SeenPeople& seen, const Frames& frames, const Followed& f
 }
 
 /// Without those who were seen for less than half a second and a tenth of the frames.
-void drop_fleeting(std::vector<Followed>& people, double fps, std::vector<std::string>& notices) {
+/// @param frames of the film
+void drop_fleeting(std::vector<Followed>& people, double frames, double fps,
+                   std::vector<std::string>& notices) {
   if (people.size() < 2) return;
-  const auto seen_frames = [](const Followed& followed) -> long {
-    return std::ranges::count_if(followed, [](int person) { return person >= 0; });
-  };
   long longest = 0;
-  for (const Followed& followed : people) longest = std::max(longest, seen_frames(followed));
-  const double few = std::min(fps / 2, static_cast<double>(people.front().size()) / 10);
+  for (const Followed& followed : people) longest = std::max(longest, std::ssize(followed));
+  const double few = std::min(fps / 2, frames / 10);
   const long least = std::min(static_cast<long>(std::ceil(few)), longest);
   const std::size_t before = people.size();
-  std::erase_if(people, [&](const Followed& followed) { return seen_frames(followed) < least; });
+  std::erase_if(people, [&](const Followed& followed) { return std::ssize(followed) < least; });
   if (const std::size_t dropped = before - people.size(); dropped > 0)
     notices.push_back(fmt::format("{} more {} seen for less than {} frames, and left out", dropped,
                                   dropped == 1 ? "body was" : "bodies were", least));
@@ -243,13 +234,16 @@ TrackReading tracks_of(SeenPeople seen, const TrackReadOptions& options, const s
   if (seen.frames.empty()) throw InputError(fmt::format("{}: no frames", file));
   TrackReading reading;
   reading.notices = std::move(seen.notices);
-  if (const JointSet* set = joint_set_of(seen.joint_names)) reading.joint_set = set->name;
+  require_joints(seen.joint_names.size(), file);
   Frames frames = frames_by_number(seen, reading);
   for (auto& people : frames)
     std::erase_if(people, [](const SeenPerson& person) {
       return std::ranges::none_of(person.confidence, [](double c) { return c > 0; });
     });
+  require_people(frames, reading.frame_numbers, file);
   const ImageSize size = put_in_pixels(frames, seen, options, file, reading.notices);
+  name_likeliest_set(seen, frames);
+  if (const JointSet* set = joint_set_of(seen.joint_names)) reading.joint_set = set->name;
   limit_confidences(frames, reading.notices);
   if (!options.fps && !seen.fps)
     reading.notices.push_back(fmt::format(
@@ -263,10 +257,10 @@ TrackReading tracks_of(SeenPeople seen, const TrackReadOptions& options, const s
   const double fps = options.fps ? *options.fps : seen.fps.value_or(kUsualFps);
   std::vector<Followed> people =
       follow_people(frames, static_cast<int>(std::clamp(kPatience_s * fps, 1.0, 1000.0)));
-  drop_fleeting(people, fps, reading.notices);
+  drop_fleeting(people, static_cast<double>(frames.size()), fps, reading.notices);
   reading.people_seen = static_cast<int>(people.size());
   // Without any person there is one track, of missing joints.
-  if (people.empty()) people.emplace_back(frames.size(), -1);
+  if (people.empty()) people.emplace_back();
   for (const std::size_t person : chosen(options.person, people.size(), file, reading.notices)) {
     Track2d track = track_of(seen, frames, people[person]);
     track.fps = fps;

@@ -6,8 +6,6 @@ namespace mcdbn {
 
 /// Where neither file nor options give it.
 inline constexpr double kUsualFps = 30.0;
-/// Coordinates up to here are shares of the image: no body in pixels is that small.
-inline constexpr double kLargestShare = 3.0;
 /// Beyond it a coordinate is no pixel.
 inline constexpr double kFarthest_px = 1e6;
 /// For how long an unseen person is awaited.

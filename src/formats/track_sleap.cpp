@@ -92,7 +92,8 @@ class SleapReader {
     for (const Node& node : nodes_) {
       person.x_px.push_back(table_.number_in(line, *node.x));
       person.y_px.push_back(table_.number_in(line, *node.y));
-      person.confidence.push_back(node.score ? table_.number_in(line, *node.score) : 1.0);
+      // Instances that a user labelled have no scores.
+      person.confidence.push_back(table_.confidence_in(line, node.score));
     }
     mark_missing(person);
     if (track_ && !line.cells[*track_].empty())

@@ -12,6 +12,15 @@ namespace mcdbn {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// macOS puts `._NAME`, which is no JSON, beside files on disks of others.
+bool is_hidden(const fs::path& file) {
+  return file.filename().string().starts_with('.');
+}
+
+}  // namespace
+
 TrackSource::TrackSource(fs::path path) : path_(std::move(path)) {
   std::error_code error;
   if (!fs::exists(path_, error))
@@ -23,7 +32,8 @@ TrackSource::TrackSource(fs::path path) : path_(std::move(path)) {
   }
   for (fs::directory_iterator entry(path_, error), end; !error && entry != end;
        entry.increment(error))
-    if (entry->path().extension() == ".json") json_files_.push_back(entry->path());
+    if (entry->path().extension() == ".json" && !is_hidden(entry->path()))
+      json_files_.push_back(entry->path());
   if (error) throw InputError(fmt::format("{}: the folder cannot be read", path_.string()));
   std::ranges::sort(json_files_);
 }

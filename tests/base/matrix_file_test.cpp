@@ -161,6 +161,8 @@ TEST_CASE("npy: damaged files are refused, and the message names what is wrong")
   check_refused(npy_of(header_of("<f4", "(0, 3)"), six), "not 0 x 3");
   check_refused(npy_of(header_of("<f4", "(2, 3)"), six.substr(1)), "23 bytes");
   check_refused(npy_of(header_of("<f4", "(4611686018427387904, 4)"), ""), "0 bytes of numbers");
+  check_refused(npy_of(header_of("<f4", "(4611686018427387904, 0)"), ""),
+                "4611686018427387904 rows without columns");
   check_refused(npy_of(header_of("<f4", "(1, 2, 3)"), six), "3 dimensions");
   check_refused(npy_of(header_of("<f4", "()"), six.substr(0, 4)), "0 dimensions");
   check_refused(npy_of(header_of(">f4", "(2, 3)"), six), "type '>f4'");
@@ -184,7 +186,6 @@ TEST_CASE("csv: with and without a header, empty cells, spaces and line ends of 
   CHECK(read("1,-2.5\n3e-2,4\n") == want);
   CHECK(read("1,-2.5\n3e-2,4") == want);
   CHECK(read("a,b\n1,-2.5\n3e-2,4\n") == want);
-  CHECK(read("1,b\n1,-2.5\n0.03,4\n") == want);
   CHECK(read("\xEF\xBB\xBF\"x y\",z\r\n +1 ,\t-2.5\r\n\r\n0.03,4\r\n\r\n") == want);
   CHECK(read("a,b,c\n1,-2.5\n0.03,4\n") == want);  // a header may have more names than columns
   const MatrixF holes = read("1,,3\nnan,NaN,\n");
@@ -192,6 +193,23 @@ TEST_CASE("csv: with and without a header, empty cells, spaces and line ends of 
   CHECK(holes(0, 2) == 3);
   CHECK(read("7\n8\n") == rows_of({{7}, {8}}));
   CHECK(read("1e-50,inf\n")(0, 0) == 0.0F);
+}
+
+TEST_CASE("csv: of one column an empty line is an unknown number, but for the last") {
+  const ScratchFolder folder;
+  // NaN as -1, which is not in the files.
+  const auto read = [&](const std::string& text) {
+    const MatrixF values = read_matrix(folder.write("x.csv", text));
+    CHECK(values.cols() == 1);
+    return MatrixF(values.array().isNaN().select(-1.0F, values));
+  };
+  CHECK(read("1\n\n3\n") == rows_of({{1}, {-1}, {3}}));
+  CHECK(read("1\n\n3\n\n") == rows_of({{1}, {-1}, {3}}));
+  CHECK(read("1\n\n\n") == rows_of({{1}, {-1}}));
+  CHECK(read("x\r\n\r\n2\r\n\"\"\r\n4") == rows_of({{-1}, {2}, {-1}, {4}}));
+  CHECK(read("\n\nx\n2\n") == rows_of({{2}}));
+  // What pandas and R write of several columns has a comma in every line.
+  CHECK(read_matrix(folder.write("x.csv", "1,2\n\n3,4\n\n\n")) == rows_of({{1, 2}, {3, 4}}));
 }
 
 TEST_CASE("csv: damaged files are refused by file and line") {
@@ -206,6 +224,9 @@ TEST_CASE("csv: damaged files are refused by file and line") {
   check_refused("a,b\n\n1,2\n3,4,5\n", ":4: 3 columns, 2 in the lines before it");
   check_refused("1,2\n3,x\n", ":2: 'x' in column 2 is no number");
   check_refused("a,b\nc,d\n", ":2: 'c' in column 1 is no number");
+  // Each would lose its first row if it were taken for a header.
+  check_refused("n/a,2,3\n4,5,6\n", ":1: 'n/a' in column 1 is no number");
+  check_refused("1,2,NA\n4,5,6\n", ":1: 'NA' in column 3 is no number");
   check_refused("1,2\n1;2\n", ":2: '1;2' in column 1 is no number");
   check_refused("1,2\n3,4x\n", ":2: '4x' in column 2 is no number");
   CHECK(complaint(folder / "absent.csv").find("cannot be opened") != std::string::npos);
@@ -223,12 +244,15 @@ TEST_CASE("safetensors: the only tensor, or the one of a name") {
   content.put("two", two);
   content.tensors["flat"] = {{3}, {1, 2, 3}};
   content.tensors["cube"] = {{1, 1, 1}, {1}};
+  content.tensors["bare"] = {{9007199254740992, 0}, {}};
   write_safetensors(folder / "x.safetensors", content);
   CHECK(read_matrix(folder / "x.safetensors", "two") == two);
   CHECK(read_matrix(folder / "x.safetensors", "flat") == rows_of({{1}, {2}, {3}}));
-  CHECK(complaint(folder / "x.safetensors") == ": 4 tensors; give the name of one");
+  CHECK(complaint(folder / "x.safetensors") == ": 5 tensors; give the name of one");
   CHECK(complaint(folder / "x.safetensors", "cube") ==
         ": tensor cube has 3 dimensions; 2 are wanted");
+  CHECK(complaint(folder / "x.safetensors", "bare") ==
+        ": tensor bare has 9007199254740992 rows without columns");
   folder.write("y.safetensors", "hello");
   CHECK(complaint(folder / "y.safetensors").find("not a readable") != std::string::npos);
 }

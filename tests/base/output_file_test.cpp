@@ -1,6 +1,7 @@
 #include "base/output_file.hpp"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -52,6 +53,29 @@ TEST_CASE("what is no regular file is not replaced") {
   fs::create_symlink("loop", folder / "loop");
   CHECK_THROWS_AS(write_text_file(folder / "loop/x", "x"), InputError);
   CHECK(test::entries_of(folder / "") == std::set<std::string>{"pipe", "link", "loop"});
+}
+
+TEST_CASE("an open file is not replaced by the name that /dev and /proc have for it") {
+  const test::ScratchFolder folder;
+  const fs::path file = folder.write("file.txt", "earlier");
+  const int number = ::open(file.c_str(), O_WRONLY | O_APPEND);
+  REQUIRE(number >= 0);
+  const std::string name = std::to_string(number);
+  fs::create_symlink("/dev/fd/" + name, folder / "link");
+  for (const fs::path& path :
+       {fs::path("/dev/fd/" + name), fs::path("/proc/self/fd/" + name),
+        fs::path("/proc/self/task/" + std::to_string(::getpid()) + "/fd/" + name),
+        folder / "link"}) {
+    CAPTURE(path);
+    const std::string words =
+        path.string() + ": is an open file, which is not replaced; name a file";
+    CHECK_THROWS_WITH_AS(check_output(path), words.c_str(), InputError);
+    CHECK_THROWS_WITH_AS(write_text_file(path, "x"), words.c_str(), InputError);
+  }
+  ::close(number);
+  CHECK(read_text_file(file) == "earlier");
+  CHECK_NOTHROW(write_text_file(file, "by its own name"));
+  CHECK(test::entries_of(folder / "") == std::set<std::string>{"file.txt", "link"});
 }
 
 TEST_CASE("the reason why a file cannot be written is reported") {

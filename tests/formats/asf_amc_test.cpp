@@ -148,6 +148,7 @@ TEST_CASE("motion files: an AMC finds its skeleton beside it") {
   const auto amc = folder.write("16_15.amc", kAmc);
   CHECK_THROWS_WITH_AS(read_motion(amc), doctest::Contains("its skeleton is missing"), InputError);
   const auto only = folder.write("other.ASF", kAsf);
+  folder.write("._other.asf", "not an ASF");  // as macOS puts beside it
   CHECK(read_motion(amc).frames() == 2);
   folder.write("1.asf", kAsf);
   CHECK_THROWS_AS(read_motion(amc), InputError);  // neither is its own
@@ -163,6 +164,7 @@ TEST_CASE("motion files: an AMC finds its skeleton beside it") {
   CHECK(is_motion_file("a/B.AMC"));
   CHECK(is_motion_file("a/b.bvh"));
   CHECK_FALSE(is_motion_file("a/b.asf"));
+  CHECK_FALSE(is_motion_file("a/._b.bvh"));
   // Written as BVH it is the same motion.
   const Motion back = parse_bvh(bvh_text(of_person), "back.bvh");
   CHECK((joint_positions(back) - joint_positions(of_person)).cwiseAbs().maxCoeff() < 1e-3);

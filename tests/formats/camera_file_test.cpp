@@ -62,6 +62,19 @@ TEST_CASE("camera files: a rotation vector and plain lists are read") {
   CHECK(camera.translation == Eigen::Vector3d(1, 2, 3));
 }
 
+TEST_CASE("camera files: a rotation matrix that was rounded is the nearest rotation") {
+  const test::ScratchFolder folder;
+  // 30 degrees about z, to three decimals. A multiple of a rotation is nearest to that rotation.
+  const Camera camera = read_camera(folder.write(
+      "rounded.yml", camera_yaml("rvec: [ 0., 0., 1.5707963267948966 ]",
+                                 "R: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+                                 "   data: [ 0.866, -0.5, 0., 0.5, 0.866, 0., 0., 0., 1. ]")));
+  const double length = std::hypot(0.866, 0.5);
+  Eigen::Matrix3d expected;
+  expected << 0.866 / length, -0.5 / length, 0, 0.5 / length, 0.866 / length, 0, 0, 0, 1;
+  CHECK((camera.camera_from_world - expected).norm() < 1e-12);
+}
+
 TEST_CASE("camera files: what is wrong is named with its file and line") {
   const test::ScratchFolder folder;
   CHECK_THROWS_WITH_AS(read_camera(folder / "none.yml"), doctest::Contains("none.yml"), InputError);

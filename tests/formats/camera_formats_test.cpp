@@ -82,6 +82,24 @@ TEST_CASE("camera formats: of several cameras one is chosen by name") {
   check_as_section(read_camera(odd.string() + ":one"), 1.0);
 }
 
+TEST_CASE("camera formats: nothing is assumed of a file of our own that gives its unit") {
+  const ScratchFolder folder;
+  Camera camera = test::odd_camera();
+  for (const bool has_unit : {true, false}) {
+    CAPTURE(has_unit);
+    camera.unit_m.reset();
+    if (has_unit) camera.unit_m = 0.01;
+    write_camera(folder / "own.yml", camera);
+    std::vector<std::string> assumed, stated;
+    read_camera(folder / "own.yml", &assumed, &stated);
+    CHECK(assumed.size() == (has_unit ? 0 : 1));
+    CHECK(stated.size() == (has_unit ? 1 : 0));
+    const std::string& line = has_unit ? stated.at(0) : assumed.at(0);
+    CHECK(line.starts_with((folder / "own.yml").string() + ": its world is y-up"));
+    CHECK(line.ends_with(" (opencv)"));
+  }
+}
+
 TEST_CASE("camera formats: Anipose's units follow from how far the cameras stand") {
   const ScratchFolder folder;
   const auto file = folder.write(

@@ -8,7 +8,9 @@
 #include <random>
 #include <set>
 
+#include "base/interruption.hpp"
 #include "formats/assignment.hpp"
+#include "mcdbn/base/errors.hpp"
 
 using namespace mcdbn;
 
@@ -34,8 +36,9 @@ void hide(SeenPerson& person, int first, int last) {
 
 /// Where the followed person is in a frame; NaN: not seen.
 double x_of(const Frames& frames, const Followed& followed, std::size_t frame) {
-  if (followed[frame] < 0) return std::numeric_limits<double>::quiet_NaN();
-  const SeenPerson& person = frames[frame][followed[frame]];
+  const auto at = std::ranges::find(followed, static_cast<int>(frame), &Sighting::frame);
+  if (at == followed.end()) return std::numeric_limits<double>::quiet_NaN();
+  const SeenPerson& person = frames[frame][at->person];
   return std::accumulate(person.x_px.begin(), person.x_px.end(), 0.0) / 10;
 }
 
@@ -121,7 +124,7 @@ TEST_CASE("people: a body that is found in parts stays the one that it was") {
     if (frame % 2 == 0) std::swap(frames.back()[0], frames.back()[1]);
   }
   const auto people = follow_people(frames, 30);
-  CHECK(std::ranges::count(people[0], -1) == 0);
+  CHECK(people[0].size() == frames.size());
 }
 
 TEST_CASE("people: the file's own numbers hold where each is there once") {
@@ -139,6 +142,40 @@ TEST_CASE("people: the file's own numbers hold where each is there once") {
   people = follow_people(frames, 30);
   REQUIRE(people.size() == 2);
   CHECK(x_of(frames, people[0], 0) == x_of(frames, people[0], 5));
+}
+
+TEST_CASE("people: who is in few frames of a long film takes little room") {
+  // A tracker that gives everybody a new number in every frame.
+  Frames frames;
+  for (int frame = 0; frame < 5000; ++frame) {
+    frames.push_back({person_at(100)});
+    frames.back().front().id = frame;
+  }
+  const auto people = follow_people(frames, 30);
+  REQUIRE(people.size() == frames.size());
+  std::size_t numbers = 0;
+  for (const Followed& followed : people) numbers += followed.capacity();
+  CHECK(numbers < 2 * frames.size());
+}
+
+TEST_CASE("people: following them stops when it is asked to") {
+  const Frames frames(3, {person_at(100), person_at(300)});
+  const MatrixD costs = MatrixD::Ones(2, 2);
+  request_interruption();
+  bool stopped = false, assigned = true;
+  try {
+    follow_people(frames, 30);
+  } catch (const Interrupted&) {
+    stopped = true;
+  }
+  try {
+    cheapest_assignment(costs);
+  } catch (const Interrupted&) {
+    assigned = false;
+  }
+  clear_interruption();
+  CHECK(stopped);
+  CHECK(!assigned);
 }
 
 TEST_CASE("people: the largest comes first, over all frames") {

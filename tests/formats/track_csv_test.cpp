@@ -87,6 +87,20 @@ TEST_CASE("track CSV: what other programs write is read") {
   CHECK(track.y_px(2, 0) == 8);
 }
 
+TEST_CASE("track CSV: a comment that a spreadsheet filled up, and R's quotes") {
+  const test::ScratchFolder folder;
+  const Track2d filled = read_track_csv(
+      folder.write("a.csv", "# fps=25 width_px=640 height_px=480,,,\r\n" + kHeader + "1,2,1\r\n"));
+  CHECK(filled.fps == 25);
+  CHECK(filled.width_px == 640);
+  CHECK(filled.height_px == 480);
+  const Track2d quoted = read_track_csv(
+      folder.write("b.csv", "\"Hips_x_px\",\"Hips_y_px\",\"Hips_confidence\"\n1,\"2\",0.5\n"));
+  CHECK(quoted.joint_names == std::vector<std::string>{"Hips"});
+  CHECK(quoted.y_px(0, 0) == 2);
+  CHECK(read_track(folder / "b.csv").confidence(0, 0) == 0.5);
+}
+
 TEST_CASE("track CSV: times that are not even are read with a notice, even ones without") {
   const test::ScratchFolder folder;
   const auto notices = [&](const std::string& times) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/scratch_folder.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/formats/track_file.hpp"
 
@@ -154,6 +155,76 @@ TEST_CASE("track details: of two confidences in columns the first counts") {
   }
   CHECK((read_track(folder.write("two.csv", header + "\n" + row + "\n")).confidence.array() == 0.25)
             .all());
+}
+
+TEST_CASE("track details: what was seen without a confidence has 1, in every table") {
+  const ScratchFolder folder;
+  struct Table {
+    std::string format, text;
+  };
+  // Joint a has a confidence in frame 0 alone; b is not seen in frame 1.
+  for (const Table& table :
+       {Table{"sleap",
+              "track,frame_idx,instance.score,a.x,a.y,a.score,b.x,b.y,b.score\n"
+              "t,0,0.9,10,20,0.25,14,24,0.75\nt,1,,11,21,,,,\n"},
+        Table{"deeplabcut",
+              "scorer,s,s,s,s,s,s\nbodyparts,a,a,a,b,b,b\n"
+              "coords,x,y,likelihood,x,y,likelihood\n0,10,20,0.25,14,24,0.75\n1,11,21,,,,\n"},
+        Table{
+            "mediapipe",
+            "frame,landmark,x,y,visibility\n0,a,10,20,0.25\n0,b,14,24,0.75\n1,a,11,21,\n1,b,,,\n"},
+        Table{"mediapipe",
+              "frame,a_x,a_y,a_visibility,b_x,b_y,b_visibility,c_x,c_y,d_x,d_y,e_x,e_y\n"
+              "0,10,20,0.25,14,24,0.75,1,9,2,9,3,9\n1,11,21,,,,,1,9,2,9,3,9\n"}}) {
+    CAPTURE(table.text);
+    const TrackReading reading = read_tracks(folder.write("table.csv", table.text));
+    CHECK(reading.format == table.format);
+    const Track2d& track = reading.people.front();
+    REQUIRE(track.frames() == 2);
+    CHECK(track.confidence(0, 0) == 0.25);
+    CHECK(track.confidence(0, 1) == 0.75);
+    CHECK(track.x_px(1, 0) == 11);
+    CHECK(track.confidence(1, 0) == 1);
+    CHECK(track.confidence(1, 1) == 0);
+  }
+}
+
+TEST_CASE("track details: MediaPipe's landmarks with null for what is not known of them") {
+  const ScratchFolder folder;
+  const auto with = [&](const json& more) {
+    json landmarks = json::array();
+    for (int joint = 0; joint < 33; ++joint) {
+      landmarks.push_back(json{{"x", 0.25 + 0.01 * joint}, {"y", 0.5}, {"z", nullptr}});
+      landmarks.back().update(more);
+    }
+    return read_tracks(folder.write(
+        "task.json", json::array({json{{"pose_landmarks", json::array({landmarks})}}}).dump()));
+  };
+  const TrackReading nameless = with({{"visibility", 0.5}, {"presence", 0.75}, {"name", nullptr}});
+  CHECK(nameless.joint_set == "MEDIAPIPE_33");
+  CHECK((nameless.people.front().confidence.array() == 0.5).all());
+  const TrackReading present = with({{"visibility", nullptr}, {"presence", 0.75}});
+  CHECK((present.people.front().confidence.array() == 0.75).all());
+  const TrackReading unknown = with({{"visibility", nullptr}, {"presence", nullptr}});
+  CHECK((unknown.people.front().confidence.array() == 1).all());
+}
+
+TEST_CASE("track details: a landmark that comes twice in a frame is a second person's") {
+  const ScratchFolder folder;
+  const std::string two_bodies = "0,a,1,2\n0,b,3,4\n0,a,5,6\n0,b,7,8\n";
+  CHECK_THROWS_WITH_AS(
+      read_track(folder.write("rows.csv", "frame,landmark,x,y\n" + two_bodies)),
+      doctest::Contains("rows.csv:4: landmark 'a' comes twice in frame '0'; add a column person"),
+      InputError);
+  CHECK_THROWS_WITH_AS(
+      read_track(folder.write("rows.csv", "frame,id,x,y\n0,0,1,2\n0,1,3,4\n0,0,5,6\n")),
+      doctest::Contains("rows.csv:4: landmark '0' comes twice in frame '0'; add a column person"),
+      InputError);
+  // A row that says that a landmark was not seen is a row.
+  CHECK_THROWS_WITH_AS(
+      read_track(folder.write("rows.csv", "frame,landmark,x,y,person\n0,a,,,1\n0,a,5,6,1\n")),
+      doctest::Contains("rows.csv:3: landmark 'a' comes twice in frame '0'; remove one row"),
+      InputError);
 }
 
 TEST_CASE("track details: labelled images are frames by the numbers in their names") {

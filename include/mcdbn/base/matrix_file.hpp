@@ -11,7 +11,8 @@ namespace mcdbn {
 /// A matrix of a file, by its extension; one row is one frame or one case.
 /// - .npy: NumPy's format, versions 1 to 3, of 2 dimensions or, as one column, of 1; floats of 32
 ///   or 64 bits, whole numbers and truth values, little endian, in C's or Fortran's order.
-/// - .csv: numbers between commas. The first line may be a header. An empty cell or `nan` is NaN.
+/// - .csv: numbers between commas. The first line may be a header, if there is no number in it. An
+///   empty cell or `nan` is NaN; in a file of one column an empty line is one, but for the last.
 /// - .safetensors: the tensor of that name, or the only one.
 /// @param tensor name of a tensor of a .safetensors file; empty: its only one
 /// @throws InputError `file:line: what` (without a line where the file has none)

@@ -15,10 +15,12 @@ struct NamedCamera {
   Camera camera;  ///< its unit_m is set where the format defines the length of its units
 };
 
-/// The cameras of a file, and what was taken for granted on reading them: a line each.
+/// The cameras of a file, what was taken for granted on reading them, and what the file leaves no
+/// doubt about: a line each.
 struct CameraRig {
   std::vector<NamedCamera> cameras;
   std::vector<std::string> assumed;
+  std::vector<std::string> stated = {};
 };
 
 /// A whole camera file.
@@ -47,8 +49,10 @@ CameraRig read_cameras(const std::filesystem::path& path);
 
 /// One camera. @param path FILE, or FILE:NAME for one of the cameras of a file
 /// @param assumed if given, collects what was taken for granted, a line each
+/// @param stated likewise what the file leaves no doubt about
 /// @throws InputError likewise; naming the cameras if there are several and none is chosen
-Camera read_camera(const std::filesystem::path& path, std::vector<std::string>* assumed = nullptr);
+Camera read_camera(const std::filesystem::path& path, std::vector<std::string>* assumed = nullptr,
+                   std::vector<std::string>* stated = nullptr);
 
 /// Writes OpenCV's YAML, XML or JSON, by the path's ending. @throws InputError
 void write_camera(const std::filesystem::path& path, const Camera& camera);

@@ -9,8 +9,13 @@
 
 namespace mcdbn {
 
-/// Whether the name ends as a file of motion does: .bvh or .amc, in any case.
+/// Whether the name ends as a file of motion does: .bvh or .amc, in any case. macOS' `._NAME` is
+/// none.
 bool is_motion_file(const std::filesystem::path& path);
+
+/// The ASF beside an AMC that holds its skeleton; empty of any other file, which has its own.
+/// @throws InputError if an AMC has none
+std::filesystem::path skeleton_file_of(const std::filesystem::path& path);
 
 /// Reads BVH, or Acclaim's AMC by the ending .amc. An AMC's skeleton is the ASF beside it: 16.asf
 /// (or 16_15.asf) of 16_15.amc, else the only one in the folder. Its lengths become centimetres,

@@ -65,8 +65,8 @@ struct TrackReading {
 /// Reads a file, or a folder with a file for each frame. Joints that were not seen are NaN with
 /// confidence 0, and so are all of a person not seen in a frame. Confidences are from 0 to 1: a
 /// file's that overshoot (to 1.5) are cut at 1, greater ones divided by the file's 95 % quantile.
-/// @throws InputError as the format does; if no format recognises the content; if no person of that
-/// number was seen
+/// @throws InputError as the format does; if no format recognises the content; if a frame shows
+/// more than 500 people, or a person has more than 600 joints; if no person of that number was seen
 TrackReading read_tracks(const std::filesystem::path& path, const TrackReadOptions& options = {});
 
 /// The first person of read_tracks. @param notices if given, collects TrackReading::notices

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "formats/seen_people.hpp"
+
+namespace mcdbn {
+
+/// Coordinates up to here are shares of the image: no body in pixels is that small.
+inline constexpr double kLargestShare = 3.0;
+
+/// Whether coordinates are shares of the image's width and height, not pixels: those of more than
+/// half of all joints are at most kLargestShare. Single joints may be guessed anywhere outside.
+/// @param frames people of each frame  @param file for messages
+/// @throws InputError if they are neither, but those of a body in space about the origin
+bool are_shares(const std::vector<std::vector<SeenPerson>>& frames, const std::string& file);
+
+/// Shares become pixels of an image of that size.
+void shares_to_px(std::vector<SeenPerson>& people, const ImageSize& size);
+
+}  // namespace mcdbn
