@@ -42,9 +42,13 @@ std::array<std::size_t, 2> local_size_for(const std::array<std::size_t, 2>& glob
 }
 
 void enqueue(Device& device, const cl::Kernel& kernel, const LaunchSize& size) {
+  using Clock = std::chrono::steady_clock;
   auto group = size.local;
   if (group[0] == 0 && !device.info().is_gpu) group = local_size_for(size.global, device.info());
   const cl::NDRange local = group[0] == 0 ? cl::NullRange : cl::NDRange(group[0], group[1]);
+  const bool is_first = device.programs().is_first_launch(kernel, group);
+  if (is_first) device.finish();
+  const auto begin = Clock::now();
   cl::Event event;
   device.queue().enqueueNDRangeKernel(kernel, cl::NullRange,
                                       cl::NDRange(size.global[0], size.global[1]), local, nullptr,
@@ -52,6 +56,9 @@ void enqueue(Device& device, const cl::Kernel& kernel, const LaunchSize& size) {
   if (device.keeps_launch_times())
     device.keep_launch(kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(), event);
   device.count_launch();
+  if (!is_first) return;
+  device.finish();
+  device.programs().count_compiling(std::chrono::duration<double>(Clock::now() - begin).count());
 }
 
 DeviceError launch_error(const Device& device, const cl::Kernel& kernel, const cl::Error& error) {

@@ -27,13 +27,16 @@ std::array<std::size_t, 2> local_size_for(const std::array<std::size_t, 2>& glob
 /// @throws Interrupted if that was asked for, DeviceError
 void keep_pace(Device& device);
 
-/// Enqueues a kernel whose arguments are set. @throws cl::Error
+/// Enqueues a kernel whose arguments are set. The first launch with work-groups of a size is waited
+/// for, and its time counts as compiling (ProgramCache::compiling_s). @throws cl::Error,
+/// DeviceError
 void enqueue(Device& device, const cl::Kernel& kernel, const LaunchSize& size);
 
 /// What became of a launch, with the kernel's name.
 DeviceError launch_error(const Device& device, const cl::Kernel& kernel, const cl::Error& error);
 
-/// Enqueues one kernel with its arguments set in order; returns at once, but for keep_pace().
+/// Enqueues one kernel with its arguments set in order; returns at once, but for keep_pace() and a
+/// first launch.
 /// @throws DeviceError naming the kernel, Interrupted
 template <typename... Arguments>
 void launch(Device& device, cl::Kernel& kernel, const LaunchSize& size,

@@ -16,9 +16,9 @@ enum class OptimizerKind { none, momentum, adam };
 /// What one matrix takes of a step.
 struct UpdateRule {
   float rate = 1e-3F;
-  float momentum = 0.0F;      ///< kept of the velocity; Adam's β1
+  float momentum = 0.0F;      ///< kept of the velocity; Adam's β1, the same in every step
   float weight_decay = 0.0F;  ///< Adam's is decoupled; times the rate in both
-  float beta2 = 0.999F;       ///< Adam's
+  float beta2 = 0.999F;       ///< Adam's, the same in every step
   float epsilon = 1e-8F;      ///< Adam's
   float l1 = 0.0F;            ///< pulls towards zero, whatever the size; times the rate in both
 

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
+#include <utility>
 
 #include "base/interruption.hpp"
 #include "base/user_cache.hpp"
@@ -146,9 +148,29 @@ cl::Program& ProgramCache::program(const std::string& file, Defines defines) {
   const std::string options = options_of(defines);
   const std::string key = file + ' ' + options;
   auto found = programs_.find(key);
-  if (found == programs_.end())
+  if (found == programs_.end()) {
+    const auto begin = std::chrono::steady_clock::now();
     found = programs_.emplace(key, build(kernel_source(file), options)).first;
+    count_compiling(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
   return found->second;
+}
+
+bool ProgramCache::is_first_launch(const cl::Kernel& kernel,
+                                   const std::array<std::size_t, 2>& group) {
+  return launched_.emplace(kernel(), group).second;
+}
+
+void ProgramCache::count_compiling(double seconds) {
+  compiling_s_ += seconds;
+  if (notice_ && compiling_s_ >= notice_at_s_) std::exchange(notice_, nullptr)();
+}
+
+void ProgramCache::on_long_compiling(std::function<void()> notice) {
+  constexpr double kLong_s = 1;
+  notice_ = std::move(notice);
+  notice_at_s_ = compiling_s_ + kLong_s;
 }
 
 cl::Program ProgramCache::build(const std::string& source, const std::string& options) {

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
+#include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "mcdbn/device/device.hpp"
 
@@ -36,6 +40,15 @@ class ProgramCache {
   /// @throws DeviceError with the build log
   cl::Kernel& kernel(const std::string& file, const std::string& name, const Defines& defines = {});
 
+  /// Whether the kernel was not launched before with work-groups of this size; from now on it was.
+  /// Some drivers compile a kernel only then, PoCL most of it and on threads of its own.
+  bool is_first_launch(const cl::Kernel& kernel, const std::array<std::size_t, 2>& group);
+  /// Seconds that compiling has taken so far: programs that were built, and first launches.
+  double compiling_s() const { return compiling_s_; }
+  void count_compiling(double seconds);
+  /// @param notice is called once, when compiling has taken a second from here on
+  void on_long_compiling(std::function<void()> notice);
+
  private:
   cl::Program& program(const std::string& file, Defines defines);
   cl::Program build(const std::string& source, const std::string& options);
@@ -51,6 +64,9 @@ class ProgramCache {
   int unroll_ = 1;
   std::map<std::string, cl::Program> programs_;
   std::map<std::string, cl::Kernel> kernels_;
+  std::set<std::pair<cl_kernel, std::array<std::size_t, 2>>> launched_;
+  double compiling_s_ = 0, notice_at_s_ = 0;
+  std::function<void()> notice_;
 };
 
 }  // namespace mcdbn

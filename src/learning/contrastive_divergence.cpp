@@ -30,10 +30,14 @@ bool is_gaussian_rbm(const CrbmShape& shape) {
 
 /// Only the composed form knows deviations.
 bool has_deviation(const Crbm& crbm, const CdSettings& settings) {
-  return crbm.has_deviation || (settings.deviation_rate > 0.0 && is_gaussian_rbm(crbm.shape()));
+  return crbm.has_deviation || learns_deviation(crbm.shape(), settings);
 }
 
 }  // namespace
+
+bool learns_deviation(const CrbmShape& shape, const CdSettings& settings) {
+  return settings.deviation_rate > 0.0 && is_gaussian_rbm(shape);
+}
 
 std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& shape,
                                          std::size_t batch) {
@@ -43,8 +47,9 @@ std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& 
 }
 
 CdRule cd_rule_for(const CdSettings& settings, std::size_t epoch, double progress) {
-  const auto momentum =
-      static_cast<float>(epoch > settings.momentum_from_epoch ? settings.momentum : 0.0);
+  // Adam corrects its mean for a first decay that has always been the same.
+  const bool has_momentum = settings.adam || epoch > settings.momentum_from_epoch;
+  const auto momentum = static_cast<float>(has_momentum ? settings.momentum : 0.0);
   const auto decay = static_cast<float>(settings.weight_decay);
   const double share = share_of_rate(settings, progress);
   const auto rule_of = [&](double rate) {

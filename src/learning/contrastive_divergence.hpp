@@ -21,6 +21,10 @@ struct CdRule {
 /// The settings' rule for an epoch, counted from 1. @param progress 0 … 1, of all mini-batches
 CdRule cd_rule_for(const CdSettings& settings, std::size_t epoch, double progress = 0.0);
 
+/// Whether the deviation of the machine's units is learnt: the settings have a rate for it, and the
+/// machine is a Gaussian RBM.
+bool learns_deviation(const CrbmShape& shape, const CdSettings& settings);
+
 /// The tile for CD-k, and for multi-prediction with the larger modality's units: a block's local
 /// memory holds its visible and its hidden units. Unset where they do not fit (choose_row_tile).
 std::optional<RowTile> choose_chain_tile(const Device& device, const CrbmShape& shape,

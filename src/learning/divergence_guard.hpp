@@ -4,8 +4,13 @@
 #include <string>
 
 #include "device/training_state.hpp"
+#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/machines/crbm.hpp"
 
 namespace mcdbn {
+
+/// A guard's advice for a layer: to lower the settings that it uses.
+std::string what_to_lower(const CrbmShape& shape, const CdSettings& settings);
 
 /// Stops a run that blows up before it wastes an hour: the loss is not finite, or has grown to
 /// several times the best so far.

@@ -9,6 +9,7 @@
 
 #include "learning/checkpoints.hpp"
 #include "learning/divergence_guard.hpp"
+#include "learning/epoch_clock.hpp"
 #include "learning/fine_tuner.hpp"
 
 namespace mcdbn {
@@ -87,6 +88,8 @@ class HeldOutRecord {
 /// Time since the last report, and how much of it was waited.
 class ReportClock {
  public:
+  explicit ReportClock(Device& device) : trained_(device) {}
+
   template <typename Call>
   auto waiting(const Call& call) {
     const auto begin = Clock::now();
@@ -95,10 +98,12 @@ class ReportClock {
     return result;
   }
   double took_s() const { return seconds(begin_); }
+  double trained_s() const { return trained_.took_s(); }
   /// To a thousandth.
   double waited_share() const { return std::round(1e3 * waited_s_ / took_s()) / 1e3; }
   void restart() {
     begin_ = Clock::now();
+    trained_.restart();
     waited_s_ = 0;
   }
 
@@ -109,17 +114,19 @@ class ReportClock {
   }
 
   Clock::time_point begin_ = Clock::now();
+  EpochClock trained_;
   double waited_s_ = 0;
 };
 
+/// @param batches since the last report, which took `trained_s`
 EpochReport report_of(std::size_t done, const FineTuningSettings& settings, double loss,
-                      double took_s) {
+                      std::size_t batches, double trained_s) {
   EpochReport report;
   report.stage = kStage;
   report.epoch = done;
   report.epochs = settings.steps;
   report.loss = loss;
-  report.windows_per_s = static_cast<double>(kReportEvery * settings.windows) / took_s;
+  report.windows_per_s = static_cast<double>(batches * settings.windows) / trained_s;
   report.stage_progress = static_cast<double>(done) / static_cast<double>(settings.steps);
   report.overall_progress = report.stage_progress;
   return report;
@@ -147,7 +154,8 @@ FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& so
     record.visit_state(state, tuner);
   };
   StageRun run(device, checkpoints, kStage, visit, [](TrainingState&) {});
-  ReportClock clock;
+  ReportClock clock(device);
+  std::size_t reported = run.done();
   for (std::size_t done = run.done() + 1; done <= steps && !run.is_over(); ++done) {
     if (clock.waiting([&] { return source.renew(done - 1); })) tuner.see(source.sequences());
     tuner.step(done - 1);
@@ -157,7 +165,9 @@ FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& so
     }
     const double loss = tuner.read_loss();
     guard.check(done, loss);
-    EpochReport report = report_of(done, settings.fine_tuning, loss, clock.took_s());
+    EpochReport report =
+        report_of(done, settings.fine_tuning, loss, done - reported, clock.trained_s());
+    reported = done;
     report.waited = clock.waited_share();
     if (judged) report.held_out_loss = judged->loss(tuner);
     clock.restart();

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <memory>
 
 #include "base/random_streams.hpp"
@@ -11,6 +10,7 @@
 #include "learning/clip_weights.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/divergence_guard.hpp"
+#include "learning/epoch_clock.hpp"
 #include "learning/history_noise.hpp"
 #include "learning/minibatch.hpp"
 #include "learning/mrbm_rule.hpp"
@@ -27,20 +27,6 @@ RandomKey key_of(const LearningSettings& learning, std::uint16_t stream, std::ui
                  std::uint16_t phase) {
   return {learning.seed, step, stream, phase};
 }
-
-class EpochClock {
- public:
-  double windows_per_s(std::size_t windows) {
-    const auto now = std::chrono::steady_clock::now();
-    const double elapsed_s = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return static_cast<double>(windows) / elapsed_s;
-  }
-  void restart() { last_ = std::chrono::steady_clock::now(); }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 bool is_health_epoch(std::size_t epoch, std::size_t epochs) {
   constexpr std::size_t kEvery = 5;
@@ -73,7 +59,7 @@ void run_epochs(const Stage& stage, MinibatchSchedule& schedule, DivergenceGuard
     guard.visit_state(state);
   });
   if (run.is_over()) return;
-  EpochClock clock;
+  EpochClock clock(device);
   LearningStep step;
   step.random = random;
   step.random.step += static_cast<std::uint32_t>(run.done());
@@ -106,7 +92,8 @@ void run_epochs(const Stage& stage, MinibatchSchedule& schedule, DivergenceGuard
       report.epoch = step.epoch;
       report.epochs = stage.epochs;
       report.loss = loss;
-      report.windows_per_s = clock.windows_per_s((batches - first) * schedule.batch());
+      report.windows_per_s =
+          static_cast<double>((batches - first) * schedule.batch()) / clock.took_s();
       report.stage_progress = static_cast<double>(step.epoch) / static_cast<double>(stage.epochs);
       report.overall_progress = report.stage_progress;
       if (is_health_epoch(step.epoch, stage.epochs)) report.health = stage.health();
@@ -220,7 +207,8 @@ MinibatchSchedule minibatches(const Sequences& sequences, const std::vector<std:
 /// Sequences of a modality; people weigh as the settings specify.
 Sequences weighted(Device& device, const SynchronizedClips& clips, const ModalityClips& modality,
                    const LearningSettings& learning) {
-  Sequences sequences = Sequences::from_host(device, modality.clips, modality.seen);
+  const auto seen = modality.is_whole() ? std::span<const MatrixF>() : modality.seen;
+  Sequences sequences = Sequences::from_host(device, modality.clips, seen);
   const std::vector<double> weights = clip_weights(clips, learning.people_power);
   for (std::size_t i = 0; i < weights.size(); ++i) sequences.clips[i].weight = weights[i];
   return sequences;
@@ -305,14 +293,8 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
   if (settings.history_noise > 0 && shape.order > 0)
     noise.emplace(device, *rule, shape, schedule.batch(), settings.history_noise);
   const std::vector<MatrixF> windows =
-      observer ? health_windows(visible, shape.order + kFreeRunFrames) : std::vector<MatrixF>{};
-  const std::string kind = shape.kind == VisibleKind::gaussian ? "gaussian" : "binary";
-  DivergenceGuard guard(
-      stage,
-      fmt::format("lower `{0}.rate` (now {1:g}), `{0}.rate-A` ({2:g}), `{0}.rate-B` ({3:g}) or "
-                  "`{0}.initial-deviation` ({4:g})",
-                  kind, settings.rate, settings.rate_A, settings.rate_B,
-                  settings.initial_deviation));
+      observer ? crbm_health_windows(visible, shape.order) : std::vector<MatrixF>{};
+  const DivergenceGuard guard(stage, what_to_lower(shape, settings));
   run_epochs({stage,
               settings.epochs,
               noise ? static_cast<LearningRule&>(*noise) : *rule,
@@ -368,9 +350,15 @@ Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningS
   double total = last_cost;
   for (const ModalityClips& modality : clips.modalities) {
     layers.push_back(layer_shapes(modality.dimension(), learning, modality.kind));
+    if (learns_deviation(layers.back().front(), learning.gaussian) && !modality.is_whole())
+      throw ConfigError(fmt::format(
+          "`gaussian.deviation-rate` (now {:g}): a deviation is learnt from values that were all "
+          "seen, and of {} some were not; set it to 0",
+          learning.gaussian.deviation_rate, modality.name));
     shape.modalities.push_back({modality.name, layers.back().back().hidden});
     total += cdbn_cost(layers.back(), learning);
   }
+  shape.check();
   OverallProgress progress(observer, total);
   std::vector<Cdbn> cdbns(modalities);
   std::vector<Sequences> codes(modalities);

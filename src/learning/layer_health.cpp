@@ -70,6 +70,11 @@ std::vector<MatrixF> health_windows(const Sequences& sequences, std::size_t fram
   return windows;
 }
 
+std::vector<MatrixF> crbm_health_windows(const Sequences& sequences, std::size_t order) {
+  std::vector<MatrixF> windows = health_windows(sequences, order + kFreeRunFrames);
+  return windows.empty() ? health_windows(sequences, order + 1) : windows;
+}
+
 LayerHealth crbm_health(const CrbmParameters& parameters, std::vector<MatrixF> windows) {
   for (MatrixF& window : windows)
     window.array().rowwise() /= parameters.visible_deviation.row(0).array();
@@ -85,7 +90,8 @@ LayerHealth crbm_health(const CrbmParameters& parameters, std::vector<MatrixF> w
   frames.pop_back();
   const MatrixF history = order > 0 ? history_of(frames, order) : MatrixF(now.rows(), 0);
   measure_hidden(hidden_on_host(parameters, now, history), health);
-  health.free_run_error = free_run_error(parameters, windows);
+  if (windows.front().rows() >= static_cast<Eigen::Index>(order + kFreeRunFrames))
+    health.free_run_error = free_run_error(parameters, windows);
   return health;
 }
 

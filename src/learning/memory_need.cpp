@@ -58,12 +58,13 @@ MemoryNeed memory_need(std::span<const std::size_t> dimensions, double frames,
   const bool is_greedy = !tunes || settings.fine_tuning.from_greedy;
   // The value and its step; Adam has two moments and fine-tuning a moving average and a gradient.
   const double copies = tunes ? 5 : 2;
-  if (is_greedy) rows += static_cast<double>(dimensions.size() * settings.hidden);
+  rows += static_cast<double>(dimensions.size() * settings.hidden);
   MemoryNeed need;
   need.parameters = sizeof(float) * copies * parameters;
   need.windows = sizeof(float) * std::max(is_greedy ? batch : 0.0,
                                           tunes ? fine_tuning_states(dimensions, settings) : 0.0);
-  need.frames = sizeof(float) * frames * rows;
+  // Fine-tuning takes its windows from the host's memory.
+  need.frames = is_greedy ? sizeof(float) * frames * rows : 0.0;
   return need;
 }
 

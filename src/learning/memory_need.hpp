@@ -12,7 +12,7 @@ namespace mcdbn {
 struct MemoryNeed {
   double parameters = 0;  ///< and what optimizers keep of each
   double windows = 0;     ///< what a mini-batch leaves behind for its gradient
-  double frames = 0;      ///< the data and their codes
+  double frames = 0;      ///< the data and their codes, which the greedy stages learn from
 
   double total() const { return parameters + windows + frames; }
 };

@@ -1,5 +1,7 @@
 #include "mcdbn/learning/sequence_source.hpp"
 
+#include <algorithm>
+
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -20,6 +22,11 @@ void check_seen(const ModalityClips& modality) {
 }
 
 }  // namespace
+
+bool ModalityClips::is_whole() const {
+  return std::ranges::all_of(seen,
+                             [](const MatrixF& values) { return (values.array() != 0.0F).all(); });
+}
 
 void SynchronizedClips::check() const {
   if (modalities.empty() || count() == 0) throw ShapeError("sequences: there are none");

@@ -73,12 +73,14 @@ MrbmParameters uncentered(MrbmParameters mrbm) {
 }
 
 UnrolledNetwork::Layer::Layer(const Parameters& parameters, const Parameters& gradients,
-                              const CrbmShape& shape, const MatrixF& visible_mean, Below below)
-    : crbm(parameters, shape, visible_mean),
+                              const CrbmParameters& start, Below below)
+    : crbm(parameters, start.shape, start.visible_mean, start.visible_deviation),
       gradient(gradients),
-      A_following(parameters.device(), shape.order_A() * crbm.A.stride(), shape.visible) {
+      A_following(parameters.device(), start.shape.order_A() * crbm.A.stride(),
+                  start.shape.visible) {
   if (below == Below::code)
-    B_following = Matrix(parameters.device(), shape.order_B() * crbm.B.stride(), shape.visible);
+    B_following =
+        Matrix(parameters.device(), start.shape.order_B() * crbm.B.stride(), start.shape.visible);
 }
 
 UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t mean_field_steps)
@@ -98,8 +100,8 @@ UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t
       const std::string prefix = prefix_of(start.modality(m), layers_[m].size());
       const CrbmParameters own = centered(layer.to_host(), below_of(layers_[m].size()));
       own.write(parameters_.part(prefix));
-      layers_[m].emplace_back(parameters_.part(prefix), gradients.part(prefix), own.shape,
-                              own.visible_mean, below_of(layers_[m].size()));
+      layers_[m].emplace_back(parameters_.part(prefix), gradients.part(prefix), own,
+                              below_of(layers_[m].size()));
     }
   centered(start.mrbm.to_host()).write(mrbm_.parameters());
   averages_.copy_from(parameters_.all());

@@ -19,7 +19,8 @@ MrbmParameters centered(MrbmParameters mrbm);
 MrbmParameters uncentered(MrbmParameters mrbm);
 
 /// A whole MCDBN in training by back-propagation: all parameters in centered form in one buffer,
-/// the optimizer's, and the copies that the backward pass reads.
+/// the optimizer's, and the copies that the backward pass reads. Deviations of Gaussian units stay
+/// as they are.
 class UnrolledNetwork {
  public:
   /// @param mean_field_steps that the result takes too, whatever `start` took
@@ -28,8 +29,9 @@ class UnrolledNetwork {
   UnrolledNetwork& operator=(const UnrolledNetwork&) = delete;
 
   struct Layer {
-    Layer(const Parameters& parameters, const Parameters& gradients, const CrbmShape& shape,
-          const MatrixF& visible_mean, Below below);
+    /// @param start centered; its weights and biases are in `parameters`
+    Layer(const Parameters& parameters, const Parameters& gradients, const CrbmParameters& start,
+          Below below);
     Layer(const Layer&) = delete;
     Layer& operator=(const Layer&) = delete;
     Crbm crbm;  ///< centered

@@ -5,6 +5,7 @@
 #include "device/gemm.hpp"
 #include "device/pointwise.hpp"
 #include "machines/mean_field.hpp"
+#include "machines/own_units.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -105,7 +106,8 @@ UnrolledPass::UnrolledPass(UnrolledNetwork& network, std::size_t absent,
   hidden_ = Matrix(device, steps_ * code_rows_, shared);
   hidden_errors_ = Matrix(device, steps_ * code_rows_, shared);
   for (const auto& layer : down_layers_) {
-    states_.push_back(Matrix::filled_with_row(layer.crbm.visible_mean, rows_));
+    states_.push_back(
+        Matrix::filled_with_row(in_own_units(layer.crbm, layer.crbm.visible_mean), rows_));
     state_errors_.emplace_back(device, rows_ + layer.crbm.shape().order,
                                layer.crbm.shape().visible);
     down_errors_.emplace_back(device, code_rows_, layer.crbm.shape().visible);
@@ -114,6 +116,7 @@ UnrolledPass::UnrolledPass(UnrolledNetwork& network, std::size_t absent,
     down_drives_.push_back(fused_.back() ? Matrix(device, code_rows_, layer.crbm.shape().visible)
                                          : Matrix());
   }
+  if (down_layers_.front().crbm.has_deviation) prediction_ = Matrix::like(states_.front());
 }
 
 UnrolledPass::UpPass UnrolledPass::make_up_pass(std::size_t modality) {
@@ -142,10 +145,15 @@ void UnrolledPass::forward(std::span<const Rows> modalities, float kept_share,
   drop_out_key_ = key;
   for (UpPass& up : up_) {
     gather(modalities[up.modality], up.input);
+    const Crbm& lowest = up.layers.front().crbm;
+    if (lowest.has_deviation) scale_columns(up.input, lowest.visible_deviation, true);
     up_pass(up);
   }
   mean_field();
   down_pass();
+  if (prediction_.empty()) return;
+  prediction_.copy_from(states_.front());
+  to_data_units(down_layers_.front().crbm, prediction_);
 }
 
 void UnrolledPass::drop_out(const Rows& units, std::size_t alike) {
@@ -255,6 +263,8 @@ void UnrolledPass::down_pass_by_frames(std::size_t i) {
 }
 
 void UnrolledPass::backward() {
+  // The prediction is the deviation times the units, and so is the derivative by the units.
+  to_data_units(down_layers_.front().crbm, prediction_error());
   down_pass_backward();
   mean_field_backward();
   for (UpPass& up : up_) up_pass_backward(up);

@@ -26,7 +26,7 @@ class UnrolledPass {
   ///        whole window at once: units that flicker would teach the decoder to shake
   void forward(std::span<const Rows> modalities, float kept_share, const RandomKey& key);
   /// The absent modality, [at least windows.rows() x visible]; frames before `first` do not count.
-  const Matrix& prediction() const { return states_.front(); }
+  const Matrix& prediction() const { return prediction_.empty() ? states_.front() : prediction_; }
   /// Where the loss writes its derivative by the prediction; zero before `lead`.
   Matrix& prediction_error() { return state_errors_.front(); }
   /// Adds to the gradients of all parameters that took part. Uses up prediction_error().
@@ -92,6 +92,7 @@ class UnrolledPass {
   Matrix hidden_, hidden_errors_;  ///< the same, [code rows x MRBM hidden]
   std::vector<Matrix> states_,
       state_errors_;                 ///< visible units of the absent layers, of all frames
+  Matrix prediction_;                ///< in the data's units, where the lowest units have others
   std::vector<Matrix> down_errors_;  ///< the same errors, [code rows x visible]
   std::vector<std::optional<FusedDownPass>> fused_;  ///< of the absent layers
   std::vector<Matrix> down_drives_;                  ///< of those that are fused

@@ -47,7 +47,9 @@ AnswerDeviation AnswerDeviation::fit(const MatrixF& code, const MatrixF& residua
   const MatrixD slope = normal.llt().solve(products);
   AnswerDeviation deviation{slope.cast<float>(), (mean_log - mean_code * slope).cast<float>()};
   const MatrixD ratios = squares.array() / deviation.of(code).cast<double>().array().square();
-  deviation.c += (0.5 * ratios.colwise().mean().array().log()).matrix().cast<float>();
+  // Where every residual is 0 the logarithm would be infinite.
+  const Eigen::ArrayXXd means = ratios.colwise().mean().array().max(kSmallest * kSmallest);
+  deviation.c += (0.5 * means.log()).matrix().cast<float>();
   return deviation;
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "base/shown.hpp"
 #include "machines/machine_tensors.hpp"
@@ -16,6 +15,11 @@ using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
 constexpr const char* kKey = "mcdbn_machine";
+
+/// Of an MCDBN's AnswerDeviation, which is of the last modality.
+std::string deviation_prefix(const MrbmShape& shape) {
+  return shape.modalities.back().name + ".deviation.";
+}
 
 /// Puts a machine's tensors into the file and returns its description.
 struct Put {
@@ -40,6 +44,8 @@ struct Put {
     about["look_ahead"] = network.look_ahead;
     about["mean_field_steps"] = network.mean_field_steps;
     about["fills_gaps"] = network.fills_gaps;
+    about["sampling"] = sampling_json(network.sampling);
+    put_answer_deviation(file, deviation_prefix(network.mrbm.shape()), network.deviation);
     return about;
   }
 };
@@ -57,6 +63,8 @@ Mcdbn mcdbn_from(Device& device, const TensorFile& file, const JsonPlace& about)
                 about["look_ahead"].count(size_limits::kLookAhead),
                 about["mean_field_steps"].count(size_limits::kMeanFieldSteps)};
   network.fills_gaps = about["fills_gaps"].truth();
+  network.sampling = sampling_from(about);
+  network.deviation = get_answer_deviation(file, deviation_prefix(shape), network.cdbns.back());
   return network;
 }
 
@@ -112,10 +120,8 @@ std::vector<ColumnScale> scales_from(const TensorFile& file, const JsonPlace& co
     const std::size_t count = place.count(within(0, size_limits::kUnits.most));
     if (m >= visible.size() || (count != 0 && count != visible[m]))
       place.fail(fmt::format("a scale of {} columns for data that are not there", count));
-    // In the units of the data, which may be large.
-    constexpr float kAny = std::numeric_limits<float>::max();
-    scales.push_back({get_matrix(file, scale_prefix(m) + "mean", 1, count, kAny),
-                      get_deviation(file, scale_prefix(m) + "deviation", count, kAny)});
+    scales.push_back({get_matrix(file, scale_prefix(m) + "mean", 1, count, kAnyFinite),
+                      get_deviation(file, scale_prefix(m) + "deviation", count, kAnyFinite)});
   }
   return scales;
 }
@@ -161,9 +167,7 @@ nlohmann::json describe_machine(const std::filesystem::path& path) {
   const Safetensors content = read_safetensors(path);
   const TensorFile file{content, path.string()};
   json about = parsed_description(file);
-  std::size_t numbers = 0;
-  for (const auto& [name, tensor] : content.tensors) numbers += tensor.values.size();
-  about["parameters"] = numbers;
+  about["parameters"] = parameter_count(content);
   about["standardized"] = has_columns(JsonPlace(about, file.path)["scales"]);
   about.erase("scales");
   return about;

@@ -73,8 +73,9 @@ MatrixF get_matrix(const TensorFile& file, const std::string& name, std::size_t 
   MatrixF values = file.content.get(name, file.path, static_cast<Eigen::Index>(rows),
                                     static_cast<Eigen::Index>(columns));
   if (!(values.array().abs() <= largest).all())
-    throw InputError(fmt::format("{}: tensor {} holds a number that is not finite or beyond {}",
-                                 file.path, name, largest));
+    throw InputError(
+        fmt::format("{}: tensor {} holds a number that is not finite{}", file.path, name,
+                    largest < kAnyFinite ? fmt::format(" or beyond {}", largest) : ""));
   return values;
 }
 
@@ -98,10 +99,11 @@ Crbm get_crbm(Device& device, const TensorFile& file, const std::string& prefix,
               const JsonPlace& description) {
   const CrbmShape shape = shape_from(description);
   const Parameters parameters = get(device, file, prefix, Crbm::parameter_shapes(shape));
+  const float largest = shape.kind == VisibleKind::gaussian ? kAnyFinite : kLargestWeight;
   MatrixF deviation;
   if (const std::string name = prefix + "visible_deviation"; file.content.tensors.contains(name))
-    deviation = get_deviation(file, name, shape.visible);
-  return {parameters, shape, get_matrix(file, prefix + "visible_mean", 1, shape.visible),
+    deviation = get_deviation(file, name, shape.visible, largest);
+  return {parameters, shape, get_matrix(file, prefix + "visible_mean", 1, shape.visible, largest),
           deviation};
 }
 
@@ -157,6 +159,51 @@ MrbmShape mrbm_shape_from(const JsonPlace& description) {
 Mrbm get_mrbm(Device& device, const TensorFile& file, const std::string& prefix,
               const MrbmShape& shape) {
   return {get(device, file, prefix, Mrbm::parameter_shapes(shape)), shape};
+}
+
+json sampling_json(const SamplingRule& rule) {
+  return {{"gibbs_steps", rule.gibbs_steps},
+          {"mrbm_gibbs_steps", rule.mrbm_gibbs_steps},
+          {"steady", rule.steady},
+          {"scale", rule.scale},
+          {"always", rule.always}};
+}
+
+SamplingRule sampling_from(const JsonPlace& description) {
+  if (!description.has("sampling")) return {};
+  const JsonPlace entry = description["sampling"];
+  return {entry["gibbs_steps"].count(size_limits::kGibbsSteps),
+          entry["mrbm_gibbs_steps"].count(size_limits::kGibbsSteps), entry["steady"].truth(),
+          entry["scale"].number(within(0, 1000)), entry.has("always") && entry["always"].truth()};
+}
+
+void put_answer_deviation(Safetensors& file, const std::string& prefix,
+                          const std::optional<AnswerDeviation>& deviation) {
+  if (!deviation) return;
+  file.put(prefix + "C", deviation->C);
+  file.put(prefix + "c", deviation->c);
+}
+
+std::optional<AnswerDeviation> get_answer_deviation(const TensorFile& file,
+                                                    const std::string& prefix,
+                                                    const Cdbn& answered) {
+  const std::string slope = prefix + "C", bias = prefix + "c";
+  if (!file.content.tensors.contains(slope) && !file.content.tensors.contains(bias)) return {};
+  const std::size_t visible = answered.layers.front().shape().visible;
+  return AnswerDeviation{get_matrix(file, slope, answered.code_dimension(), visible),
+                         get_matrix(file, bias, 1, visible)};
+}
+
+std::size_t parameter_count(const Safetensors& content) {
+  const auto is_learnt = [](const std::string& name) {
+    const bool is_scale =
+        name.starts_with("scale.") && (name.ends_with(".mean") || name.ends_with(".deviation"));
+    return !is_scale && name != "visible_mean" && !name.ends_with(".visible_mean");
+  };
+  std::size_t count = 0;
+  for (const auto& [name, tensor] : content.tensors)
+    if (is_learnt(name)) count += tensor.values.size();
+  return count;
 }
 
 json description_in(const TensorFile& file, const std::string& key, const std::string& what,

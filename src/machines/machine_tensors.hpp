@@ -1,13 +1,14 @@
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "base/json_place.hpp"
 #include "base/safetensors.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/machines/cdbn.hpp"
-#include "mcdbn/machines/mrbm.hpp"
+#include "mcdbn/machines/mcdbn.hpp"
 
 // Machines among the tensors of a file: `PREFIXW`, `PREFIXA` … for each. Each put_… returns in
 // JSON what get_… needs; get_… throws InputError naming the file and the tensor.
@@ -21,6 +22,8 @@ struct TensorFile {
 
 /// Finite weights of any size would answer with numbers that are not.
 inline constexpr float kLargestWeight = 1e6F;
+/// Of what is in the units of the data, which may be large.
+inline constexpr float kAnyFinite = std::numeric_limits<float>::max();
 
 /// [rows x columns], all finite and of at most `largest`. @throws InputError
 MatrixF get_matrix(const TensorFile& file, const std::string& name, std::size_t rows,
@@ -42,6 +45,23 @@ nlohmann::json put_mrbm(Safetensors& file, const std::string& prefix, const Mrbm
 MrbmShape mrbm_shape_from(const JsonPlace& description);
 Mrbm get_mrbm(Device& device, const TensorFile& file, const std::string& prefix,
               const MrbmShape& shape);
+
+/// A description's `sampling`.
+nlohmann::json sampling_json(const SamplingRule& rule);
+/// Algorithm 5's rule where the description has none. @throws InputError
+SamplingRule sampling_from(const JsonPlace& description);
+
+/// `PREFIXC` and `PREFIXc`, where it was learnt.
+void put_answer_deviation(Safetensors& file, const std::string& prefix,
+                          const std::optional<AnswerDeviation>& deviation);
+/// Unset where the file has neither. @param answered the CDBN whose code and visible units it fits
+std::optional<AnswerDeviation> get_answer_deviation(const TensorFile& file,
+                                                    const std::string& prefix,
+                                                    const Cdbn& answered);
+
+/// How many numbers of the file's machines are learnt: not the visible units' means, nor the scales
+/// of the data.
+std::size_t parameter_count(const Safetensors& content);
 
 /// The JSON under `key` of a file's metadata, of the format's version.
 /// @param what the file ought to be, "a model of mcdbn-cl"  @throws InputError

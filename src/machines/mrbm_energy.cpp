@@ -1,6 +1,7 @@
 #include "machines/mrbm_energy.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "machines/energy_kernel.hpp"
@@ -54,7 +55,9 @@ Matrix free_energy(const Mrbm& mrbm, const std::vector<Rows>& modalities) {
 Sequences free_energy(const Mcdbn& network, const std::vector<Sequences>& modalities) {
   require(modalities.size() == network.modality_count(), "free energy: needs every modality");
   std::vector<Sequences> codes;
-  Sequences result{Matrix(network.mrbm.device(), modalities[0].values.rows(), 1),
+  const auto frames = static_cast<Eigen::Index>(modalities[0].values.rows());
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  Sequences result{Matrix::from_host(network.mrbm.device(), MatrixF::Constant(frames, 1, kNone)),
                    modalities[0].clips, 0};
   for (std::size_t m = 0; m < modalities.size(); ++m) {
     codes.push_back(network.cdbns[m].up_pass(modalities[m]));

@@ -6,6 +6,7 @@
 #include "base/missing_values.hpp"
 #include "base/random_streams.hpp"
 #include "device/gemm.hpp"
+#include "machines/carried_on.hpp"
 #include "machines/cdbn_decoder.hpp"
 #include "machines/mrbm_chain.hpp"
 #include "machines/sequence_completion.hpp"
@@ -14,17 +15,12 @@
 namespace mcdbn {
 namespace {
 
-/// `lead` copies of the first row, the sequence, then its end carried on up to `frames` rows:
-/// turned about the last row, point by point, so that what the look-ahead sees there moves on as it
-/// did.
-MatrixF extended(const MatrixF& sequence, Eigen::Index lead, Eigen::Index frames) {
+/// `lead` copies of the first row, the sequence, then its end carried on up to `frames` rows.
+MatrixF extended(const MatrixF& sequence, Eigen::Index lead, Eigen::Index frames,
+                 VisibleKind kind) {
   MatrixF result(frames, sequence.cols());
-  const Eigen::Index last = sequence.rows() - 1;
-  result.topRows(lead) = sequence.row(0).replicate(lead, 1);
-  result.middleRows(lead, sequence.rows()) = sequence;
-  for (Eigen::Index i = 1; lead + last + i < frames; ++i)
-    result.row(lead + last + i) =
-        2.0F * sequence.row(last) - sequence.row(std::max<Eigen::Index>(last - i, 0));
+  const Eigen::Index behind = frames - lead - sequence.rows();
+  result << sequence.row(0).replicate(lead, 1), sequence, carried_on(sequence, behind, kind);
   return result;
 }
 
@@ -185,7 +181,8 @@ Sequences code_of(const Mcdbn& network, std::size_t modality, const std::vector<
   for (const MatrixF& sequence : present)
     sequences.push_back(extended(
         network.fills_gaps ? complete_sequence(cdbn, sequence) : at_mean_where_unknown(sequence),
-        static_cast<Eigen::Index>(frames.lead), static_cast<Eigen::Index>(frames.total)));
+        static_cast<Eigen::Index>(frames.lead), static_cast<Eigen::Index>(frames.total),
+        cdbn.layers.front().shape().kind));
   return cdbn.up_pass(Sequences::from_host(network.mrbm.device(), sequences));
 }
 

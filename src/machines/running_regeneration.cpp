@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/missing_values.hpp"
+#include "machines/carried_on.hpp"
 #include "machines/cdbn_decoder.hpp"
 #include "machines/sequence_completion.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -14,16 +15,6 @@ namespace mcdbn {
 namespace {
 
 constexpr std::size_t kShown = 0, kAnswered = 1;
-
-/// Rows that go on behind their end, turned about the last one, as `regenerate` has it.
-MatrixF carried_on(const MatrixF& rows, Eigen::Index frames) {
-  const Eigen::Index last = rows.rows() - 1;
-  MatrixF result(rows.rows() + frames, rows.cols());
-  result.topRows(rows.rows()) = rows;
-  for (Eigen::Index i = 1; i <= frames; ++i)
-    result.row(last + i) = 2.0F * rows.row(last) - rows.row(std::max<Eigen::Index>(last - i, 0));
-  return result;
-}
 
 }  // namespace
 
@@ -34,15 +25,24 @@ RunningRegeneration::RunningRegeneration(const Mcdbn& network, std::size_t run_i
   std::size_t history = network.cdbns[kShown].total_order();
   for (const Crbm& layer : network.cdbns[kAnswered].layers)
     history = std::max(history, layer.shape().order);
-  history_ = static_cast<Eigen::Index>(history);
+  // Without a history a gap still begins from the frame before.
+  history_ = std::max<Eigen::Index>(static_cast<Eigen::Index>(history), 1);
+}
+
+/// Their gaps filled, on the settled frames that the history holds.
+MatrixF RunningRegeneration::filled(const MatrixF& open) const {
+  if (!network_.fills_gaps) return at_mean_where_unknown(open);
+  const Eigen::Index before = std::min(settled_, history_);
+  MatrixF rows(before + open.rows(), open.cols());
+  if (before > 0) rows.topRows(before) = shown_.bottomRows(before);
+  rows.bottomRows(open.rows()) = open;
+  return complete_sequence(network_.cdbns[kShown], std::move(rows)).bottomRows(open.rows());
 }
 
 MatrixF RunningRegeneration::rows_to_see(const MatrixF& open) const {
   const Eigen::Index before = history_ + run_in_;
   MatrixF rows(before + open.rows(), open.cols());
-  rows.bottomRows(open.rows()) = network_.fills_gaps
-                                     ? complete_sequence(network_.cdbns[kShown], open)
-                                     : at_mean_where_unknown(open);
+  rows.bottomRows(open.rows()) = filled(open);
   if (shown_.rows() > 0)
     rows.topRows(before) = shown_;
   else
@@ -77,9 +77,11 @@ CodedAnswer RunningRegeneration::answer(const MatrixF& open) {
   Device& device = network_.mrbm.device();
   last_shown_ = rows_to_see(open);
   const Eigen::Index rows = last_shown_.rows();
-  const std::vector<MatrixF> seen{
-      carried_on(last_shown_, static_cast<Eigen::Index>(network_.look_ahead))};
-  const Sequences shown = network_.cdbns[kShown].up_pass(Sequences::from_host(device, seen));
+  const auto ahead = static_cast<Eigen::Index>(network_.look_ahead);
+  MatrixF seen(rows + ahead, dimension);
+  seen << last_shown_,
+      carried_on(last_shown_, ahead, network_.cdbns[kShown].layers[0].shape().kind);
+  const Sequences shown = network_.cdbns[kShown].up_pass(Sequences::from_host(device, {seen}));
   const Matrix code(device, static_cast<std::size_t>(rows), cdbn.code_dimension());
   const auto first = static_cast<std::size_t>(history_),
              count = static_cast<std::size_t>(rows - history_);
@@ -101,12 +103,11 @@ CodedAnswer RunningRegeneration::answer(const MatrixF& open) {
 }
 
 void RunningRegeneration::settle(std::size_t frames) {
-  const auto settled = history_ + run_in_ + static_cast<Eigen::Index>(frames);
   if (frames == 0) return;
-  if (settled > last_shown_.rows())
-    throw ShapeError("a running regeneration settles frames that it has not answered");
   // What is left begins with the history of the next open frame.
-  const Eigen::Index passed = settled - history_;
+  const Eigen::Index passed = run_in_ + static_cast<Eigen::Index>(frames);
+  if (history_ + passed > last_shown_.rows())
+    throw ShapeError("a running regeneration settles frames that it has not answered");
   last_shown_ = MatrixF(last_shown_.bottomRows(last_shown_.rows() - passed));
   shown_ = last_shown_.topRows(history_);
   visible_.clear();
@@ -115,6 +116,7 @@ void RunningRegeneration::settle(std::size_t frames) {
     visible_.emplace_back(layer.topRows(history_));
   }
   run_in_ = 0;
+  settled_ += static_cast<Eigen::Index>(frames);
 }
 
 }  // namespace mcdbn

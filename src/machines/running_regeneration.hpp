@@ -26,13 +26,15 @@ class RunningRegeneration {
   void settle(std::size_t frames);
 
  private:
+  MatrixF filled(const MatrixF& open) const;
   MatrixF rows_to_see(const MatrixF& open) const;
   std::vector<Matrix> visible_to_go_on(Eigen::Index rows) const;
 
   const Mcdbn& network_;
-  Eigen::Index history_;  ///< frames before the first that is decoded
-  Eigen::Index run_in_;   ///< frames still to be run in before the first open one
-  MatrixF shown_;         ///< the last settled frames of the first modality; none yet: 0 rows
+  Eigen::Index history_;      ///< frames before the first that is decoded
+  Eigen::Index run_in_;       ///< frames still to be run in before the first open one
+  Eigen::Index settled_ = 0;  ///< frames; before the first, the history repeats it
+  MatrixF shown_;  ///< the last history_ frames of the first modality; none settled yet: 0 rows
   std::vector<MatrixF> visible_;  ///< of each layer of the second, in its own units
   // All of the last answer, in these rows: history, run-in, open frames.
   MatrixF last_shown_;

@@ -19,14 +19,8 @@ MatrixF history_of(const MatrixF& sequence, Eigen::Index frame, std::size_t orde
   return history;
 }
 
-}  // namespace
-
-MatrixF complete_sequence(const Cdbn& cdbn, MatrixF sequence) {
-  if (!sequence.array().isNaN().any()) return sequence;
-  // Gaps are few and short: this runs on the host, over a copy of the lowest layer.
-  const CrbmParameters layer = cdbn.layers.front().to_host();
-  if (sequence.cols() != layer.W.rows())
-    throw ShapeError("gaps: the sequence does not fit the CDBN");
+/// @param sequence as the layer's own units see it
+MatrixF completed(const CrbmParameters& layer, MatrixF sequence) {
   for (Eigen::Index t = 0; t < sequence.rows(); ++t) {
     const auto missing = sequence.row(t).array().isNaN().eval();
     if (!missing.any()) continue;
@@ -41,6 +35,22 @@ MatrixF complete_sequence(const Cdbn& cdbn, MatrixF sequence) {
     sequence.row(t) = row;
   }
   return sequence;
+}
+
+}  // namespace
+
+MatrixF complete_sequence(const Cdbn& cdbn, MatrixF sequence) {
+  const auto missing = sequence.array().isNaN().eval();
+  if (!missing.any()) return sequence;
+  // Gaps are few and short: this runs on the host, over a copy of the lowest layer.
+  const CrbmParameters layer = cdbn.layers.front().to_host();
+  if (sequence.cols() != layer.W.rows())
+    throw ShapeError("gaps: the sequence does not fit the CDBN");
+  const auto deviation = layer.visible_deviation.row(0).array();
+  const MatrixF filled =
+      completed(layer, (sequence.array().rowwise() / deviation).matrix()).array().rowwise() *
+      deviation;
+  return missing.select(filled, sequence);
 }
 
 }  // namespace mcdbn

@@ -52,4 +52,14 @@ TEST_CASE("small: a matrix takes only values of its shape, and refuses to pass 3
   });
 }
 
+TEST_CASE("small: a matrix is filled with one row, and not with two or none") {
+  on_every_device([](Device& device) {
+    const MatrixF row = random_matrix(1, 5, 1);
+    const Matrix filled = Matrix::filled_with_row(Matrix::from_host(device, row), 3);
+    CHECK(filled.to_host() == row.replicate(3, 1));
+    CHECK_THROWS_AS(Matrix::filled_with_row(Matrix(device, 2, 5), 3), ShapeError);
+    CHECK_THROWS_AS(Matrix::filled_with_row(Matrix(device, 0, 5), 3), ShapeError);
+  });
+}
+
 }  // namespace matrix_test

@@ -167,6 +167,58 @@ TEST_CASE("small: kernels are read from MCDBN_KERNEL_DIR, with what they include
   });
 }
 
+TEST_CASE("small: builds and first launches with each size of groups count as compiling") {
+  on_every_device([](Device& open) {
+    const ScratchFolder folder;
+    folder.write("probe.cl", "kernel void probe(global int* out) { out[get_global_id(0)] = 7; }\n");
+    const ScopedVariable kernels("MCDBN_KERNEL_DIR", (folder / "").string());
+    const ScopedVariable cache("XDG_CACHE_HOME", (folder / "cache").string());
+    Device device(open.info());
+    ProgramCache& programs = device.programs();
+    const cl::Buffer out(device.context(), CL_MEM_READ_WRITE, 8 * sizeof(cl_int));
+    CHECK(programs.compiling_s() == 0);
+    cl::Kernel& kernel = programs.kernel("probe.cl", "probe");
+    double before_s = 0;
+    const auto grew = [&] {
+      const bool more = programs.compiling_s() > before_s;
+      before_s = programs.compiling_s();
+      return more;
+    };
+    CHECK(grew());
+    const auto launch_with = [&](std::size_t group) {
+      launch(device, kernel, {.global = {8, 1}, .local = {group, 1}}, out);
+    };
+    launch_with(1);
+    CHECK(grew());
+    launch_with(1);
+    CHECK_FALSE(grew());
+    programs.kernel("probe.cl", "probe");
+    CHECK_FALSE(grew());
+    if (device.info().largest_group < 2) return;
+    launch_with(2);
+    CHECK(grew());
+    launch_with(2);
+    launch_with(1);
+    CHECK_FALSE(grew());
+  });
+}
+
+TEST_CASE("small: long compiling is announced once, whatever was compiled before") {
+  on_every_device([](Device& open) {
+    Device device(open.info());
+    int notices = 0;
+    device.programs().count_compiling(5);
+    device.programs().on_long_compiling([&] { ++notices; });
+    device.programs().count_compiling(0.75);
+    CHECK(notices == 0);
+    device.programs().count_compiling(0.5);
+    CHECK(notices == 1);
+    device.programs().count_compiling(5);
+    CHECK(notices == 1);
+    CHECK(device.programs().compiling_s() == 11.25);
+  });
+}
+
 TEST_CASE("small: kernels are built with the rounds to unroll that the device is tuned to") {
   on_every_device([](Device& open) {
     const ScratchFolder folder;

@@ -55,14 +55,12 @@ struct Passed {
 struct OnDevice {
   OnDevice(Device& device, const Case& test, const Problem& problem)
       : parameters(device, Crbm::parameter_shapes(test.shape)),
-        layer(parameters, parameters, test.shape, MatrixF::Zero(1, to_index(test.shape.visible)),
-              test.below) {
+        layer(parameters, parameters, CrbmParameters::zeros(test.shape), test.below) {
     CrbmParameters all = random_layer(test.shape, 4);
     all.A = problem.A;
     all.write(parameters);
     transpose_lags(layer.crbm.A, test.shape.order_A(), layer.A_following);
   }
-  static Eigen::Index to_index(std::size_t size) { return static_cast<Eigen::Index>(size); }
   Parameters parameters;
   UnrolledNetwork::Layer layer;
 };

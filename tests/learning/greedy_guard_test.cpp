@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "learning/divergence_guard.hpp"
 #include "learning/greedy_scene.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -165,6 +166,71 @@ TEST_CASE("the greedy training names the modality, the kind of layer and the set
     CHECK(contains(binary.message,
                    "; lower `binary.rate` (now 0.2), `binary.rate-A` (0.07), `binary.rate-B` (0.1) "
                    "or `binary.initial-deviation` (0.7)"));
+  });
+}
+
+TEST_CASE("the message names the settings that the layer uses, and no others") {
+  CdSettings settings{.rate = 0.5, .rate_A = 0.25, .rate_B = 0.125, .initial_deviation = 0.75};
+  settings.fast_rate = 0.375;  // of persistent chains only
+  settings.deviation_rate = 3;
+  constexpr VisibleKind kGaussian = VisibleKind::gaussian;
+  CHECK(what_to_lower({5, 3, 0, kGaussian}, settings) ==
+        "lower `gaussian.rate` (now 0.5), `gaussian.deviation-rate` (3) or "
+        "`gaussian.initial-deviation` (0.75)");
+  CHECK(what_to_lower({5, 3, 2, kGaussian}, settings) ==
+        "lower `gaussian.rate` (now 0.5), `gaussian.rate-A` (0.25), `gaussian.rate-B` (0.125) or "
+        "`gaussian.initial-deviation` (0.75)");
+  CHECK(what_to_lower({5, 3, 2, VisibleKind::binary, 0, 2}, settings) ==
+        "lower `binary.rate` (now 0.5), `binary.rate-B` (0.125) or `binary.initial-deviation` "
+        "(0.75)");
+  settings.persistent = true;
+  CHECK(what_to_lower({5, 3, 0, VisibleKind::binary}, settings) ==
+        "lower `binary.rate` (now 0.5), `binary.fast-rate` (0.375) or `binary.initial-deviation` "
+        "(0.75)");
+}
+
+TEST_CASE("a Gaussian RBM whose deviation diverges is stopped, and the message names its rate") {
+  LearningSettings settings;
+  settings.batch = 20;
+  settings.least_batches = 1;
+  settings.gaussian.epochs = 20;
+  settings.gaussian.deviation_rate = 100;
+  on_every_device([&](Device& device) {
+    const Sequences frames = Sequences::from_host(device, {waves(90, 12)});
+    const Divergence divergence = divergence_of([&](const EpochObserver& observer) {
+      train_crbm(device, frames,
+                 CrbmParameters::random({12, 8, 0, VisibleKind::gaussian}, 0.01, {.seed = 1}),
+                 settings.gaussian, settings, 0, observer);
+    });
+    INFO(divergence.message);
+    CHECK(contains(divergence.message, "`gaussian.deviation-rate` (100)"));
+    CHECK_FALSE(contains(divergence.message, "rate-A"));
+  });
+}
+
+TEST_CASE("a deviation that is to be learnt from values that were not seen is refused at once") {
+  const auto source = [](float seen) {
+    std::vector<ModalityMatrices> modalities{{"track", {waves(30, 4)}}, {"pose", {waves(30, 5)}}};
+    MatrixF mask = MatrixF::Ones(30, 4);
+    mask(7, 2) = seen;
+    modalities[0].clips[0](7, 2) *= seen;
+    modalities[0].seen = {mask};
+    return MatrixSource(std::move(modalities));
+  };
+  LearningSettings settings = settings_of(tiny_plan());
+  settings.order = 0;
+  settings.gaussian.rate = 1e-3;
+  settings.gaussian.deviation_rate = 0.01;
+  on_every_device([&](Device& device) {
+    bool has_begun = false;
+    const EpochObserver observer = [&](const EpochReport&) { has_begun = true; };
+    CHECK_THROWS_WITH_AS(train_greedy(device, source(0), settings, observer),
+                         doctest::Contains("`gaussian.deviation-rate` (now 0.01)"), ConfigError);
+    CHECK_FALSE(has_begun);
+    // What says that all was seen is as good as nothing.
+    const Mcdbn network = train_greedy(device, source(1), settings, observer);
+    CHECK(network.cdbns[0].layers[0].has_deviation);
+    CHECK(has_begun);
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include "device/every_device.hpp"
 #include "learning/within_bounds.hpp"
+#include "mcdbn/learning/greedy_schedule.hpp"
 #include "mcdbn/learning/layer_health.hpp"
 
 namespace layer_health_reference_test {
@@ -168,6 +169,41 @@ TEST_CASE("health windows: all there are where there are few, none where no clip
     CHECK(windows[3](0, 0) == 9);
     CHECK(windows[3](3, 0) == 12);
     CHECK(health_windows(sequences, 7).empty());
+  });
+}
+
+TEST_CASE("health windows of a CRBM are as short as they have to be where clips are short") {
+  on_every_device([](Device& device) {
+    const std::size_t order = 3;
+    const Sequences long_enough = Sequences::from_host(device, numbered_clips({6, 13}));
+    const auto whole = crbm_health_windows(long_enough, order);
+    REQUIRE(whole.size() == 1);
+    CHECK(whole[0].rows() == 13);
+    const Sequences brief = Sequences::from_host(device, numbered_clips({6, 12}));
+    const auto windows = crbm_health_windows(brief, order);
+    CHECK(windows.size() == 3 + 9);
+    for (const MatrixF& window : windows) CHECK(window.rows() == 4);
+    CHECK(crbm_health_windows(Sequences::from_host(device, numbered_clips({3})), order).empty());
+  });
+}
+
+TEST_CASE("a training on short clips reports the hidden units' health") {
+  on_every_device([](Device& device) {
+    const Sequences brief =
+        Sequences::from_host(device, {random_matrix(7, 3, 1), random_matrix(8, 3, 2)});
+    LearningSettings settings;
+    settings.batch = 5;
+    settings.least_batches = 2;
+    settings.gaussian.epochs = 1;
+    std::vector<EpochReport> reports;
+    train_crbm(device, brief, CrbmParameters::zeros({3, 4, 2, VisibleKind::gaussian}),
+               settings.gaussian, settings, 0,
+               [&](const EpochReport& report) { reports.push_back(report); });
+    REQUIRE(reports.size() == 1);
+    REQUIRE(reports[0].health);
+    // From zeros one epoch moves a probability of one half a little.
+    CHECK(reports[0].health->hidden_activity == doctest::Approx(0.5).epsilon(0.1));
+    CHECK(!reports[0].health->free_run_error);
   });
 }
 

@@ -61,6 +61,16 @@ TEST_CASE("crbm_health: the history drives the hidden units and the free run") {
   CHECK(crbm_health(parameters, first_frame).hidden_activity == doctest::Approx(1));
 }
 
+TEST_CASE("crbm_health: windows of order + 1 frames are enough for the hidden units") {
+  CrbmParameters parameters = zero_crbm(VisibleKind::gaussian);
+  parameters.b.row(0) << 0, 0, 0, 12;
+  const LayerHealth health =
+      crbm_health(parameters, {MatrixF::Zero(kOrder + 1, 3), MatrixF::Zero(kOrder + 1, 3)});
+  CHECK(health.hidden_activity == doctest::Approx((3 * 0.5 + 1) / 4).epsilon(1e-4));
+  CHECK(health.saturation == doctest::Approx(0.25));
+  CHECK(!health.free_run_error);
+}
+
 TEST_CASE("crbm_health: binary units, and no window at all") {
   CrbmParameters parameters = zero_crbm(VisibleKind::binary);
   CHECK(crbm_health(parameters, windows_of(0.5F)).free_run_error.value() == doctest::Approx(0));

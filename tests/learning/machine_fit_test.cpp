@@ -5,6 +5,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "device/every_device.hpp"
 #include "machines/in_double.hpp"
@@ -152,6 +154,69 @@ TEST_CASE("fit: too short data and settings out of range are refused") {
     MachineSettings settings = small_settings();
     settings.binary.rate = 0;
     CHECK_THROWS_AS(fit_stack(device, data, kBinary, {{4, 0}}, settings), ConfigError);
+  });
+}
+
+TEST_CASE("fit: layers of impossible sizes are refused, by number") {
+  on_every_device([](Device& device) {
+    const Sequences data = clips(device, 3);
+    const auto fit = [&](const std::vector<mcdbn::LayerSize>& layers) {
+      fit_stack(device, data, kGaussian, layers, small_settings());
+    };
+    CHECK_THROWS_WITH_AS(fit({{4, 0}, {0, 0}}),
+                         "`hidden` of layer 1 must be at least 1 and at most 100000, not 0",
+                         ConfigError);
+    CHECK_THROWS_WITH_AS(fit({{100'001, 0}}),
+                         "`hidden` of layer 0 must be at least 1 and at most 100000, not 100001",
+                         ConfigError);
+    CHECK_THROWS_AS(fit({{4, 1001}}), ConfigError);
+    CHECK_THROWS_AS(fit(std::vector<mcdbn::LayerSize>(65, {1, 0})), ConfigError);
+    CHECK_THROWS_AS(fit({}), ShapeError);
+  });
+}
+
+TEST_CASE("fit: values that the units cannot take are refused before anything is learnt") {
+  on_every_device([](Device& device) {
+    int epochs = 0;
+    const auto observer = [&](const EpochReport&) { ++epochs; };
+    const auto fit = [&](const MatrixF& odd, VisibleKind kind) {
+      const MatrixF even = MatrixF::Constant(20, 3, 0.5F);
+      fit_stack(device, Sequences::from_host(device, {even, odd}), kind, {{4, 0}}, small_settings(),
+                observer);
+    };
+    const auto fit_both = [&](const MatrixF& odd, VisibleKind kind) {
+      const std::vector<Sequences> data{
+          Sequences::from_host(device, {MatrixF::Constant(20, 2, 0.5F)}),
+          Sequences::from_host(device, {odd})};
+      fit_mrbm(device, {{.name = "left"}, {.name = "right", .kind = kind}}, data, small_settings(),
+               observer);
+    };
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                    kInfinite = std::numeric_limits<float>::infinity();
+    for (const float value : {kNan, kInfinite, -kInfinite, 1.25F, -0.25F}) {
+      CAPTURE(value);
+      MatrixF odd = MatrixF::Constant(20, 3, 0.5F);
+      odd(6, 1) = value;
+      CHECK_THROWS_AS(fit(odd, kBinary), InputError);
+      CHECK_THROWS_AS(fit_both(odd, kBinary), InputError);
+      if (std::isfinite(value)) continue;
+      CHECK_THROWS_AS(fit(odd, kGaussian), InputError);
+      CHECK_THROWS_AS(fit_both(odd, kGaussian), InputError);
+    }
+    CHECK(epochs == 0);
+    MatrixF ends = MatrixF::Zero(20, 3);
+    ends.col(1).setOnes();
+    CHECK_NOTHROW(fit(ends, kBinary));
+    ends(6, 1) = 1.25F;
+    CHECK_THROWS_WITH_AS(fit(ends, kBinary),
+                         "data: row 27, column 2 is 1.25; binary units need values from 0 to 1 "
+                         "(Gaussian ones take any)",
+                         InputError);
+    CHECK_THROWS_WITH_AS(fit_both(ends, kBinary),
+                         "right: row 7, column 2 is 1.25; binary units need values from 0 to 1 "
+                         "(Gaussian ones take any)",
+                         InputError);
+    CHECK_NOTHROW(fit(ends, kGaussian));
   });
 }
 

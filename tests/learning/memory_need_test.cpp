@@ -59,8 +59,10 @@ TEST_CASE("memory of a training: every number once, counted by hand") {
                           .mean_field_steps = 4};
   const MemoryNeed tuned = memory_need(kDimensions, 500, settings);
   CHECK(tuned.parameters == 4 * 5 * (track + pose + mrbm));
-  CHECK(tuned.frames == 4 * 500 * (43 + 130));
+  CHECK(tuned.frames == 0);  // only windows of them are on the device
   CHECK(tuned.windows == 4 * (6 * (2 + 5 + 3) * (43 + 130 + 2 * 2 * 8) + 6 * 7 * 2 * 4 * (8 + 7)));
+  settings.fine_tuning.from_greedy = true;
+  CHECK(memory_need(kDimensions, 500, settings).frames == need.frames);
 }
 
 TEST_CASE("memory of a training: what is more than the device has is refused, and what to lower") {
@@ -79,6 +81,9 @@ TEST_CASE("memory of a training: what is more than the device has is refused, an
   large.fine_tuning.windows = 100'000;
   CHECK(contains(on_device_of(8e9, large, 1e3), "`fine-tuning.windows` (100000)"));
   CHECK(contains(on_device_of(8e9, usual, 5e7), "train on fewer clips"));
+  LearningSettings alone = usual;
+  alone.fine_tuning.from_greedy = false;
+  CHECK(on_device_of(8e9, alone, 5e7).empty());
 }
 
 TEST_CASE("a window longer than every clip is refused by both lengths") {

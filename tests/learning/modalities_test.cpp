@@ -339,6 +339,9 @@ TEST_CASE("three modalities are trained greedily, fine-tuned and regenerated fro
                                                   Rows(codes[1], row, 1), Rows(codes[2], row, 1)})
                              .to_host();
     CHECK(energies.values.to_host()(static_cast<Eigen::Index>(row), 0) == want(0, 0));
+    for (const MatrixF& clip : energies.to_host())
+      for (Eigen::Index t = 0; t < clip.rows(); ++t)
+        CHECK(std::isnan(clip(t, 0)) == (t < 2 || t == clip.rows() - 1));
   });
 }
 
@@ -371,6 +374,21 @@ TEST_CASE("a lowest layer of binary units is learnt and fine-tuned: it predicts 
     CHECK(tuned.cdbns[0].layers[0].shape().kind == kBinary);
     CHECK(error_of(tuned) < 0.8F * error_of(greedy));
     CHECK(error_of(tuned) < 0.2F);  // a half everywhere has 0.25
+  });
+}
+
+TEST_CASE("one modality, or two of one name, are refused before anything is trained") {
+  on_every_device([](Device& device) {
+    std::size_t epochs = 0;
+    const auto train = [&](std::vector<ModalityMatrices> modalities) {
+      train_greedy(device, MatrixSource(std::move(modalities)), small_settings(),
+                   [&](const EpochReport&) { ++epochs; });
+    };
+    std::vector<ModalityMatrices> modalities = three_modalities();
+    CHECK_THROWS_AS(train({modalities[0]}), ShapeError);
+    modalities[2].name = modalities[0].name;
+    CHECK_THROWS_AS(train(modalities), ShapeError);
+    CHECK(epochs == 0);
   });
 }
 

@@ -66,6 +66,14 @@ TEST_CASE("answer deviation: the deviations of drawn residuals are found again")
   CHECK_THROWS_AS(AnswerDeviation::fit(MatrixF(1, 2), MatrixF(1, 2)), ShapeError);
 }
 
+TEST_CASE("answer deviation: a column without any residual has a finite deviation above 0") {
+  Problem problem;
+  problem.residuals.col(1).setZero();
+  const AnswerDeviation found = AnswerDeviation::fit(problem.code, problem.residuals);
+  CHECK(found.c.allFinite());
+  CHECK((found.of(problem.code).array() > 0).all());
+}
+
 TEST_CASE("answer deviation: calibrated on others it is as large as their residuals ask for") {
   const Problem problem;
   AnswerDeviation found = AnswerDeviation::fit(problem.code, problem.residuals);

@@ -32,6 +32,10 @@ TEST_CASE("generation health: the shortest cycle is the period") {
     CHECK(shortest_cycle(swinging(400, period)) == static_cast<std::size_t>(period));
   CHECK(shortest_cycle(swinging(400, 30), 30) == 0);  // nothing is known of what follows
   CHECK(shortest_cycle(swinging(400, 30), 31) == 30);
+  for (const int period : {9, 31, 80}) {  // it has to be seen twice
+    CHECK(shortest_cycle(swinging(2 * period, period)) == static_cast<std::size_t>(period));
+    CHECK(shortest_cycle(swinging(2 * period - 2, period)) == 0);
+  }
   // With noise on it, too.
   CHECK(shortest_cycle(swinging(400, 31) + random_matrix(400, 4, 1, 0.2F)) == 31);
 }
@@ -41,7 +45,10 @@ TEST_CASE("generation health: what stands, shakes or runs away has no cycle") {
   CHECK(shortest_cycle(random_matrix(300, 3, 2)) == 0);
   MatrixF line(300, 2);
   for (Eigen::Index t = 0; t < line.rows(); ++t) line.row(t).setConstant(static_cast<float>(t));
-  CHECK(shortest_cycle(line) == 0);
+  for (const Eigen::Index frames : {2, 3, 4, 10, 30, 60, 89, 90, 300}) {
+    CAPTURE(frames);
+    CHECK(shortest_cycle(line.topRows(frames)) == 0);
+  }
   CHECK(shortest_cycle(MatrixF(0, 3)) == 0);
   CHECK(shortest_cycle(MatrixF::Ones(1, 3)) == 0);
 }

@@ -31,6 +31,22 @@ void check_same(const CrbmParameters& got, const CrbmParameters& want) {
     CHECK(got.*matrix == want.*matrix);
 }
 
+/// Two modalities, with a value of its own in every field.
+Mcdbn example_network(Device& device) {
+  const CrbmParameters one = random_crbm({5, 7, 2, kGaussian}, 1, 4.0F),
+                       two = random_crbm({4, 3, 1, kBinary}, 2, 4.0F);
+  MrbmParameters mrbm = MrbmParameters::zeros({{{"one", 7}, {"two", 3}}, 6});
+  mrbm.W = {random_matrix(7, 6, 3), random_matrix(3, 6, 4)};
+  Mcdbn network{std::vector<Cdbn>(2), Mrbm(device, mrbm), 3, 8};
+  network.cdbns[0].layers.emplace_back(device, one);
+  network.cdbns[1].layers.emplace_back(device, two);
+  network.sampling = {
+      .gibbs_steps = 4, .mrbm_gibbs_steps = 2, .steady = true, .scale = 0.75, .always = true};
+  network.fills_gaps = false;
+  network.deviation = AnswerDeviation{random_matrix(3, 4, 5), random_matrix(1, 4, 6)};
+  return network;
+}
+
 /// The message of loading this content; empty if it loads.
 std::string complaint(Device& device, const std::filesystem::path& path,
                       const Safetensors& content) {
@@ -77,7 +93,7 @@ TEST_CASE("small: a CRBM comes back from its file as it was saved, scale and set
       CHECK(about.at("standardized") == true);
       CHECK(about.at("parameters") ==
             static_cast<std::size_t>(p.W.size() + p.A.size() + p.B.size() + p.b.size()) +
-                4 * shape.visible);
+                shape.visible);  // a; the means and the scale are not learnt
     }
   });
 }
@@ -101,6 +117,100 @@ TEST_CASE("small: a CDBN comes back from its file layer by layer") {
     // Nor is one whose scales are empty.
     save_machine(path, {cdbn, {ColumnScale{}}});
     CHECK(describe_machine(path).at("standardized") == false);
+  });
+}
+
+TEST_CASE("small: a Gaussian machine of data of any size comes back, its mean and deviation too") {
+  const ScratchFolder folder;
+  const auto path = folder / "machine.safetensors";
+  on_every_device([&](Device& device) {
+    CrbmParameters p = random_crbm({5, 3, 2, kGaussian}, 3, 4.0F);
+    p.visible_mean = 1.7e9F * random_matrix(1, 5, 8);
+    p.visible_deviation = 3e8F * random_matrix(1, 5, 9).cwiseAbs();
+    save_machine(path, {Crbm(device, p)});
+    const SavedMachine saved = load_machine(device, path);
+    const CrbmParameters got = std::get<Crbm>(saved.machine).to_host();
+    check_same(got, p);
+    CHECK(got.visible_deviation == p.visible_deviation);
+    const Safetensors whole = read_safetensors(path);
+    for (const float odd : {0.0F, -1.0F, std::numeric_limits<float>::infinity()}) {
+      Safetensors content = whole;
+      content.tensors["visible_deviation"].values[1] = odd;
+      CHECK(contains(complaint(device, path, content), "tensor visible_deviation holds"));
+    }
+    // Binary units are from 0 to 1, whatever the data.
+    save_machine(path, {Crbm(device, random_crbm({5, 3, 2, kBinary}, 3, 4.0F))});
+    Safetensors binary = read_safetensors(path);
+    binary.tensors["visible_mean"].values[1] = 1.7e9F;
+    CHECK(contains(complaint(device, path, binary), "tensor visible_mean holds"));
+  });
+}
+
+TEST_CASE("small: an MCDBN comes back from its file whole: how it samples, how far it may be off") {
+  const ScratchFolder folder;
+  const auto path = folder / "machine.safetensors";
+  on_every_device([&](Device& device) {
+    const Mcdbn network = example_network(device);
+    save_machine(path, {network});
+    const SavedMachine saved = load_machine(device, path);
+    REQUIRE(std::holds_alternative<Mcdbn>(saved.machine));
+    const Mcdbn& got = std::get<Mcdbn>(saved.machine);
+    for (std::size_t m = 0; m < 2; ++m)
+      check_same(got.cdbns[m].layers.at(0).to_host(), network.cdbns[m].layers[0].to_host());
+    CHECK(got.mrbm.to_host().W == network.mrbm.to_host().W);
+    CHECK(got.look_ahead == 3);
+    CHECK(got.mean_field_steps == 8);
+    CHECK_FALSE(got.fills_gaps);
+    CHECK(got.sampling.gibbs_steps == 4);
+    CHECK(got.sampling.mrbm_gibbs_steps == 2);
+    CHECK(got.sampling.steady);
+    CHECK(got.sampling.scale == 0.75);
+    CHECK(got.sampling.always);
+    REQUIRE(got.deviation);
+    CHECK(got.deviation->C == network.deviation->C);
+    CHECK(got.deviation->c == network.deviation->c);
+
+    // A file without them has the defaults.
+    Safetensors older = read_safetensors(path);
+    older.tensors.erase("two.deviation.C");
+    older.tensors.erase("two.deviation.c");
+    json about = json::parse(older.metadata.at("mcdbn_machine"));
+    about.erase("sampling");
+    older.metadata["mcdbn_machine"] = about.dump();
+    write_safetensors(path, older);
+    const Mcdbn plain = std::get<Mcdbn>(load_machine(device, path).machine);
+    CHECK_FALSE(plain.deviation);
+    CHECK(plain.sampling.gibbs_steps == SamplingRule{}.gibbs_steps);
+    CHECK(plain.sampling.mrbm_gibbs_steps == 0);
+    CHECK(plain.sampling.scale == 1.0);
+    CHECK_FALSE(plain.sampling.always);
+  });
+}
+
+TEST_CASE("an MCDBN's file with a damaged sampling rule or deviation is refused") {
+  const ScratchFolder folder;
+  const auto path = folder / "machine.safetensors";
+  on_every_device([&](Device& device) {
+    save_machine(path, {example_network(device)});
+    const Safetensors whole = read_safetensors(path);
+    CHECK(complaint(device, path, whole).empty());
+    for (const std::string name : {"two.deviation.C", "two.deviation.c"}) {
+      Safetensors content = whole;
+      content.tensors.erase(name);
+      CHECK(contains(complaint(device, path, content), "no tensor " + name + " "));
+      content = whole;
+      content.tensors[name].values.back() = std::nanf("");
+      CHECK(contains(complaint(device, path, content), "tensor " + name + " holds"));
+    }
+    const json about = json::parse(whole.metadata.at("mcdbn_machine"));
+    for (const auto& [field, value] : std::vector<std::pair<std::string, json>>{
+             {"gibbs_steps", -1}, {"mrbm_gibbs_steps", 0.5}, {"steady", 3}, {"scale", -2}}) {
+      Safetensors content = whole;
+      json changed = about;
+      changed["sampling"][field] = value;
+      content.metadata["mcdbn_machine"] = changed.dump();
+      CHECK(contains(complaint(device, path, content), ": sampling." + field + ": "));
+    }
   });
 }
 
@@ -155,7 +265,8 @@ TEST_CASE("a machine's file that is not whole is refused, and the message names 
     for (const auto& [name, tensor] : whole.tensors)
       for (const float odd : {std::nanf(""), std::numeric_limits<float>::infinity(), -1e38F}) {
         CAPTURE(name);
-        if (name == "scale.0.mean" && std::isfinite(odd)) continue;  // data may be as large
+        // Data may be as large.
+        if ((name == "scale.0.mean" || name == "visible_mean") && std::isfinite(odd)) continue;
         Safetensors content = whole;
         content.tensors[name].values.back() = odd;
         CHECK(contains(complaint(device, path, content), "tensor " + name + " holds"));

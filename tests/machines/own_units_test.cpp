@@ -7,6 +7,7 @@
 
 #include "device/every_device.hpp"
 #include "machines/random_crbm.hpp"
+#include "machines/sequence_completion.hpp"
 #include "mcdbn/machines/energy.hpp"
 #include "mcdbn/machines/partition.hpp"
 #include "mcdbn/machines/sampling.hpp"
@@ -72,6 +73,8 @@ TEST_CASE("small: deviations of Gaussian units scale what goes in and what comes
         CHECK(host(sample_given(machines.with, Sequences::from_host(device, {given}), settings)) ==
               times(host(sample_given(machines.without, Sequences::from_host(device, {over(given)}),
                                       settings))));
+        CHECK(complete_sequence(machines.with, given) ==
+              times(complete_sequence(machines.without, over(given))));
         if (order > 0) continue;
         CHECK(sample(machines.with, data.values, settings).to_host() ==
               times(sample(machines.without, own.values, settings).to_host()));

@@ -19,16 +19,26 @@ namespace {
 
 constexpr std::size_t kTrack = 6, kPose = 9, kHidden = 7, kTop = 5, kShared = 4;
 
+/// What the lowest layer of the track is, where tests differ.
+struct LowestTrack {
+  VisibleKind kind = VisibleKind::gaussian;
+  float weights = 1.0F;     ///< W is so many times as large
+  bool has_history = true;  ///< else no layer has one, nor has the pose's
+};
+
 /// Layers of unequal orders, so that each needs a history of its own length.
-Mcdbn network(Device& device, std::size_t look_ahead) {
-  CrbmParameters lowest_pose = random_layer(kPose, kHidden, 4, VisibleKind::gaussian, 30);
+Mcdbn network(Device& device, std::size_t look_ahead, const LowestTrack& lowest = {}) {
+  const auto order = [&](std::size_t frames) { return lowest.has_history ? frames : 0; };
+  CrbmParameters lowest_track = random_layer(kTrack, kHidden, order(1), lowest.kind, 10);
+  lowest_track.W *= lowest.weights;
+  CrbmParameters lowest_pose = random_layer(kPose, kHidden, order(4), VisibleKind::gaussian, 30);
   lowest_pose.visible_deviation = MatrixF::Constant(1, kPose, 0.5F);
   lowest_pose.visible_deviation(0, 2) = 1.5F;
   Cdbn track, pose;
-  track.layers.emplace_back(device, random_layer(kTrack, kHidden, 1, VisibleKind::gaussian, 10));
-  track.layers.emplace_back(device, random_layer(kHidden, kTop, 2, VisibleKind::binary, 20));
+  track.layers.emplace_back(device, lowest_track);
+  track.layers.emplace_back(device, random_layer(kHidden, kTop, order(2), VisibleKind::binary, 20));
   pose.layers.emplace_back(device, lowest_pose);
-  pose.layers.emplace_back(device, random_layer(kHidden, kTop, 1, VisibleKind::binary, 40));
+  pose.layers.emplace_back(device, random_layer(kHidden, kTop, order(1), VisibleKind::binary, 40));
   const MrbmParameters mrbm = mrbm_of(
       {random_matrix(kTop, kShared, 50, 2.0F), random_matrix(kTop, kShared, 51, 2.0F)},
       {random_matrix(1, kTop, 52), random_matrix(1, kTop, 53)}, random_matrix(1, kShared, 54));
@@ -89,6 +99,48 @@ TEST_CASE("small: open frames may be shown otherwise, settled ones are history")
     // Frame 4, the last that has settled, saw frame 5 ahead, which was right then.
     const CodedAnswer want = whole_answer(net, shown, 3);
     CHECK(largest(got.mean - want.mean.bottomRows(4)) < kRounding);
+  });
+}
+
+TEST_CASE("a running regeneration fills gaps from the settled frames, as regenerate does") {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  MatrixF shown = random_matrix(17, kTrack, 7, 1.2F);
+  shown(0, 1) = shown(4, 2) = shown(5, 2) = shown(5, 3) = shown(9, 0) = shown(16, 5) = kNan;
+  shown.row(8).setConstant(kNan);
+  for (const std::size_t look_ahead : {0U, 2U})
+    for (const bool has_history : {true, false})
+      on_every_device([&](Device& device) {
+        CAPTURE(look_ahead);
+        CAPTURE(has_history);
+        // Weights with which it matters where a gap's mean field begins.
+        const Mcdbn net =
+            network(device, look_ahead, {.weights = 3.0F, .has_history = has_history});
+        RunningRegeneration running(net, 3);
+        Eigen::Index settled = 0;
+        for (Eigen::Index frames = 1; frames <= shown.rows(); ++frames) {
+          CAPTURE(frames);
+          const CodedAnswer want = whole_answer(net, shown.topRows(frames), 3);
+          const CodedAnswer got = running.answer(shown.middleRows(settled, frames - settled));
+          CHECK(largest(got.mean - want.mean.bottomRows(frames - settled)) < kRounding);
+          CHECK(largest(got.code - want.code.bottomRows(frames - settled)) < kRounding);
+          const Eigen::Index done = frames - settled - static_cast<Eigen::Index>(look_ahead);
+          if (done <= 0) continue;
+          running.settle(static_cast<std::size_t>(done));
+          settled += done;
+        }
+      });
+}
+
+TEST_CASE("behind the end of binary units a look-ahead sees values from 0 to 1") {
+  const MatrixF shown = (random_matrix(9, kTrack, 7).array() > 0).cast<float>();
+  // Turned about the last row a 0 after a 1 would be −1: from 0 to 1 the last row stays.
+  MatrixF longer(11, kTrack);
+  longer << shown, shown.bottomRows(1), shown.bottomRows(1);
+  on_every_device([&](Device& device) {
+    const Mcdbn net = network(device, 2, {.kind = VisibleKind::binary});
+    const MatrixF want = whole_answer(net, longer, 3).code.topRows(9);
+    CHECK(largest(whole_answer(net, shown, 3).code - want) < kRounding);
+    CHECK(largest(RunningRegeneration(net, 3).answer(shown).code - want) < kRounding);
   });
 }
 

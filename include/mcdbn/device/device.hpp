@@ -1,5 +1,6 @@
 // The room device: OpenCL: devices, programs, matrices, products, pointwise work, updates, tuning.
 // It uses base.
+// Installed are the headers of devices, matrices, parameters and tuning.
 // Add here: a kernel in kernels/, its host side here (pointwise.cpp shows the pattern).
 #pragma once
 
@@ -55,7 +56,7 @@ struct LaunchTime {
   std::uint64_t queued_ns = 0, started_ns = 0, ended_ns = 0;
 };
 
-class ProgramCache;
+class ProgramCache;  // of the library's own kernels; its header is not installed
 
 /// An open device with one in-order queue and the programs built for it.
 /// Cheap to pass by reference; everything else on the device refers to it and must not outlive it.

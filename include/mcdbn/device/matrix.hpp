@@ -32,7 +32,7 @@ class Matrix {
   /// (parameters.hpp). @throws ShapeError if they do not lie within it
   Matrix part(std::size_t first, std::size_t rows, std::size_t columns) const;
 
-  /// `row` [1 x n] so many times. @return [rows x n]
+  /// `row` [1 x n] so many times. @return [rows x n]  @throws ShapeError for more than one row
   static Matrix filled_with_row(const Matrix& row, std::size_t rows);
 
   std::size_t rows() const { return rows_; }

@@ -13,8 +13,8 @@ namespace mcdbn {
 struct EpochReport {
   std::string stage;  ///< a modality and its layer (pose.0), mrbm, fine-tuning
   std::size_t epoch = 0, epochs = 0;
-  double loss = 0;  ///< mean squared reconstruction error of a unit, or cross-entropy of a unit
-  double windows_per_s = 0;
+  double loss = 0;  ///< of a unit or, in fine-tuning, weighted: docs/formats.md, metrics.jsonl
+  double windows_per_s = 0;             ///< without the time in which kernels were compiled
   double stage_progress = 0;            ///< 0 … 1
   double overall_progress = 0;          ///< 0 … 1, by the stages' own cost
   std::optional<double> held_out_loss;  ///< of the clips held out, fine-tuning only

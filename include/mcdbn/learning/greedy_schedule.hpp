@@ -21,7 +21,8 @@ class Checkpoints;
 /// The observer may throw to stop.
 /// @param start weights to start from; nothing: small random ones, of the settings' deviations
 /// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
-/// @throws DivergenceError naming what to lower
+/// @throws ShapeError for one modality, or two of one name; ConfigError where the deviation of
+///         units is to be learnt that were not always seen; DivergenceError naming what to lower
 Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningSettings& learning,
                    const EpochObserver& observer = {}, const Mcdbn* start = nullptr,
                    Checkpoints* checkpoints = nullptr);

@@ -26,7 +26,12 @@ inline constexpr std::size_t kHealthWindows = 16;
 /// At most kHealthWindows windows, evenly over all frames. @return [frames x dimension] each
 std::vector<MatrixF> health_windows(const Sequences& sequences, std::size_t frames);
 
-/// @param windows of order + kFreeRunFrames frames [frames x visible]
+/// Those that crbm_health takes: of order + kFreeRunFrames frames or, where no clip has so many, of
+/// order + 1. @return [frames x dimension] each
+std::vector<MatrixF> crbm_health_windows(const Sequences& sequences, std::size_t order);
+
+/// @param windows of order + kFreeRunFrames frames, or fewer but at least order + 1, which leaves
+///        free_run_error unset [frames x visible]
 LayerHealth crbm_health(const CrbmParameters& parameters, std::vector<MatrixF> windows);
 
 /// @param codes of the same frames [rows x visible of the modality]

@@ -54,18 +54,21 @@ struct LayerSize {
 
 /// A stack, fitted layer by layer by contrastive divergence (train_cdbn); one layer is an RBM or a
 /// CRBM, orders of 0 make it a DBN. Stages are called layer.0, layer.1 …
+/// @param data numbers throughout, within 0 … 1 where the lowest layer's units are binary
 /// @param kind of the lowest layer's visible units; those above see the code, which is binary
 /// @param layers from below; they stand in place of the settings' order, hidden and layers
 /// @param observer is called after each epoch; may throw to stop
-/// @throws DivergenceError naming what to lower; ShapeError if no row has a history, or there is
-/// no layer
+/// @throws InputError naming the first value that the units cannot take, its row counted over all
+/// sequences; ConfigError for sizes or settings out of range; ShapeError if no row has a history,
+/// or there is no layer; DivergenceError naming what to lower
 Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind,
                const std::vector<LayerSize>& layers, const MachineSettings& settings,
                const EpochObserver& observer = {});
 
 /// An MRBM, fitted by the settings' rule on rows that belong together.
-/// @param modalities name and kind of each  @param data of each, as many rows in all
-/// @throws DivergenceError, ShapeError
+/// @param modalities name and kind of each
+/// @param data of each, as many rows in all; values as fit_stack takes them
+/// @throws InputError, ConfigError, ShapeError, DivergenceError
 Mrbm fit_mrbm(Device& device, const std::vector<Modality>& modalities,
               std::span<const Sequences> data, const MachineSettings& settings,
               const EpochObserver& observer = {});

@@ -20,6 +20,8 @@ struct ModalityClips {
   /// machine for that frame, and no loss of the modality counts them.
   std::span<const MatrixF> seen = {};
 
+  /// Whether every value was seen.
+  bool is_whole() const;
   std::size_t dimension() const {
     return clips.empty() ? 0 : static_cast<std::size_t>(clips.front().cols());
   }

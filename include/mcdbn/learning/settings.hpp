@@ -44,7 +44,8 @@ struct CdSettings {
                   "share of a step that goes on in the next: evens out what draws do to it"},
           self.momentum);
     visit(Setting{"momentum-from-epoch", within(0, 1e7), "epochs",
-                  "no momentum in so many first epochs, whose gradients still turn"},
+                  "no momentum in so many first epochs, whose gradients still turn; Adam's first "
+                  "decay begins at once"},
           self.momentum_from_epoch);
     visit(Setting{"weight-decay", within(0, 1000), "",
                   "decay of W, A and B, times the rate: keeps weights of little effect small"},

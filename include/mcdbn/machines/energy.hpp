@@ -26,7 +26,8 @@ Matrix free_energy(const Mrbm& mrbm, const std::vector<Rows>& modalities);
 
 /// That of the MRBM on the modalities' codes, where all of them have one that belongs together.
 /// @param modalities the same clips in each  @return [all frames x 1], rows numbered as the frames
-/// of the modalities without a look-ahead are  @throws ShapeError
+/// of the modalities without a look-ahead are; NaN where there is none: before valid_from, and in
+/// the last look_ahead frames of each clip  @throws ShapeError
 Sequences free_energy(const Mcdbn& network, const std::vector<Sequences>& modalities);
 
 /// An estimate of Σ_i log p(v_i | the other units, H) of a machine of binary units: one unit i

@@ -21,8 +21,8 @@ struct SavedMachine {
 };
 
 /// One .safetensors file: tensors `W`, `A` … of a CRBM, `0.W` … of a CDBN, `NAME.0.W` … and
-/// `mrbm.W_NAME` … of an MCDBN, metadata with format version, shapes and settings. Written
-/// atomically. @throws InputError
+/// `mrbm.W_NAME` … of an MCDBN, metadata with format version, shapes and settings, and all else
+/// that an Mcdbn holds (docs/formats.md). Written atomically. @throws InputError
 void save_machine(const std::filesystem::path& path, const SavedMachine& saved);
 /// @throws InputError
 SavedMachine load_machine(Device& device, const std::filesystem::path& path);
@@ -30,8 +30,8 @@ SavedMachine load_machine(Device& device, const std::filesystem::path& path);
 /// Whether a .safetensors file holds a machine of its own (and not e.g. a model of motion).
 /// @throws InputError
 bool is_machine_file(const std::filesystem::path& path);
-/// The file's own account of itself, for people: kind, sizes, settings. Needs no device.
-/// @throws InputError
+/// The file's own account of itself, for people: kind, sizes, learnt parameters, settings.
+/// Needs no device. @throws InputError
 nlohmann::json describe_machine(const std::filesystem::path& path);
 
 }  // namespace mcdbn

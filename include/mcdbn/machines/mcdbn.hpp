@@ -38,8 +38,8 @@ struct Mcdbn {
   std::size_t look_ahead = 0;
   std::size_t mean_field_steps = 10;
   SamplingRule sampling = {};
-  /// The CDBN itself fills in missing values of what is present. Else they are left at their mean,
-  /// as a network that was trained as a whole has learnt to see them.
+  /// The CDBN itself fills in missing values of what is present. Else they are 0, the mean of
+  /// standardized values, as a network that was trained as a whole has learnt to see them.
   bool fills_gaps = true;
   /// Of the last modality given the others; unset where it was not learnt.
   std::optional<AnswerDeviation> deviation = {};

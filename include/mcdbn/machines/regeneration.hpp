@@ -12,7 +12,7 @@ struct RegenerationOptions {
   /// 0: mean field throughout (the best single answer). Above: draws by `sampling`, each
   /// pulled towards its mean as mean + temperature · (draw − mean).
   double temperature = 0.0;
-  SamplingRule sampling;  ///< Algorithm 5's; a network's own is Mcdbn::sampling
+  SamplingRule sampling = {};  ///< Algorithm 5's; a network's own is Mcdbn::sampling
   std::uint64_t seed = 1;
   /// Frames of the repeated first frame before the clip, in which the wanted modality's history
   /// settles from the training mean: no ground truth at the start.
@@ -28,7 +28,7 @@ struct RegenerationOptions {
 /// as one batch, without a host round trip a frame.
 /// @param present of each modality standardized sequences [frames x dimension], at least one frame
 ///        each and the same frames in all; none for a modality that is absent. NaN is filled in
-///        by the modality's CDBN itself (complete_sequence) or left at the mean: Mcdbn::fills_gaps
+///        by the modality's CDBN itself (complete_sequence) or counts as 0: Mcdbn::fills_gaps
 /// @param wanted the modality to regenerate, which is absent
 /// @return standardized, for every sequence and sample: result[sequence · samples + sample],
 ///         [frames x dimension], as many frames as the sequence
