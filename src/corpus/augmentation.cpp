@@ -71,12 +71,32 @@ Motion other_timing(const Motion& raw, double fps, double speed, const RandomKey
   return resample(faster, fps, kBelowOne * uniform(key, kPhase));
 }
 
-/// RMS distance of the joints from their centre, over all frames that show any.
+/// RMS distance of the joints from their centre, over all that are seen; 0 if none is.
 double size_px(const Track2d& track) {
-  const MatrixD x = track.x_px.colwise() - track.x_px.rowwise().mean(),
-                y = track.y_px.colwise() - track.y_px.rowwise().mean();
-  const double size = std::sqrt((x.array().square() + y.array().square()).mean());
-  return std::isfinite(size) ? size : 0.0;
+  double sum = 0;
+  Eigen::Index count = 0;
+  for (Eigen::Index t = 0; t < track.frames(); ++t) {
+    const Eigen::ArrayXd x = track.x_px.row(t).transpose(), y = track.y_px.row(t).transpose();
+    const auto seen = x.isFinite() && y.isFinite();
+    const Eigen::Index joints = seen.count();
+    if (joints == 0) continue;
+    for (const Eigen::ArrayXd& axis : {x, y}) {
+      const double centre = seen.select(axis, 0.0).sum() / static_cast<double>(joints);
+      sum += seen.select(axis - centre, 0.0).square().sum();
+    }
+    count += joints;
+  }
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
+}
+
+/// How far before the camera the middle of the joints' box is, at which place_camera aims.
+double depth_of(const Motion& motion, const Camera& camera) {
+  const MatrixD points = joint_positions(motion);
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>> places(
+      points.data(), points.size() / 3, 3);
+  const Eigen::RowVector3d middle =
+      0.5 * (places.colwise().minCoeff() + places.colwise().maxCoeff());
+  return camera.camera_from_world.row(2).dot(middle) + camera.translation.z();
 }
 
 /// The view's motion as a detector sees it from anywhere.
@@ -139,13 +159,17 @@ AugmentedView seen_view(const Motion& raw, double fps, const CameraPlacement& pl
   moved.azimuth_deg += within(key, kCamera, 0, settings.azimuth_deg);
   moved.elevation_deg += within(key, kCamera, 1, settings.elevation_deg);
   view.camera = place_camera(view.motion, moved);
-  view.camera.translation.z() *= std::exp(settings.distance * random_normal(key, kCamera, 2));
+  if (settings.distance > 0) {
+    const double farther = std::exp(settings.distance * random_normal(key, kCamera, 2));
+    view.camera.translation.z() += (farther - 1) * depth_of(view.motion, view.camera);
+  }
   view.track = project_motion(view.motion, view.camera);
   constexpr double kUsualSize_px = 200.0;  // of a figure that fills the image
-  add_pixel_noise(
-      view.track,
-      2.0 * uniform(key, kNoise) * settings.noise_px * size_px(view.track) / kUsualSize_px,
-      mixed_seed({key.seed, key.step}));
+  // A camera right before a joint shows figures of any size.
+  const double noise_px =
+      2.0 * uniform(key, kNoise) * settings.noise_px * size_px(view.track) / kUsualSize_px;
+  add_pixel_noise(view.track, std::min(noise_px, TrackDamage::kNoise_px.most),
+                  mixed_seed({key.seed, key.step}));
   if (!hide_no_limb && uniform(key, kMissing) < settings.missing)
     hide_limbs(view.track, view.motion.skeleton, mixed_seed({key.seed, key.step}));
   return view;

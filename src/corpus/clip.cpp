@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "base/interruption.hpp"
 #include "base/text_file.hpp"
@@ -55,7 +56,21 @@ Motion prepared(Motion motion, const fs::path& path, const ClipOptions& options,
 }
 
 TrainingClip identified(const fs::path& path, const std::string& text) {
-  return {fs::absolute(path).lexically_normal().string(), fmt::format("{:016x}", fnv1a(text))};
+  const auto fingerprint = [](const std::string& bytes) {
+    return fmt::format("{:016x}", fnv1a(bytes));
+  };
+  std::string name = fs::absolute(path).lexically_normal().string();
+  const fs::path skeleton = skeleton_file_of(path);
+  if (skeleton.empty()) return {std::move(name), fingerprint(text)};
+  // A zero, which is in no text, between both.
+  return {std::move(name), fingerprint(text + '\0' + read_text_file(skeleton)), fingerprint(text)};
+}
+
+bool same_clip(const TrainingClip& one, const TrainingClip& other) {
+  const auto by_former = [](const TrainingClip& now, const TrainingClip& recorded) {
+    return !now.former_fingerprint.empty() && now.former_fingerprint == recorded.fingerprint;
+  };
+  return one.fingerprint == other.fingerprint || by_former(one, other) || by_former(other, one);
 }
 
 }  // namespace
@@ -140,8 +155,8 @@ TrainingClip identify_clip(const fs::path& path) {
 }
 
 bool is_among(const std::vector<TrainingClip>& clips, const TrainingClip& clip) {
-  return std::ranges::any_of(
-      clips, [&](const TrainingClip& other) { return other.fingerprint == clip.fingerprint; });
+  return std::ranges::any_of(clips,
+                             [&](const TrainingClip& other) { return same_clip(other, clip); });
 }
 
 }  // namespace mcdbn

@@ -195,12 +195,13 @@ void ClipCacheWriter::add(const LoadedClip& clip) {
   write(motion.channels.data(), count * sizeof(double));
 }
 
-ClipStore ClipCacheWriter::finish() {
+void ClipCacheWriter::write_contents() {
   json contents = {{"key", key_}, {"clips", json::array()}};
   for (const Entry& entry : entries_) {
     const ClipRecord& record = entry.record;
     contents["clips"].push_back({{"path", record.clip.path},
                                  {"fingerprint", record.clip.fingerprint},
+                                 {"former_fingerprint", record.clip.former_fingerprint},
                                  {"person", record.person},
                                  {"action", record.action},
                                  {"skeleton", skeleton_json(record.skeleton)},
@@ -218,10 +219,23 @@ ClipStore ClipCacheWriter::finish() {
   write(text.data(), text.size());
   write(&trailer, sizeof trailer);
   stream_.close();
+  if (!stream_) throw InputError(fmt::format("{}: cannot be written", path_.string()));
+}
+
+ClipStore ClipCacheWriter::finish() {
+  write_contents();
   std::error_code error;
-  if (stream_) fs::rename(temporary_, path_, error);
-  if (!stream_ || error) throw InputError(fmt::format("{}: cannot be written", path_.string()));
+  fs::rename(temporary_, path_, error);
+  if (error) throw InputError(fmt::format("{}: cannot be written", path_.string()));
   return open_clip_cache(path_, key_);
+}
+
+ClipStore ClipCacheWriter::finish_without_place() {
+  write_contents();
+  ClipStore clips = open_clip_cache(temporary_, key_);
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);  // what is mapped into memory stays
+  return clips;
 }
 
 ClipStore open_clip_cache(const fs::path& path, const std::string& key) {
@@ -233,12 +247,13 @@ ClipStore open_clip_cache(const fs::path& path, const std::string& key) {
     if (contents.at("key") != key)
       throw InputError(fmt::format("{}: a cache of other clips or settings", path.string()));
     for (const json& entry : contents.at("clips")) {
-      records.push_back({{entry.at("path"), entry.at("fingerprint")},
-                         entry.at("person"),
-                         entry.at("action"),
-                         skeleton_from(entry.at("skeleton")),
-                         entry.at("frame_time_s"),
-                         entry.at("frames")});
+      records.push_back(
+          {{entry.at("path"), entry.at("fingerprint"), entry.at("former_fingerprint")},
+           entry.at("person"),
+           entry.at("action"),
+           skeleton_from(entry.at("skeleton")),
+           entry.at("frame_time_s"),
+           entry.at("frames")});
       extents.push_back({entry.at("first_byte"), records.back().frames,
                          records.back().skeleton.channel_count(), entry.at("checksum")});
       if (extents.back().first_byte + extents.back().count() * sizeof(double) > region.get_size())

@@ -25,6 +25,9 @@ class ClipCacheWriter {
   void add(const LoadedClip& clip);
   /// Puts the file in its place and opens it. @throws InputError
   ClipStore finish();
+  /// Opens the file without a place, for clips that others are made of: no later program finds it,
+  /// and its room is free with the last copy of the store. @throws InputError
+  ClipStore finish_without_place();
 
  private:
   struct Entry {
@@ -32,6 +35,7 @@ class ClipCacheWriter {
     std::uint64_t first_byte, checksum;
   };
   void write(const void* bytes, std::size_t count);
+  void write_contents();
 
   std::filesystem::path path_, temporary_;
   std::string key_;

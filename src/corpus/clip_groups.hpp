@@ -1,11 +1,20 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "mcdbn/corpus/clip_store.hpp"
 #include "mcdbn/corpus/training_set.hpp"
 
 namespace mcdbn {
+
+/// People of a corpus, as ClipGroups numbers them: all, all but one, or one alone.
+struct PeopleChoice {
+  std::optional<std::size_t> without = {}, only = {};
+
+  bool holds(std::size_t person) const { return person != without && (!only || person == only); }
+};
 
 /// Numbers the people in clips, and person and action where actions are given.
 class ClipGroups {

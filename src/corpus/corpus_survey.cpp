@@ -10,6 +10,7 @@
 
 #include "base/interruption.hpp"
 #include "base/upper_median.hpp"
+#include "corpus/joint_map_use.hpp"
 #include "corpus/people.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/motion_file.hpp"
@@ -129,6 +130,7 @@ class SkeletonCount {
 struct Seen {
   SkeletonCount skeletons;
   PeopleCount people;
+  JointMapUse map_use;
 };
 
 void describe(Motion motion, const SurveyLimits& limits, const JointMap& joint_map, Seen& seen,
@@ -136,6 +138,7 @@ void describe(Motion motion, const SurveyLimits& limits, const JointMap& joint_m
   result.frames = motion.frames();
   result.fps = motion.fps();
   result.skeleton = seen.skeletons.number_of(motion.skeleton);
+  seen.map_use.add(motion.skeleton);
   if (result.clip.person.empty())
     result.clip.person = fmt::format("body {}", seen.people.number_of(motion.skeleton) + 1);
   if (result.seconds() < limits.least_s)
@@ -195,9 +198,9 @@ std::vector<ClipProblem> motion_problems(const Motion& motion, const SkeletonRol
 }
 
 std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips, const SurveyLimits& limits,
-                                 const JointMap& joint_map) {
+                                 const JointMap& joint_map, std::vector<std::string>* notices) {
   std::vector<SurveyedClip> surveyed;
-  Seen seen;
+  Seen seen{.skeletons = {}, .people = {}, .map_use = JointMapUse(joint_map)};
   for (const ListedClip& clip : clips) {
     check_interruption();
     SurveyedClip result{clip, 0, 0, 0, {}, {}};
@@ -212,6 +215,8 @@ std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips, const Sur
     }
     surveyed.push_back(std::move(result));
   }
+  if (notices)
+    for (std::string& unused : seen.map_use.notices()) notices->push_back(std::move(unused));
   return surveyed;
 }
 

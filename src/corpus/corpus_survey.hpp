@@ -43,8 +43,10 @@ struct SurveyLimits {
 
 /// Reads every clip; what cannot be read is a problem of that clip.
 /// @param joint_map roles of clips' joints, given by hand
+/// @param notices if given, collects the joint map's names that no clip has
 std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips,
-                                 const SurveyLimits& limits = {}, const JointMap& joint_map = {});
+                                 const SurveyLimits& limits = {}, const JointMap& joint_map = {},
+                                 std::vector<std::string>* notices = nullptr);
 
 /// The problems of a motion that is read, of a person whose joints have roles.
 std::vector<ClipProblem> motion_problems(const Motion& motion, const SkeletonRoles& roles,

@@ -8,6 +8,7 @@
 #include "mcdbn/corpus/augmentation.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/features/modalities.hpp"
+#include "mcdbn/motion/skeleton_roles.hpp"
 
 namespace mcdbn {
 
@@ -21,10 +22,12 @@ struct EncodedClip {
   MatrixF track_features, pose_features;  ///< [frames x dimension], standardized
 };
 
-/// @param notices gets what was odd, if not null  @throws InputError
+/// @param notices gets what was odd, if not null
+/// @param joint_map roles of the clip's joints, given by hand
+/// @throws InputError naming the file
 EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& modalities,
                         const CameraPlacement& placement, bool keep_first_frame = false,
-                        ClipNotices* notices = nullptr);
+                        ClipNotices* notices = nullptr, const JointMap& joint_map = {});
 
 /// What another camera saw of other motion, made from that file. The features are those of the pose
 /// alone: whether a network sees the track as it is hangs on its columns.

@@ -41,8 +41,7 @@ FreshViews::FreshViews(ClipStore clips, Modalities modalities, const CorpusSetti
       seed_(seed),
       choice_(choice) {
   const auto counts = [&](std::size_t clip) {
-    const std::size_t person = groups_.people()[clip];
-    return person != choice_.without && (!choice_.only || person == choice_.only);
+    return choice_.people.holds(groups_.people()[clip]);
   };
   std::map<std::size_t, double> frames_of;
   for (std::size_t i = 0; i < clips_.count(); ++i)

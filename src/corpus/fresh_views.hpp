@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "corpus/clip_groups.hpp"
@@ -31,8 +30,7 @@ struct PieceChoice {
   int frames = kPieceFrames;
   /// People and actions come as their frames to this power (FineTuningSettings::people_power).
   double groups_power = 1;
-  /// People, as ClipGroups numbers them.
-  std::optional<std::size_t> without = {}, only = {};
+  PeopleChoice people = {};
 };
 
 /// Any number of augmented views of pieces of clips. View n is the same wherever and whenever it is

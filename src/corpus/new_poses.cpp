@@ -74,13 +74,17 @@ class WanderingArm {
     constexpr double kFarthestBack = -0.5, kFarthestAcross = -0.7;
     Vector3d direction;
     do {
-      direction = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+      // One by one: in which order arguments are evaluated is left to the compiler.
+      const double z = random.normal(), y = random.normal(), x = random.normal();
+      direction = Vector3d(x, y, z).normalized();
     } while (direction.z() < kFarthestBack || side_ * direction.x() < kFarthestAcross);
     constexpr double kTwist = 0.7, kMostBend = 2.4;  // 40 and 140 degrees
     const Vector3d rest = side_ * Vector3d::UnitX();
+    const double twist = kTwist * random.uniform(-1, 1);
+    const double most_bend = kMostBend * random.uniform();
     return {Eigen::Quaterniond::FromTwoVectors(rest, direction) *
-                Eigen::Quaterniond(Eigen::AngleAxisd(kTwist * random.uniform(-1, 1), rest)),
-            kMostBend * random.uniform() * random.uniform()};
+                Eigen::Quaterniond(Eigen::AngleAxisd(twist, rest)),
+            most_bend * random.uniform()};
   }
 
   double side_;

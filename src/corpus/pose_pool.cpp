@@ -28,16 +28,22 @@ int there_and_back(int t, int frames) {
 
 }  // namespace
 
-PosePool::PosePool(ClipStore clips, double fps) : clips_(std::move(clips)), fps_(fps) {
+PosePool::PosePool(ClipStore clips, double fps, const PeopleChoice& people)
+    : clips_(std::move(clips)), fps_(fps) {
   for (const ClipRecord& record : clips_.records())
     if (!is_humanoid(record.skeleton))
       throw ConfigError(
           "limbs that are exchanged or turned are the canonical humanoid's; train on that");
   constexpr double kMostFrames = 20'000;
+  const ClipGroups groups(clips_);
   double frames = 0;
-  for (const ClipRecord& record : clips_.records()) frames += record.frames;
-  std::array<std::vector<Eigen::Matrix3d>, kJointRoleCount> seen;
   for (std::size_t i = 0; i < clips_.count(); ++i) {
+    if (!people.holds(groups.people()[i])) continue;
+    taken_.push_back(i);
+    frames += clips_.record(i).frames;
+  }
+  std::array<std::vector<Eigen::Matrix3d>, kJointRoleCount> seen;
+  for (const std::size_t i : taken_) {
     check_interruption();
     const double share = std::min(1.0, kMostFrames / frames);
     Motion clip = clips_.motion(i);
@@ -58,7 +64,7 @@ PosePool::PosePool(ClipStore clips, double fps) : clips_(std::move(clips)), fps_
 }
 
 HumanoidPoses PosePool::piece(std::size_t clip, double from, int frames) const {
-  const ClipRecord& whole = clips_.record(clip);
+  const ClipRecord& whole = clips_.record(taken_[clip]);
   const double fps = 1 / whole.frame_time_s;
   // Only what is needed is resampled; its low-pass looks at what is around.
   constexpr double kAround_s = 0.5;
@@ -66,7 +72,7 @@ HumanoidPoses PosePool::piece(std::size_t clip, double from, int frames) const {
   const double first = from * std::max(0.0, whole.frames - 1 - frames * step);
   const int begin = std::max(0, static_cast<int>(first - around));
   const int end = std::min(whole.frames, static_cast<int>(first + frames * step + around) + 2);
-  Motion part = resample(clips_.piece(clip, begin, end - begin), fps_);
+  Motion part = resample(clips_.piece(taken_[clip], begin, end - begin), fps_);
   const int skipped = static_cast<int>((first - begin) / step);
   const int left = part.frames() - skipped;
   std::vector<int> rows;
@@ -76,9 +82,10 @@ HumanoidPoses PosePool::piece(std::size_t clip, double from, int frames) const {
 }
 
 std::shared_ptr<const PosePool> pose_pool_for(const ClipStore& clips,
-                                              const CorpusSettings& settings) {
+                                              const CorpusSettings& settings,
+                                              const PeopleChoice& people) {
   if (!settings.augment.new_poses()) return {};
-  return std::make_shared<PosePool>(clips, settings.fps);
+  return std::make_shared<PosePool>(clips, settings.fps, people);
 }
 
 }  // namespace mcdbn

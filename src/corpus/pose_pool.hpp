@@ -2,7 +2,9 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
+#include "corpus/clip_groups.hpp"
 #include "mcdbn/corpus/clip_store.hpp"
 #include "mcdbn/corpus/training_set.hpp"
 #include "motion/humanoid_poses.hpp"
@@ -15,9 +17,10 @@ namespace mcdbn {
 class PosePool {
  public:
   /// @param clips on the humanoid (load_training_clips)  @throws ConfigError if they are not
-  PosePool(ClipStore clips, double fps);
+  /// @param people whose clips are taken
+  PosePool(ClipStore clips, double fps, const PeopleChoice& people = {});
 
-  std::size_t clips() const { return clips_.count(); }
+  std::size_t clips() const { return taken_.size(); }
   /// A piece of a clip at the pool's rate: from some share of it on, and back again where it ends.
   /// @param from 0 to 1
   HumanoidPoses piece(std::size_t clip, double from, int frames) const;
@@ -27,12 +30,14 @@ class PosePool {
 
  private:
   ClipStore clips_;
+  std::vector<std::size_t> taken_;  ///< of those clips
   double fps_;
   std::array<JointLimits, kJointRoleCount> limits_;
 };
 
-/// What views of those clips need for new poses; null where the settings have none.
+/// What views of those people's clips need for new poses; null where the settings have none.
 std::shared_ptr<const PosePool> pose_pool_for(const ClipStore& clips,
-                                              const CorpusSettings& settings);
+                                              const CorpusSettings& settings,
+                                              const PeopleChoice& people = {});
 
 }  // namespace mcdbn

@@ -12,6 +12,7 @@
 #include "base/utf8.hpp"
 #include "corpus/clip_cache.hpp"
 #include "corpus/clip_notices.hpp"
+#include "corpus/joint_map_use.hpp"
 #include "corpus/people.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
@@ -129,20 +130,23 @@ class HumanoidClips {
 /// Where clips go one after another, in order.
 struct ClipSink {
   std::function<void(LoadedClip)> add;
-  std::function<ClipStore()> finish;
+  /// @param are_final whether they are the clips that a later program may take as they are
+  std::function<ClipStore(bool are_final)> finish;
 };
 using MakeSink = std::function<ClipSink()>;
 
 ClipSink into_memory() {
   const auto clips = std::make_shared<std::vector<LoadedClip>>();
   return {[clips](LoadedClip clip) { clips->push_back(std::move(clip)); },
-          [clips] { return ClipStore(std::move(*clips)); }};
+          [clips](bool) { return ClipStore(std::move(*clips)); }};
 }
 
 ClipSink into_file(const std::filesystem::path& path, const std::string& key) {
   const auto writer = std::make_shared<ClipCacheWriter>(path, key);
   return {[writer](const LoadedClip& clip) { writer->add(clip); },
-          [writer] { return writer->finish(); }};
+          [writer](bool are_final) {
+            return are_final ? writer->finish() : writer->finish_without_place();
+          }};
 }
 
 LoadedClip clip_of(const ClipStore& clips, std::size_t i) {
@@ -165,6 +169,7 @@ ClipStore read_clips(const std::vector<ListedClip>& files, const CorpusSettings&
   };
   HumanoidClips on_humanoid;
   OddOne odd;
+  JointMapUse map_use(settings.joint_map);
   ClipNotices of_files;
   const auto into = [&](ClipSink& sink, Brought brought, bool brings) {
     sink.add(brings ? on_humanoid.taken(std::move(brought)) : std::move(brought.clip));
@@ -178,16 +183,20 @@ ClipStore read_clips(const std::vector<ListedClip>& files, const CorpusSettings&
       },
       [&](Brought brought) {
         of_files.add(brought.notices);
-        odd.add(brought.clip.clip.path, humanoid ? brought.was : brought.clip.motion.skeleton);
+        const Skeleton& own = humanoid ? brought.was : brought.clip.motion.skeleton;
+        odd.add(brought.clip.clip.path, own);
+        map_use.add(own);
         into(sink, std::move(brought), humanoid);
       });
   if (notices) of_files.append_to(*notices);
+  for (const std::string& unused : map_use.notices()) add_notice(unused);
   if (settings.skeleton == SkeletonUse::own && odd.text())
     throw InputError(*odd.text() + "; or train on the canonical humanoid");
   if (odd.text())
     add_notice(fmt::format("skeletons differ, so the humanoid's is learnt: {}", *odd.text()));
-  ClipStore clips = sink.finish();
-  if (!humanoid && odd.text()) {
+  const bool brought_later = !humanoid && odd.text();
+  ClipStore clips = sink.finish(!brought_later);
+  if (brought_later) {
     ClipSink second = make_sink();
     for_each_clip(
         clips.count(),
@@ -195,7 +204,7 @@ ClipStore read_clips(const std::vector<ListedClip>& files, const CorpusSettings&
           return onto_humanoid({clip_of(clips, i), {}}, settings);
         },
         [&](Brought brought) { into(second, std::move(brought), true); });
-    clips = second.finish();
+    clips = second.finish(true);
   }
   if (humanoid || odd.text()) add_notice(on_humanoid.text());
   return clips;
@@ -203,7 +212,7 @@ ClipStore read_clips(const std::vector<ListedClip>& files, const CorpusSettings&
 
 /// What a cache depends on beside what is in the files.
 std::string cache_key(const std::vector<ListedClip>& files, const CorpusSettings& settings) {
-  nlohmann::json key = {{"version", 1},
+  nlohmann::json key = {{"version", 2},
                         {"keep_first_frame", settings.keep_first_frame},
                         {"skeleton", static_cast<int>(settings.skeleton)},
                         {"new_poses", settings.augment.new_poses()},

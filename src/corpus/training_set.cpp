@@ -152,7 +152,8 @@ std::size_t TrainingSet::frames() const {
 }
 
 TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& settings,
-                              std::uint64_t seed, bool with_views) {
+                              std::uint64_t seed, bool with_views,
+                              std::optional<std::size_t> held_out) {
   const SampledClips sampled(clips, settings);
   PoseFeatures pose_features = fitted_features(pointers(sampled.motions), clips);
   TrackFeatures track_features =
@@ -165,7 +166,7 @@ TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& sett
                                  settings.camera,
                                  with_views ? 1 : settings.directions,
                                  true});
-  if (with_views) set.new_poses = pose_pool_for(clips, settings);
+  if (with_views) set.new_poses = pose_pool_for(clips, settings, {.without = held_out});
   Modalities& modalities = set.modalities;
   std::vector<Pair> pairs = seen_pairs(sampled.motions, modalities);
   const std::size_t of_clips = pairs.size();
@@ -186,10 +187,11 @@ TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& sett
 }
 
 TrainingSet encoded_training_set(const ClipStore& clips, const Modalities& modalities,
-                                 const CorpusSettings& settings, bool with_views) {
+                                 const CorpusSettings& settings, bool with_views,
+                                 std::optional<std::size_t> held_out) {
   const SampledClips sampled(clips, settings);
   TrainingSet set = sampled.set(modalities);
-  if (with_views) set.new_poses = pose_pool_for(clips, settings);
+  if (with_views) set.new_poses = pose_pool_for(clips, settings, {.without = held_out});
   add_pairs(seen_pairs(sampled.motions, modalities), set);
   return set;
 }

@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "mcdbn/camera/level_view.hpp"
 
@@ -11,6 +13,22 @@ namespace {
 /// The camera whose pixels the 2D features are.
 Camera feature_camera(const Modalities& modalities, const Camera& seen_by) {
   return level_camera(seen_by, modalities.camera.field_of_view_deg);
+}
+
+/// Joint-frames of the model's joints that a track shows, and not as it was turned.
+int lost_by_turning(const Modalities& modalities, const Track2d& track, const Track2d& turned) {
+  std::vector<std::string> names = modalities.track_features.joint_names();
+  names.push_back(modalities.track_features.root_name());
+  int lost = 0;
+  for (const std::string& name : names) {
+    const int column = track.find(name);
+    if (column < 0) continue;
+    const auto seen = track.confidence.col(column).array() > 0 &&
+                      !track.x_px.col(column).array().isNaN() &&
+                      !track.y_px.col(column).array().isNaN();
+    lost += static_cast<int>((seen && !(turned.confidence.col(column).array() > 0)).count());
+  }
+  return lost;
 }
 
 }  // namespace
@@ -41,8 +59,12 @@ MatrixD Modalities::track_values(const Track2d& track, const Camera& seen_by,
   const RowVectorD usual =
       track_features.usual_squares(track_scale.mean(), track_scale.deviation());
   if (!level_view) return track_features.encode(track, filled, usual);
-  return track_features.encode(turn_track(track, seen_by, feature_camera(*this, seen_by)), filled,
-                               usual);
+  const Track2d turned = turn_track(track, seen_by, feature_camera(*this, seen_by));
+  if (filled) {
+    track_features.encode(track, filled);  // what the track itself lacks
+    filled->outside = lost_by_turning(*this, track, turned);
+  }
+  return track_features.encode(turned, nullptr, usual);
 }
 
 MatrixF Modalities::encode_track(const Track2d& track, const Camera& seen_by,

@@ -68,6 +68,24 @@ Side side_of(const std::string& joint_name) {
   return mark ? mark->side : Side::middle;
 }
 
+std::vector<std::string> possible_other_sides(const std::string& joint_name) {
+  const auto is_letter = [&](std::size_t at) {
+    return at < joint_name.size() && std::isalpha(static_cast<unsigned char>(joint_name[at])) != 0;
+  };
+  std::vector<std::string> names;
+  for (std::size_t at = 0; at < joint_name.size(); ++at) {
+    const bool begins_capital = at > 0 && is_upper(joint_name[at]) && !is_upper(joint_name[at - 1]);
+    const bool begins = at == 0 || !is_letter(at - 1) || begins_capital;
+    if (!begins && is_letter(at + 1)) continue;
+    const auto mark = letter_mark(joint_name, at);
+    if (!mark) continue;
+    const char other = word_of(opposite(mark->side)).front();
+    names.push_back(joint_name);
+    names.back()[at] = is_upper(joint_name[at]) ? upper(other) : other;
+  }
+  return names;
+}
+
 std::string other_side(const std::string& joint_name) {
   const auto mark = mark_of(joint_name, true);
   if (!mark) return {};

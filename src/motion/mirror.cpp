@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "motion/joint_sides.hpp"
@@ -56,9 +58,8 @@ std::vector<Axes> reflections(const Skeleton& skeleton, const std::vector<int>& 
   return axes;
 }
 
-}  // namespace
-
-std::vector<int> opposite_joints(const Skeleton& skeleton) {
+/// By the marks that other_side knows. Empty if there are none, or parents of a pair are none.
+std::vector<int> opposite_by_marks(const Skeleton& skeleton) {
   std::vector<int> opposite;
   bool has_sides = false;
   for (int j = 0; j < skeleton.joint_count(); ++j) {
@@ -74,6 +75,39 @@ std::vector<int> opposite_joints(const Skeleton& skeleton) {
       return {};
   }
   return has_sides ? opposite : std::vector<int>{};
+}
+
+/// By single letters too (possible_other_sides): joints are a pair if their parents are the same or
+/// a pair. Empty likewise.
+std::vector<int> opposite_by_letters(const Skeleton& skeleton) {
+  std::vector<int> opposite(skeleton.joints.size(), -1);
+  bool has_sides = false;
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const Joint& joint = skeleton.joints[j];
+    if (opposite[j] >= 0) continue;
+    opposite[j] = j;
+    if (joint.parent < 0) continue;
+    std::vector<std::string> names{other_side(joint.name)};
+    for (std::string& name : possible_other_sides(joint.name)) names.push_back(std::move(name));
+    for (const std::string& name : names) {
+      const int there = skeleton.find(name);
+      if (there <= j || opposite[there] >= 0) continue;
+      if (skeleton.joints[there].parent != opposite[joint.parent]) continue;
+      opposite[j] = there;
+      opposite[there] = j;
+      has_sides = true;
+      break;
+    }
+    if (opposite[j] == j && opposite[joint.parent] != joint.parent) return {};
+  }
+  return has_sides ? opposite : std::vector<int>{};
+}
+
+}  // namespace
+
+std::vector<int> opposite_joints(const Skeleton& skeleton) {
+  std::vector<int> opposite = opposite_by_marks(skeleton);
+  return opposite.empty() ? opposite_by_letters(skeleton) : opposite;
 }
 
 std::optional<Motion> mirrored(const Motion& motion) {

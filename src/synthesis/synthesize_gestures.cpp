@@ -93,7 +93,8 @@ std::vector<Frame> wave(ClipSetup& setup, int hands) {
   Wave left = Wave::draw(random, high, setup.style);
   left.rate_hz = right.rate_hz;
   // Two arms swing apart and together, or some people's to the same side.
-  left.phase = right.phase + (random.chance(0.7) ? 0 : 0.5) + random.normal(0, 0.03);
+  left.phase = right.phase + (random.chance(0.7) ? 0 : 0.5);
+  left.phase += random.normal(0, 0.03);
   const SlowNoise tempo(random, 0.08, 0.3), size(random, 0.08, 0.3);
   std::vector<Frame> frames;
   for (int i = 0; i < setup.frame_count; ++i) {

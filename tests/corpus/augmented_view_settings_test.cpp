@@ -1,8 +1,10 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "base/random_sequence.hpp"
 #include "camera/track_noise.hpp"
@@ -73,22 +75,44 @@ Eigen::Matrix3d carriage(const RandomKey& key, int j, double deviation_deg) {
   return Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
 }
 
+/// How far before the camera the middle of the box is that holds every joint of every frame.
+double depth_of_middle(const Motion& motion, const Camera& camera) {
+  const MatrixD points = joint_positions(motion);
+  Eigen::Vector3d low = points.row(0).head<3>(), high = low;
+  for (Eigen::Index t = 0; t < points.rows(); ++t)
+    for (Eigen::Index c = 0; c < points.cols(); c += 3) {
+      low = low.cwiseMin(points.row(t).segment<3>(c).transpose());
+      high = high.cwiseMax(points.row(t).segment<3>(c).transpose());
+    }
+  return (camera.camera_from_world * (low + high) / 2 + camera.translation).z();
+}
+
 Camera expected_camera(const Motion& motion, const AugmentationSettings& settings,
                        const RandomKey& key) {
   CameraPlacement moved = placement();
   moved.azimuth_deg += within(key, 3, 0, settings.azimuth_deg);
   moved.elevation_deg += within(key, 3, 1, settings.elevation_deg);
-  Camera camera = place_camera(motion, moved);
-  camera.translation.z() *= std::exp(settings.distance * random_normal(key, 3, 2));
-  return camera;
+  moved.distance = depth_of_middle(motion, place_camera(motion, moved)) *
+                   std::exp(settings.distance * random_normal(key, 3, 2));
+  return place_camera(motion, moved);
 }
 
+/// Root mean square distance from the frame's centre, of the joints that are seen.
 double figure_px(const Track2d& track) {
-  double sum = 0;
-  for (Eigen::Index t = 0; t < track.x_px.rows(); ++t)
-    for (const MatrixD* axis : {&track.x_px, &track.y_px})
-      sum += (axis->row(t).array() - axis->row(t).mean()).square().sum();
-  return std::sqrt(sum / static_cast<double>(track.x_px.size()));
+  double sum = 0, count = 0;
+  for (Eigen::Index t = 0; t < track.x_px.rows(); ++t) {
+    std::vector<Eigen::Vector2d> seen;
+    Eigen::Vector2d centre(0, 0);
+    for (Eigen::Index j = 0; j < track.x_px.cols(); ++j)
+      if (!std::isnan(track.x_px(t, j))) {
+        seen.emplace_back(track.x_px(t, j), track.y_px(t, j));
+        centre += seen.back();
+      }
+    for (const Eigen::Vector2d& joint : seen)
+      sum += (joint - centre / static_cast<double>(seen.size())).squaredNorm();
+    count += static_cast<double>(seen.size());
+  }
+  return std::sqrt(sum / count);
 }
 
 double largest(const MatrixD& difference) {
@@ -169,6 +193,60 @@ TEST_CASE("each setting of the camera and of the track changes what it names, in
   check(&AugmentationSettings::distance, 0.2);
   check(&AugmentationSettings::noise_px, 3.0);
   check(&AugmentationSettings::missing, 1.0);
+}
+
+TEST_CASE("the camera's distance varies as much wherever in the room the clip is") {
+  const Motion here = walk();
+  Motion there = here;
+  // The root of these clips is joint 0, whose first three channels are its position.
+  there.channels.leftCols(3).rowwise() += Eigen::RowVector3d(-250, 30, 600);
+  AugmentationSettings settings = nothing();
+  settings.distance = 0.2;
+  for (std::uint32_t step = 0; step < kKeys; ++step) {
+    const double asked = std::exp(0.2 * random_normal(key_of(step), 3, 2));
+    for (const Motion& raw : {here, there}) {
+      const AugmentedView plain = view_of(raw, nothing(), key_of(step)),
+                          changed = view_of(raw, settings, key_of(step));
+      CHECK(depth_of_middle(changed.motion, changed.camera) /
+                depth_of_middle(plain.motion, plain.camera) ==
+            doctest::Approx(asked).epsilon(1e-9));
+      CHECK(largest(changed.camera.camera_from_world - plain.camera.camera_from_world) == 0);
+      CHECK((changed.camera.translation - plain.camera.translation).head<2>().norm() == 0);
+    }
+  }
+}
+
+TEST_CASE("a view in which some joints are behind the camera has noise on the others") {
+  AugmentationSettings settings = nothing();
+  settings.distance = 1.0;
+  settings.noise_px = 0.5;
+  const Motion raw = walk();
+  int partly_seen = 0;
+  for (std::uint32_t step = 0; step < 100; ++step) {
+    const AugmentedView view = view_of(raw, settings, key_of(step));
+    const Track2d exact = project_motion(view.motion, view.camera);
+    const auto hidden = exact.x_px.array().isNaN().count();
+    if (hidden == 0 || hidden == exact.x_px.size()) continue;
+    const double deviation_px = share(key_of(step), 4) * figure_px(exact) / 200.0;
+    if (!(deviation_px > 1)) continue;
+    ++partly_seen;
+    const MatrixD noise = view.track.x_px - exact.x_px;
+    const auto known = noise.array().isNaN().select(0.0, noise.array()).eval();
+    const double seen = static_cast<double>(noise.size() - hidden);
+    // Its relative error over n numbers is 1 / sqrt(2 n); five of them.
+    CHECK(std::sqrt(known.square().sum() / seen) ==
+          doctest::Approx(std::min(deviation_px, 1000.0)).epsilon(5 / std::sqrt(2 * seen)));
+  }
+  CHECK(partly_seen > 0);
+}
+
+TEST_CASE("the largest noise of all is none too large for a view") {
+  AugmentationSettings settings = nothing();
+  settings.noise_px = 100.0;
+  settings.distance = 1.0;
+  const Motion raw = walk();
+  for (std::uint32_t step = 0; step < 100; ++step)
+    CHECK_NOTHROW(view_of(raw, settings, key_of(step)));
 }
 
 TEST_CASE("a view's speed is within the setting of the clip's, either way") {

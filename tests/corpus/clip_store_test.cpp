@@ -12,6 +12,7 @@
 #include "corpus/training_files.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
+#include "motion/synthetic_motion.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -91,6 +92,20 @@ TEST_CASE("skeletons that differ go through the file onto the humanoid") {
   const std::vector<ListedClip> files{{walks.files()[1]}, {other}};
   check_same(cached_training_clips(files, {}, folder / "clips.cache"),
              load_training_clips(files, {}));
+}
+
+TEST_CASE("clips that could not be brought onto the humanoid leave no file that looks complete") {
+  const TrainingFiles walks({{1, 1}});
+  const ScratchFolder folder, of_cache;
+  const auto other = folder / "other.bvh";
+  write_bvh(other, swinging(small_body(), 5));
+  const auto cache = of_cache / "clips.cache";
+  // They are read first as they are, and then the second is no person.
+  const std::vector<ListedClip> files{{walks.files()[0]}, {other}};
+  for (int again = 0; again < 2; ++again)
+    CHECK_THROWS_WITH_AS(cached_training_clips(files, {}, cache),
+                         doctest::Contains("no joint is known to be"), InputError);
+  CHECK(entries_of(of_cache / "").empty());
 }
 
 TEST_CASE("a cache of other settings, other clips or other bytes is reported and made anew") {

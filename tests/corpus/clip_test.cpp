@@ -1,6 +1,7 @@
 #include "mcdbn/corpus/clip.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 
@@ -96,6 +97,32 @@ TEST_CASE("clips to train on: each at its own rate, known by its file") {
   Motion empty = calibrated();
   empty.channels.resize(0, empty.channels.cols());
   CHECK_THROWS_AS(load_clips({write(folder, "empty.bvh", empty)}), InputError);
+}
+
+TEST_CASE("an AMC is known by its own bytes and its ASF's, and by its own where a model says so") {
+  const test::ScratchFolder folder;
+  const auto put = [&](const char* name, const std::string& asf) {
+    fs::create_directory(folder / name);
+    folder.write(fmt::format("{}/one.asf", name), asf);
+    return folder.write(fmt::format("{}/one_1.AMC", name), "angles");
+  };
+  const TrainingClip clip = identify_clip(put("a", "bones")),
+                     copy = identify_clip(put("b", "bones")),
+                     longer = identify_clip(put("c", "longer bones"));
+  CHECK(clip.fingerprint == copy.fingerprint);
+  CHECK(clip.fingerprint != longer.fingerprint);
+  CHECK(is_among({copy}, clip));
+  CHECK_FALSE(is_among({longer}, clip));
+  // As an earlier model recorded it: the AMC alone.
+  const TrainingClip earlier{"/elsewhere/one_1.amc",
+                             identify_clip(folder.write("angles.bvh", "angles")).fingerprint};
+  for (const TrainingClip& known : {clip, longer}) {
+    CHECK(is_among({earlier}, known));
+    CHECK(is_among({known}, earlier));
+  }
+  CHECK_FALSE(is_among({earlier}, identify_clip(folder.write("other.bvh", "other"))));
+  fs::remove(folder / "a/one.asf");
+  CHECK_THROWS_AS(identify_clip(folder / "a/one_1.AMC"), InputError);
 }
 
 TEST_CASE("clips of a command line: files in its order, folders by path, each once") {

@@ -68,6 +68,16 @@ TEST_CASE("a survey: people, actions, skeletons and what is lost") {
   CHECK(text_of(clips[4].problems, Kind::unreadable).find("08_01.bvh:") != std::string::npos);
 }
 
+TEST_CASE("a survey: names of a joint map that no clip has are reported") {
+  const TrainingFiles walks({{1, 1}, {2, 1}});
+  const std::vector<ListedClip> clips{walks.files()[0], walks.files()[1]};
+  std::vector<std::string> notices;
+  survey(clips, {}, {{JointRole::left_knee, "LeftLeggg"}, {JointRole::head, "Neck"}}, &notices);
+  CHECK(notices ==
+        std::vector<std::string>{"the joint map's left_knee is 'LeftLeggg', and no clip has a "
+                                 "joint of that name"});
+}
+
 TEST_CASE("a survey: short, slow, no person, a calibration pose") {
   const ScratchFolder folder;
   Motion motion = moving_humanoid(12);

@@ -134,10 +134,10 @@ TEST_CASE("people and actions come as their frames to the power; one person may 
   CHECK(near(share[2], 60.0 / 180));
   share = shares({.frames = 20, .groups_power = 0});
   for (std::size_t clip = 0; clip < 3; ++clip) CHECK(near(share[clip], 1.0 / 3));
-  share = shares({.frames = 20, .groups_power = 1, .without = 0, .only = {}});
+  share = shares({.frames = 20, .groups_power = 1, .people = {.without = 0, .only = {}}});
   CHECK(share.size() == 1);
   CHECK(share.count(2) == 1);
-  share = shares({.frames = 20, .groups_power = 1, .without = {}, .only = 0});
+  share = shares({.frames = 20, .groups_power = 1, .people = {.without = {}, .only = 0}});
   CHECK(share.size() == 2);
   CHECK(near(share[0], 0.75));
 }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/random_sequence.hpp"
+#include "base/random_streams.hpp"
 #include "corpus/humanoid_clips.hpp"
 #include "corpus/no_augmentation.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -170,6 +171,23 @@ TEST_CASE("arms anywhere: they point where no clip's do, but not far behind") {
   CHECK(lowest < -0.9);
   CHECK(farthest_back < -0.3);
   CHECK(farthest_back > -0.95);
+}
+
+TEST_CASE("arms anywhere: a direction is drawn as z, y, x, whatever the compiler") {
+  const HumanoidPoses before(humanoid_clip(10, 20, 70).motion);
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    HumanoidPoses poses = before;
+    put_arms_anywhere(poses, seed);
+    RandomSequence random(seed, random_streams::kNewPoses);
+    Vector3d wanted;
+    do {
+      for (const int axis : {2, 1, 0}) wanted[axis] = random.normal();
+      wanted.normalize();
+    } while (wanted.z() < -0.5 || wanted.x() < -0.7);
+    const Matrix3d chest_from_arm =
+        poses.world(0, chest).transpose() * poses.world(0, left_shoulder);
+    CHECK((chest_from_arm * Vector3d::UnitX() - wanted).norm() < 1e-9);
+  }
 }
 
 TEST_CASE("leaning: the legs stand as they stood") {

@@ -88,6 +88,7 @@ TEST_CASE("corpus settings: what is out of range is refused by its name") {
     refused(name, -0.01, "at least 0");
     accepted(name, 0);
   }
+  refused("augment.noise", 100.1, "at least 0 and at most 100");
   refused("augment.azimuth", -1, "at least 0 and at most 180");
   refused("augment.azimuth", 181, "at least 0 and at most 180");
   refused("augment.elevation", 91, "at least 0 and at most 90");

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "base/scratch_folder.hpp"
 #include "corpus/augmented_views.hpp"
 #include "corpus/encoded_clip.hpp"
@@ -81,6 +83,21 @@ TEST_CASE("training clips: what cannot be learnt is refused by its file") {
                        InputError);
 }
 
+TEST_CASE("training clips: names of a joint map that no clip has are reported, others not") {
+  const MixedFiles files;
+  CorpusSettings settings;
+  settings.joint_map = {{JointRole::head, "Neck"}, {JointRole::left_knee, "LeftLeggg"}};
+  std::vector<std::string> notices;
+  load_training_clips(files.all(), settings, &notices);
+  const auto are_of_map = [](const std::string& notice) {
+    return notice.find("joint map") != std::string::npos;
+  };
+  CHECK(std::ranges::count_if(notices, are_of_map) == 1);
+  CHECK(std::ranges::count(notices,
+                           "the joint map's left_knee is 'LeftLeggg', and no clip has a joint of "
+                           "that name") == 1);
+}
+
 TEST_CASE("training clips: people are those that are given, else those of the bones") {
   const MixedFiles files;
   const auto people = [&](const std::vector<ListedClip>& listed, SkeletonUse use) {
@@ -115,6 +132,23 @@ TEST_CASE("training clips: windows are drawn by people, and by actions where tho
         Groups{0, 0, 1, 1, 2, 2});
   CHECK(groups({{files[0], "", "walk"}, {files[1], "", "walk"}, files[2]}) ==
         Groups{0, 0, 0, 0, 1, 1});
+}
+
+TEST_CASE("a test clip of the humanoid's model takes a joint map, and its error names the file") {
+  const MixedFiles files;
+  const TrainingSet set = make_training_set(load_training_clips(files.all(), {}), {}, 1, false);
+  Motion unknown = load_clip(files.walks.files()[0], {.fps = 0});
+  for (Joint& joint : unknown.skeleton.joints)
+    if (joint.name == "LeftLeg") joint.name = "spam";
+  const std::filesystem::path file = files.folder / "unknown.bvh";
+  write_bvh(file, unknown);
+  CHECK_THROWS_WITH_AS(encode_clip(file, set.modalities, {}),
+                       doctest::Contains((file.string() + ": no joint is known to be").c_str()),
+                       InputError);
+  const EncodedClip mapped =
+      encode_clip(file, set.modalities, {}, false, nullptr, {{JointRole::left_knee, "spam"}});
+  const EncodedClip named = encode_clip(files.walks.files()[0], set.modalities, {});
+  CHECK(mapped.pose_features == named.pose_features);
 }
 
 TEST_CASE("a model of the humanoid takes any skeleton's clips") {

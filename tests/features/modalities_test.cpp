@@ -69,6 +69,46 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("modalities: what the level view does not show is counted apart from what is missing") {
+  const Scene scene;
+  const Modalities& m = scene.modalities;
+  const Camera steep = place_camera(scene.clip, {35, 80, std::nullopt, 45, 1280, 720});
+  Track2d track = project_motion(scene.clip, steep);
+  // By the angle in the world between the heading and the way from the camera to the joint.
+  const Eigen::Vector3d place = -steep.camera_from_world.transpose() * steep.translation;
+  Eigen::Vector3d heading = steep.camera_from_world.row(2).transpose();
+  heading.y() = 0;
+  const MatrixD positions = joint_positions(scene.clip);
+  std::vector<std::string> names = m.track_features.joint_names();
+  names.push_back(m.root_name());
+  const auto is_outside = [&](int frame, const std::string& name) {
+    const Eigen::Vector3d to_joint =
+        positions.row(frame).segment<3>(3 * scene.clip.skeleton.find(name)).transpose() - place;
+    return to_joint.normalized().dot(heading.normalized()) <= kLevelViewLeastCosine;
+  };
+  int outside = 0;
+  for (int frame = 0; frame < scene.clip.frames(); ++frame)
+    for (const std::string& name : names) outside += is_outside(frame, name) ? 1 : 0;
+  REQUIRE(outside > 0);
+  REQUIRE(outside < scene.clip.frames() * static_cast<int>(names.size()));
+  TrackFeatures::FillCount filled;
+  m.track_values(track, steep, &filled);
+  CHECK(filled.outside == outside);
+  CHECK(filled.interpolated + filled.missing == 0);
+  CHECK(filled.unseen.empty());
+  // What the track itself does not show is missing and no more.
+  const int lost = 12;
+  int lost_outside = 0;
+  for (int frame = 0; frame < lost; ++frame) lost_outside += is_outside(frame, "LHand") ? 1 : 0;
+  track.confidence.col(track.find("LHand")).head(lost).setZero();
+  m.track_values(track, steep, &filled);
+  CHECK(filled.missing == lost);
+  CHECK(filled.outside == outside - lost_outside);
+  // From the side all of it is in the view.
+  m.track_values(project_motion(scene.clip, scene.upright), scene.upright, &filled);
+  CHECK(filled.outside == 0);
+}
+
 TEST_CASE("modalities: without a level view the features are of the camera's own") {
   Scene scene;
   Modalities& m = scene.modalities;

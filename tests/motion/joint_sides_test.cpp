@@ -22,6 +22,23 @@ TEST_CASE("joint sides: by a word or a letter of the name") {
   }
 }
 
+TEST_CASE("joint sides: letters that may mark a side begin or end a word") {
+  using Names = std::vector<std::string>;
+  const std::pair<const char*, Names> cases[] = {{"lfemur", {"rfemur", "lfemul"}},
+                                                 {"armL", {"armR"}},
+                                                 {"Bip01 L Thigh", {"Bip01 R Thigh"}},
+                                                 {"J_Bip_R_Hand", {"J_Bip_L_Hand"}},
+                                                 {"thigh.L.001", {"thigh.R.001"}},
+                                                 {"R", {"L"}},
+                                                 {"spine", {}},
+                                                 {"", {}},
+                                                 {"balk", {}}};
+  for (const auto& [name, others] : cases) {
+    CAPTURE(name);
+    CHECK(possible_other_sides(name) == others);
+  }
+}
+
 TEST_CASE("joint sides: the other side's name, in the same case") {
   const std::pair<const char*, const char*> pairs[] = {
       {"LeftArm", "RightArm"},    {"upleft", "upright"}, {"UPPER_LEFT_LEG", "UPPER_RIGHT_LEG"},

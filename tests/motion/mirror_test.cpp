@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/motion_file.hpp"
+#include "shared_data.hpp"
 
 using namespace mcdbn;
 
@@ -132,9 +134,67 @@ TEST_CASE("sides are named by words, and by letters at either end of a name") {
   CHECK(opposite_of("L_arm", "R_arm") == both);
   CHECK(opposite_of("l_arm", "r_arm") == both);
   CHECK(opposite_of("lArm", "rArm") == both);
+  CHECK(opposite_of("larm", "rarm") == both);
+  CHECK(opposite_of("armL", "armR") == both);
+  CHECK(opposite_of("Bip01 L Arm", "Bip01 R Arm") == both);
+  CHECK(opposite_of("J_Bip_L_Arm", "J_Bip_R_Arm") == both);
+  CHECK(opposite_of("arm.L.001", "arm.R.001") == both);
   // No mark: the hands would hang on arms that are no pair.
-  CHECK(opposite_of("larm", "rarm").empty());
-  CHECK(opposite_of("armL", "armR").empty());
+  CHECK(opposite_of("collar", "corral").empty());
+  CHECK(opposite_of("balk", "bark").empty());
+  CHECK(opposite_of("larm", "Rarm").empty());
+  CHECK(opposite_of("larm", "rhand").empty());
+}
+
+TEST_CASE("letters mark sides only where parents are the same or a pair") {
+  Motion motion = two_armed(true);
+  const auto named = [&](const std::vector<const char*>& names) {
+    for (std::size_t j = 0; j < names.size(); ++j) motion.skeleton.joints[j].name = names[j];
+    return opposite_joints(motion.skeleton);
+  };
+  CHECK(named({"root", "lfemur", "ltibia", "rfemur", "rtibia"}) == std::vector<int>{0, 3, 4, 1, 2});
+  CHECK(named({"root", "lfemur", "lower", "rfemur", "rtibia"}).empty());
+  motion.skeleton.joints[4].parent = 0;
+  CHECK(named({"root", "lfemur", "ltibia", "rfemur", "rtibia"}).empty());
+  // What is in the middle stays there, whatever its name begins with.
+  motion.skeleton.joints[4].parent = 2;
+  CHECK(named({"root", "lfemur", "lowerback", "rfemur", "rear"}).empty());
+  motion.skeleton.joints[2].parent = 0;
+  CHECK(named({"root", "lfemur", "lowerback", "rfemur", "rear"}) ==
+        std::vector<int>{0, 3, 2, 1, 4});
+}
+
+TEST_CASE("a skeleton of ASF has two sides, and its motion a mirrored one") {
+  const auto file = test::shared_data() / "formats/cmu_asf_amc/16_15.amc";
+  if (!test::have_shared_data("formats/cmu_asf_amc/16_15.amc", "the sides of an ASF")) return;
+  const Motion motion = read_motion(file);
+  const Skeleton& skeleton = motion.skeleton;
+  const std::vector<int> opposite = opposite_joints(skeleton);
+  REQUIRE(!opposite.empty());
+  int pairs = 0;
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const std::string& name = skeleton.joints[static_cast<std::size_t>(j)].name;
+    CAPTURE(name);
+    const bool left = name.starts_with('l') && !name.starts_with("lower");
+    const int there = left ? skeleton.find("r" + name.substr(1)) : -1;
+    if (left) REQUIRE(there >= 0);
+    if (left) CHECK(opposite[static_cast<std::size_t>(there)] == j);
+    if (name.starts_with('r') && name != "root") continue;
+    CHECK(opposite[static_cast<std::size_t>(j)] == (left ? there : j));
+    pairs += left ? 1 : 0;
+  }
+  CHECK(pairs == 12);  // five of a leg, seven of an arm
+  const auto other = mirrored(motion);
+  REQUIRE(other);
+  // The bones from the root to the foot differ from their mirror images by 1.5 cm in all.
+  const MatrixD before = joint_positions(motion), after = joint_positions(*other);
+  const int left = skeleton.find("lfoot"), right = skeleton.find("rfoot");
+  const Eigen::Vector3d mirror(-1, 1, 1);
+  for (Eigen::Index t = 0; t < before.rows(); t += 20) {
+    CAPTURE(t);
+    const Eigen::Vector3d was = mirror.cwiseProduct(before.row(t).segment<3>(3 * left).transpose());
+    CHECK((after.row(t).segment<3>(3 * right).transpose() - was).norm() < 1.6);
+  }
 }
 
 TEST_CASE("a bone that leans by a hair does not turn its joint round in the mirror") {

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <vector>
 
@@ -119,6 +121,23 @@ TEST_CASE("other body: height makes all bones longer, proportions each by itself
   CHECK(deviation(heights) == doctest::Approx(0.1).epsilon(0.1));
   CHECK(deviation(shins) == doctest::Approx(0.2).epsilon(0.1));
   CHECK(deviation(ratios) == doctest::Approx(0.2 * std::sqrt(2.0)).epsilon(0.1));
+}
+
+TEST_CASE("other body: both sides are alike where single letters mark them, as in ASF") {
+  Motion motion = swinging(two_sided(false), 2);
+  for (Joint& joint : motion.skeleton.joints) {
+    if (joint.name.starts_with("Left")) joint.name.erase(1, 3);
+    if (joint.name.starts_with("Right")) joint.name.erase(1, 4);
+    std::ranges::transform(joint.name, joint.name.begin(),
+                           [](unsigned char letter) { return std::tolower(letter); });
+  }
+  const auto own = factors(motion, {0, 0.2}, 3);
+  for (const char* bone : {"leg", "foot"}) {
+    const auto left = static_cast<std::size_t>(motion.skeleton.find(std::string("l") + bone)),
+               right = static_cast<std::size_t>(motion.skeleton.find(std::string("r") + bone));
+    CHECK(own[left] == doctest::Approx(own[right]));
+    CHECK(own[left] != doctest::Approx(1));
+  }
 }
 
 TEST_CASE("other body: the same seed makes the same person, no deviation the own one") {

@@ -58,7 +58,7 @@ struct AugmentationSettings {
           self.turn_deg);
     // The clip takes 1 / (1 ± speed) of its time.
     visit(Setting{"speed", within(0, 0.9), "", "up to so much faster or slower"}, self.speed);
-    visit(Setting{"noise", within(0, 1000), "px",
+    visit(Setting{"noise", within(0, 100), "px",
                   "mean deviation of the 2D joints of a 200 px figure, up to twice it in a view: "
                   "trackers are no better"},
           self.noise_px);

@@ -29,14 +29,18 @@ std::vector<std::filesystem::path> find_clips(const std::vector<std::filesystem:
 
 /// A clip that the model was trained on, so that it is not taken for a test.
 struct TrainingClip {
-  std::string path;         ///< absolute
-  std::string fingerprint;  ///< of the file's bytes: knows the clip again under another name
+  std::string path;  ///< absolute
+  /// Of the file's bytes, and of an AMC its ASF's too: knows the clip again under another name.
+  std::string fingerprint;
+  /// Of an AMC's bytes alone, as earlier models recorded it; empty of other files.
+  std::string former_fingerprint = {};
 };
 
-/// @throws InputError if the file cannot be read
+/// @throws InputError if the file, or an AMC's ASF, cannot be read
 TrainingClip identify_clip(const std::filesystem::path& path);
 
-/// Whether one of the clips has the same bytes.
+/// Whether one of the clips has the same bytes. Of an AMC that an earlier model recorded the ASF is
+/// not compared.
 bool is_among(const std::vector<TrainingClip>& clips, const TrainingClip& clip);
 
 /// A clip to train on, its file read once for all that is made of it.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "mcdbn/corpus/augmentation.hpp"
@@ -82,14 +83,18 @@ struct TrainingSet {
 /// hours pieces stand for all (clip_pieces.hpp).
 /// @param clips at their own rate (load_clips)
 /// @param with_views the scaling is learnt from augmented views, too (make_augmented_views)
+/// @param held_out a person, as the set numbers them, of whose clips no new poses are made
 /// @throws InputError
 TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& settings,
-                              std::uint64_t seed, bool with_views);
+                              std::uint64_t seed, bool with_views,
+                              std::optional<std::size_t> held_out = {});
 
 /// The same with the features and the scaling of `modalities`.
 /// @param with_views new poses are made ready, if the settings ask for such
+/// @param held_out likewise
 /// @throws InputError if a clip lacks a joint of theirs
 TrainingSet encoded_training_set(const ClipStore& clips, const Modalities& modalities,
-                                 const CorpusSettings& settings, bool with_views);
+                                 const CorpusSettings& settings, bool with_views,
+                                 std::optional<std::size_t> held_out = {});
 
 }  // namespace mcdbn

@@ -43,6 +43,7 @@ struct Modalities {
                          const Eigen::Matrix3d& camera_from_world) const;
 
   /// 2D features before scaling. @param track as the camera saw it
+  /// @param filled if given, what the track lacks, and what the level view does not show of it
   /// @return [frames x track_features.dimension()], NaN where joints are missing for long
   MatrixD track_values(const Track2d& track, const Camera& seen_by,
                        TrackFeatures::FillCount* filled = nullptr) const;

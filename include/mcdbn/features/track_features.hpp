@@ -37,6 +37,7 @@ class TrackFeatures {
   struct FillCount {
     int interpolated = 0;             ///< joint-frames
     int missing = 0;                  ///< joint-frames, of joints that some frame shows
+    int outside = 0;                  ///< joint-frames that a track shows, but not the level view
     std::vector<std::string> unseen;  ///< joints, the root aside, that no frame shows
   };
   /// Joined by name. Gaps of at most `kLongestGap_s` are interpolated (held at the track's ends);
