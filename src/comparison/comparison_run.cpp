@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "comparison/fitted_baseline.hpp"
 #include "corpus/clip_notices.hpp"
@@ -38,10 +39,27 @@ std::string known_person(const Model& model, const std::filesystem::path& file) 
   return known ? person : "";
 }
 
-/// Joints worth judging, the root first: none that stands where its parent stands.
-std::vector<std::string> judged_joints(const Skeleton& skeleton, int root) {
-  std::vector<std::string> names = TrackFeatures::for_skeleton(skeleton, root).joint_names();
-  names.insert(names.begin(), skeleton.joints[static_cast<std::size_t>(root)].name);
+/// An answer without the person's body stands on the model's skeleton, whose joints have their own
+/// order and may be fewer.
+void leave_out_missing(std::vector<std::string>& joints, const Skeleton& answered) {
+  std::erase_if(joints, [&](const std::string& joint) { return answered.find(joint) < 0; });
+}
+
+/// Joints worth judging, the root first: none that stands where its parent stands in the truth.
+std::vector<std::string> judged_joints(const Skeleton& truth, const Skeleton& answered,
+                                       const std::string& root_name) {
+  std::vector<std::string> names =
+      TrackFeatures::for_skeleton(truth, truth.find(root_name)).joint_names();
+  leave_out_missing(names, answered);
+  names.insert(names.begin(), root_name);
+  return names;
+}
+
+std::vector<std::string> judged_feet(const Skeleton& truth, const Skeleton& answered) {
+  std::vector<std::string> names;
+  for (const int foot : foot_joints(truth))
+    names.push_back(truth.joints[static_cast<std::size_t>(foot)].name);
+  leave_out_missing(names, answered);
   return names;
 }
 
@@ -73,8 +91,8 @@ MatrixD turned(MatrixD positions, const Eigen::Matrix3d& axes_from_world) {
 /// A test clip as everyone sees it.
 EncodedClip test_clip(const std::filesystem::path& file, const Model& model,
                       const TestRunOptions& options, std::uint64_t seed, ClipNotices& notices) {
-  EncodedClip clip =
-      encode_clip(file, model.modalities, options.camera, options.keep_first_frame, &notices);
+  EncodedClip clip = encode_clip(file, model.modalities, options.camera, options.keep_first_frame,
+                                 &notices, options.joint_map);
   if (options.detector) {
     AugmentedView view = detector_view(clip.motion, *options.detector, seed);
     exchange_sides(view.track, find_side_swaps(view.track));
@@ -155,9 +173,8 @@ void count_coverage(const Model& model, const TestRunOptions& options, const Reg
                     const PosePrior& prior, ClipResult& clip) {
   if (single.deviation_mm.size() == 0) return;
   const Modalities& modalities = model.modalities;
-  const Skeleton& skeleton = clip.truth.motion.skeleton;
   const std::vector<std::string> joints =
-      judged_joints(skeleton, skeleton.find(modalities.root_name()));
+      judged_joints(clip.truth.motion.skeleton, single.motion.skeleton, modalities.root_name());
   const auto columns = 3 * (std::ssize(joints) - 1);  // the root is where it is
   clip.joints.add(
       {joints.begin() + 1, joints.end()},
@@ -248,7 +265,7 @@ void regenerate_tracks(const Model& model, std::vector<ClipResult>& results) {
 
 void run_baselines(const Model& model, const TestRunOptions& options, const Progress& progress,
                    std::vector<ClipResult>& results) {
-  BaselineLessons lessons = clip_lessons(model, options.keep_first_frame);
+  BaselineLessons lessons = clip_lessons(model, options.keep_first_frame, options.joint_map);
   lessons.view_tracks = options.view_tracks;
   lessons.view_poses = options.view_poses;
   for (std::size_t i = 0; i < options.baselines.size(); ++i) {
@@ -268,8 +285,7 @@ void run_baselines(const Model& model, const TestRunOptions& options, const Prog
 double share_within_90(const EncodedClip& truth, const Regeneration& answer,
                        const std::string& root_name) {
   const Skeleton& skeleton = answer.motion.skeleton;
-  const std::vector<std::string> judged =
-      judged_joints(truth.motion.skeleton, truth.motion.skeleton.find(root_name));
+  const std::vector<std::string> judged = judged_joints(truth.motion.skeleton, skeleton, root_name);
   const auto joints = 3 * (std::ssize(judged) - 1);  // the root is where it is, on both sides
   return share_within_90(judged_positions(truth.motion, judged).rightCols(joints),
                          judged_positions(answer.motion, judged).rightCols(joints),
@@ -278,8 +294,8 @@ double share_within_90(const EncodedClip& truth, const Regeneration& answer,
 
 ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                      const std::string& root_name) {
-  const int root = truth.motion.skeleton.find(root_name);
-  const std::vector<std::string> judged = judged_joints(truth.motion.skeleton, root);
+  const Skeleton &own = truth.motion.skeleton, &answered = regenerated.skeleton;
+  const std::vector<std::string> judged = judged_joints(own, answered, root_name);
   const MatrixD real = judged_positions(truth.motion, judged),
                 other = judged_positions(regenerated, judged);
   ClipScore score;
@@ -297,19 +313,24 @@ ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
   const auto mm = [](const Motion& motion) {
     return 1000.0 / file_units_per_metre(motion.skeleton);
   };
-  const MatrixD path = joint_positions(regenerated).middleCols(3 * root, 3);
+  const MatrixD path = joint_positions(regenerated).middleCols(3 * answered.find(root_name), 3);
   score.root_mm =
       (mm(regenerated) * path - mm(truth.motion) * truth.root_position).rowwise().norm().mean();
   const MatrixD world = world_positions_mm(regenerated);
-  score.foot_slide = foot_slide(world_positions_mm(truth.motion), world,
-                                foot_joints(truth.motion.skeleton), truth.motion.fps());
-  score.bone_length_spread_mm = bone_length_spread_mm(world, regenerated.skeleton);
+  const std::vector<std::string> feet = judged_feet(own, answered);
+  std::vector<int> columns(feet.size());
+  std::iota(columns.begin(), columns.end(), 0);
+  score.foot_slide = foot_slide(of_joints(world_positions_mm(truth.motion), own, feet),
+                                of_joints(world, answered, feet), columns, truth.motion.fps());
+  score.bone_length_spread_mm = bone_length_spread_mm(world, answered);
   return score;
 }
 
 std::vector<ClipResult> run_test(const Model& model,
                                  const std::vector<std::filesystem::path>& files,
                                  const TestRunOptions& options) {
+  if (!options.baselines.empty())
+    require_training_clips(model, "take no baselines (`baselines` none)");
   const Progress progress(options);
   std::vector<ClipResult> results;
   ClipNotices found;

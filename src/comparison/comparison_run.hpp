@@ -42,6 +42,7 @@ struct TestRunOptions {
   std::optional<DetectorViews> detector;
   bool camera_known = true;
   bool keep_first_frame = false;
+  JointMap joint_map = {};        ///< roles of clips' joints, given by hand
   bool include_training = false;  ///< else a clip that was trained on is refused
   std::vector<std::string> baselines = usual_baselines();  ///< from baselines_of; may be none
   /// Called now and then with what is being done and how much of the run is done; may throw to
@@ -75,11 +76,14 @@ struct ClipResult {
   Coverage joints, channels;
 };
 
-/// @throws InputError if a clip was trained on, or a training clip that the baselines need is gone
+/// @throws InputError if a clip was trained on, or, before anything else, if a training clip that
+///         the baselines need is gone
 std::vector<ClipResult> run_test(const Model& model,
                                  const std::vector<std::filesystem::path>& files,
                                  const TestRunOptions& options);
 
+/// Joints are matched by name; those that the answer's skeleton lacks are not judged.
+/// @param regenerated as many frames, its skeleton with a joint `root_name`
 ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
                      const std::string& root_name);
 

@@ -12,25 +12,30 @@
 namespace mcdbn {
 namespace {
 
-std::vector<EncodedClip> encode_training_clips(const Model& model, bool keep_first_frame) {
+std::vector<EncodedClip> encode_training_clips(const Model& model, bool keep_first_frame,
+                                               const JointMap& joint_map) {
+  require_training_clips(model, "take no baselines");
   std::vector<EncodedClip> clips;
-  for (const TrainingClip& clip : model.training_clips) {
-    if (!std::filesystem::exists(clip.path))
-      throw InputError(fmt::format(
-          "{}: a training clip of the model is gone; baselines are fitted on it, so put "
-          "it back or take no baselines",
-          clip.path));
-    clips.push_back(
-        encode_clip(clip.path, model.modalities, model.modalities.camera, keep_first_frame));
-  }
+  for (const TrainingClip& clip : model.training_clips)
+    clips.push_back(encode_clip(clip.path, model.modalities, model.modalities.camera,
+                                keep_first_frame, nullptr, joint_map));
   return clips;
 }
 
 }  // namespace
 
-BaselineLessons clip_lessons(const Model& model, bool keep_first_frame) {
+void require_training_clips(const Model& model, std::string_view otherwise) {
+  for (const TrainingClip& clip : model.training_clips)
+    if (!std::filesystem::exists(clip.path))
+      throw InputError(
+          fmt::format("{}: a training clip of the model is gone; baselines are fitted on it, so "
+                      "put it back or {}",
+                      clip.path, otherwise));
+}
+
+BaselineLessons clip_lessons(const Model& model, bool keep_first_frame, const JointMap& joint_map) {
   BaselineLessons lessons;
-  for (EncodedClip& clip : encode_training_clips(model, keep_first_frame)) {
+  for (EncodedClip& clip : encode_training_clips(model, keep_first_frame, joint_map)) {
     lessons.tracks.push_back(std::move(clip.track_features));
     lessons.poses.push_back(std::move(clip.pose_features));
   }

@@ -2,9 +2,11 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "comparison/baseline.hpp"
+#include "mcdbn/motion/skeleton_roles.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
 
 namespace mcdbn {
@@ -17,8 +19,13 @@ struct BaselineLessons {
   std::vector<MatrixF> view_tracks, view_poses;
 };
 
-/// The model's training clips as they are. @throws InputError if one is gone
-BaselineLessons clip_lessons(const Model& model, bool keep_first_frame);
+/// @param otherwise what can be done besides, for the message
+/// @throws InputError naming the first training clip of the model that is gone
+void require_training_clips(const Model& model, std::string_view otherwise);
+/// The model's training clips as they are.
+/// @param joint_map roles of clips' joints, given by hand  @throws InputError if one is gone
+BaselineLessons clip_lessons(const Model& model, bool keep_first_frame,
+                             const JointMap& joint_map = {});
 /// With the views of the model's fine-tuning, made again, if that baseline learns from views.
 /// @param name of all_baselines()
 /// @throws InputError likewise; ConfigError if the model's record of settings is not this program's

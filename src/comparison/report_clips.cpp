@@ -8,51 +8,64 @@
 namespace mcdbn {
 namespace {
 
-/// Which joints of a clip's skeleton a report shows, and what hangs below them.
+/// Which joints of a clip's skeleton a report shows, and what hangs below them. An answer may stand
+/// on another skeleton, with its joints in another order: they are found there by name.
 class Figure {
  public:
   /// @param names of the joints, the root first; the same for every clip of a model
-  Figure(const Skeleton& skeleton, const std::vector<std::string>& names) : skeleton_(skeleton) {
-    for (const std::string& name : names) {
-      joints_.push_back(skeleton.find(name));
-      names_.push_back(name);
-    }
+  Figure(const ClipResult& result, const std::vector<std::string>& names)
+      : skeleton_(result.truth.motion.skeleton), names_(names) {
+    for (const std::string& name : names) joints_.push_back(skeleton_.find(name));
     for (const int joint : joints_) parents_.push_back(shown_ancestor(joint));
-    for (int joint = 0; joint < skeleton.joint_count(); ++joint)
-      for (const Eigen::Vector3d& end : skeleton.joints[static_cast<std::size_t>(joint)].end_sites)
-        add_end(joint, end);
+    for (int joint = 0; joint < skeleton_.joint_count(); ++joint) {
+      const Joint& ending = skeleton_.joints[static_cast<std::size_t>(joint)];
+      if (!every_answer_has(result, ending.name)) continue;
+      for (const Eigen::Vector3d& end : ending.end_sites) add_end(joint, end);
+    }
   }
 
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<int>& parents() const { return parents_; }
   int joint_count() const { return static_cast<int>(joints_.size()); }
-  const std::vector<int>& joints() const { return joints_; }
 
-  /// @return [frames x 3·points], mm on a 1.7 m body
+  /// @param motion the truth, or an answer  @return [frames x 3·points], mm on a 1.7 m body
   MatrixD points_mm(const Motion& motion) const {
     const double mm = 1000.0 / file_units_per_metre(motion.skeleton);
+    const auto index_in = [&](const std::string& name) {
+      return static_cast<std::size_t>(motion.skeleton.find(name));
+    };
+    std::vector<std::size_t> joints, ending;
+    for (int i = 0; i < joint_count(); ++i)
+      joints.push_back(index_in(names_[static_cast<std::size_t>(i)]));
+    for (const End& end : ends_) ending.push_back(index_in(end.joint));
     MatrixD points(motion.frames(), 3 * static_cast<Eigen::Index>(names_.size()));
     for (int frame = 0; frame < motion.frames(); ++frame) {
       const WorldPose pose = forward_kinematics(motion.skeleton, motion.channels.row(frame));
       Eigen::Index column = 0;
-      const auto put = [&](const Eigen::Vector3d& point) {
-        points.block<1, 3>(frame, column) = mm * point.transpose();
+      const auto put = [&](const Eigen::Vector3d& point_mm) {
+        points.block<1, 3>(frame, column) = point_mm.transpose();
         column += 3;
       };
-      for (const int joint : joints_) put(pose.position[static_cast<std::size_t>(joint)]);
-      for (const End& end : ends_) {
-        const auto joint = static_cast<std::size_t>(end.joint);
-        put(pose.position[joint] + pose.world_from_joint[joint] * end.offset);
-      }
+      for (const std::size_t joint : joints) put(mm * pose.position[joint]);
+      for (std::size_t i = 0; i < ends_.size(); ++i)
+        put(mm * pose.position[ending[i]] + pose.world_from_joint[ending[i]] * ends_[i].offset_mm);
     }
     return points;
   }
 
  private:
   struct End {
-    int joint;
-    Eigen::Vector3d offset;
+    std::string joint;
+    Eigen::Vector3d offset_mm;  ///< from the joint, along its own axes
   };
+
+  static bool every_answer_has(const ClipResult& result, const std::string& joint) {
+    const auto has = [&](const Regeneration& answer) {
+      return answer.motion.skeleton.find(joint) >= 0;
+    };
+    return std::ranges::all_of(result.samples, has) &&
+           std::ranges::all_of(result.others, [&](const auto& other) { return has(other.second); });
+  }
 
   int index_of(int joint) const {
     const auto found = std::find(joints_.begin(), joints_.end(), joint);
@@ -66,12 +79,13 @@ class Figure {
   void add_end(int joint, const Eigen::Vector3d& offset) {
     const int parent = index_of(joint) >= 0 ? index_of(joint) : shown_ancestor(joint);
     if (parent < 0 || offset.norm() == 0) return;
-    ends_.push_back({joint, offset});
-    names_.push_back(skeleton_.joints[static_cast<std::size_t>(joint)].name + " end");
+    const std::string& name = skeleton_.joints[static_cast<std::size_t>(joint)].name;
+    ends_.push_back({name, offset * (1000.0 / file_units_per_metre(skeleton_))});
+    names_.push_back(name + " end");
     parents_.push_back(parent);
   }
 
-  const Skeleton& skeleton_;
+  const Skeleton& skeleton_;  ///< the truth's
   std::vector<int> joints_;
   std::vector<End> ends_;
   std::vector<std::string> names_;
@@ -127,7 +141,7 @@ std::vector<ReportClip> report_clips(const Model& model, const std::vector<ClipR
   std::set<std::string> taken;
   std::vector<ReportClip> clips;
   for (const ClipResult& result : results) {
-    const Figure figure(result.truth.motion.skeleton, names);
+    const Figure figure(result, names);
     ReportClip clip;
     clip.name = unique_name(result.truth.file, taken);
     clip.action =

@@ -11,9 +11,11 @@
 #include "base/text_file.hpp"
 #include "base/user_cache.hpp"
 #include "comparison/comparison_run.hpp"
+#include "corpus/encoded_clip.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
+#include "mcdbn/formats/motion_file.hpp"
 #include "mcdbn/motion/joint_role.hpp"
 #include "mcdbn/motion_model/training_run.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
@@ -24,22 +26,33 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-/// No configuration is charged for compiling.
+/// @throws InputError if a test clip does not become one of the model that is to be trained
+void check_test_clips(const std::vector<fs::path>& test, const Modalities& modalities,
+                      const TrainingConfig& config) {
+  for (const fs::path& file : test) {
+    check_interruption();
+    encode_clip(file, modalities, modalities.camera, config.keep_first_frame, nullptr,
+                config.joint_map);
+  }
+}
+
+/// No configuration is charged for compiling. The test clips are checked before.
 void build_kernels(Device& device, const std::vector<ListedClip>& files,
-                   const TrainingConfig& config, const Sweep::Watch& watch,
-                   std::vector<std::string>& notices) {
+                   const std::vector<fs::path>& test, const TrainingConfig& config,
+                   const Sweep::Watch& watch, std::vector<std::string>& notices) {
   const ClipStore clips = load_training_clips(files, config, &notices);
   const TrainingSet data = make_training_set(clips, config);
+  check_test_clips(test, data.modalities, config);
   train_model(device, data, clips, config, watch ? watch(false) : EpochObserver());
 }
 
 TrainedRun trained_run(Device& device, const std::vector<ListedClip>& files,
                        const TrainingConfig& config, const fs::path& folder,
-                       const Sweep::Watch& watch) {
+                       const CheckpointSettings& checkpoints, const Sweep::Watch& watch) {
   RunFolder run = RunFolder::begin(folder, config, files, true);
   const ClipStore clips = load_training_clips(files, config);
   const TrainingSet data = make_training_set(clips, config);
-  return train_to_folder(device, data, clips, run, {},
+  return train_to_folder(device, data, clips, run, checkpoints,
                          {.epoch = watch ? watch(true) : EpochObserver()});
 }
 
@@ -62,17 +75,34 @@ double inference_s(const Model& model, const std::vector<ClipResult>& results) {
 }
 
 /// By their bytes, whatever their names.
+/// @throws ConfigError if a test clip is to be trained on, InputError if it cannot be read
 nlohmann::json identified_clips(const std::vector<ListedClip>& training,
                                 const std::vector<fs::path>& test) {
-  const auto fingerprint = [](const fs::path& file) {
-    check_interruption();
-    return identify_clip(file).fingerprint;
-  };
   nlohmann::json clips;
-  for (const ListedClip& clip : training)
-    clips["training"].push_back({fingerprint(clip.file), clip.person, clip.action});
-  for (const fs::path& file : test) clips["test"].push_back(fingerprint(file));
+  std::vector<TrainingClip> trained_on;
+  for (const ListedClip& clip : training) {
+    check_interruption();
+    trained_on.push_back(identify_clip(clip.file));
+    clips["training"].push_back({trained_on.back().fingerprint, clip.person, clip.action});
+  }
+  for (const fs::path& file : test) {
+    check_interruption();
+    const TrainingClip clip = identify_clip(file);
+    if (is_among(trained_on, clip))
+      throw ConfigError(fmt::format(
+          "{}: is to be trained on, too; a sweep is scored on other clips, so leave it out of one",
+          file.string()));
+    read_motion(file);
+    clips["test"].push_back(clip.fingerprint);
+  }
   return clips;
+}
+
+/// The name of a configuration, or its beginning and a hash where file systems take none so long.
+std::string folder_name_of(const std::string& name) {
+  constexpr std::size_t kLongest_bytes = 255, kKept_bytes = 200;
+  if (name.size() <= kLongest_bytes) return name;
+  return fmt::format("{}-{:016x}", name.substr(0, kKept_bytes), fnv1a(name));
 }
 
 void require_folder(const fs::path& folder) {
@@ -124,7 +154,7 @@ void Sweep::Log::add(ordered_json record) {
 }
 
 Sweep::Sweep(Device& device, const std::vector<fs::path>& test, std::vector<ListedClip> clips,
-             Resolve resolve, fs::path run, Notices notices)
+             Resolve resolve, fs::path run, Notices notices, const CheckpointSettings& checkpoints)
     : device_(device),
       test_(find_clips(test)),
       clips_(std::move(clips)),
@@ -132,6 +162,7 @@ Sweep::Sweep(Device& device, const std::vector<fs::path>& test, std::vector<List
       resolve_(std::move(resolve)),
       run_(std::move(run)),
       notices_(std::move(notices)),
+      checkpoints_(checkpoints),
       lock_((require_folder(run_), run_)),
       log_(run_ / "sweep.jsonl") {}
 
@@ -173,13 +204,16 @@ void Sweep::report(const std::string& notice) {
 }
 
 void Sweep::score(const TrainingConfig& config, const Watch& watch, ordered_json& record) {
-  const fs::path folder = run_ / record["name"].get<std::string>();
+  const std::string folder = folder_name_of(record["name"].get<std::string>());
   std::vector<std::string> notices;
-  build_kernels(device_, clips_, shortest(config), watch, notices);
+  build_kernels(device_, clips_, test_, shortest(config), watch, notices);
   for (const std::string& notice : notices) report(notice);
-  const TrainedRun trained = trained_run(device_, clips_, config, folder, watch);
+  const TrainedRun trained =
+      trained_run(device_, clips_, config, run_ / folder, checkpoints_, watch);
   TestRunOptions options;
   options.camera = trained.model.modalities.camera;
+  options.joint_map = config.joint_map;
+  options.keep_first_frame = config.keep_first_frame;
   options.baselines.clear();
   options.notices = [this](const std::string& notice) { report(notice); };
   options.fit.reset();  // it is networks that are compared, not what the track makes of them
@@ -193,6 +227,7 @@ void Sweep::score(const TrainingConfig& config, const Watch& watch, ordered_json
   const ClipScore mean = mean_score(scores);
   const double seconds = inference_s(trained.model, results);
   record["status"] = "ok";
+  record["folder"] = folder;
   record["training_s"] = trained.training_s;
   record["inference_s"] = seconds;
   record["inference_ms_per_frame"] = 1000.0 * seconds / frames;

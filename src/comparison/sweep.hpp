@@ -12,6 +12,7 @@
 #include "mcdbn/device/device.hpp"
 #include "mcdbn/learning/epoch_report.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
+#include "mcdbn/motion_model/training_run.hpp"
 
 namespace mcdbn {
 
@@ -32,9 +33,10 @@ SweepFile read_sweep_file(const std::filesystem::path& path);
 std::string name_of(const SweepConfiguration& configuration);
 
 /// Trains configurations on clips and scores them on a sweep's test clips (Fig. 7). Each gets a
-/// folder in the run's, and a line in sweep.jsonl: its settings, training and inference time, PCC
-/// and MPJPE; or why it failed. Those that were scored before, with the same settings and clips,
-/// are not run again; a new line replaces the one of its name.
+/// folder of its name (shortened where it is too long for one) in the run's, and a line in
+/// sweep.jsonl: its settings, training and inference time, PCC and MPJPE; or why it failed. Those
+/// that were scored before, with the same settings and clips, are not run again; a new line
+/// replaces the one of its name.
 class Sweep {
  public:
   /// The whole configuration from what is varied. May throw ConfigError
@@ -46,10 +48,12 @@ class Sweep {
   /// Called with what is odd about the clips, line by line; of several trainings once.
   using Notices = std::function<void(const std::string& notice)>;
 
-  /// @throws InputError if a clip cannot be read or the folder not be made
+  /// @param checkpoints of each training
+  /// @throws ConfigError if a test clip is to be trained on, InputError if a clip cannot be read or
+  ///         the folder not be made
   Sweep(Device& device, const std::vector<std::filesystem::path>& test,
         std::vector<ListedClip> clips, Resolve resolve, std::filesystem::path run,
-        Notices notices = {});
+        Notices notices = {}, const CheckpointSettings& checkpoints = {});
 
   /// @return the line, also of a configuration that failed, or was scored before
   /// @throws Interrupted, DeviceError: the next one would fail too
@@ -84,6 +88,7 @@ class Sweep {
   std::filesystem::path run_;
   Notices notices_;
   std::set<std::string> reported_;
+  CheckpointSettings checkpoints_;
   FolderLock lock_;
   Log log_;
 };

@@ -30,8 +30,9 @@ void add_training_views(const Model& model, TestRunOptions& run) {
   std::vector<LoadedClip> clips = load_clips(files, config.keep_first_frame);
   try {
     for (LoadedClip& clip : clips)
-      clip.motion = for_skeleton(std::move(clip.motion), model.modalities.pose_features.skeleton());
-  } catch (const InputError&) {  // its roles came from a joint map
+      clip.motion = for_skeleton(std::move(clip.motion), model.modalities.pose_features.skeleton(),
+                                 run.joint_map);
+  } catch (const InputError&) {  // its roles came from a joint map that is not given here
     return;
   }
   const ClipStore store(std::move(clips));

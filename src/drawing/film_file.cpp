@@ -68,8 +68,16 @@ bool is_whole(const fs::path& path, int frames) {
 
 }  // namespace
 
+double rate_of_film_hz(double fps) {
+  // A second has as many ticks, of which a frame takes a power of ten: so OpenCV writes it.
+  constexpr double kMostTicks = 65535;
+  double of_frame = 1000;
+  while (of_frame > 1 && std::round(fps * of_frame) > kMostTicks) of_frame /= 10;
+  return std::round(fps * of_frame) / of_frame;
+}
+
 FilmWriter::FilmWriter(fs::path path, double fps)
-    : path_(std::move(path)), fps_(fps), file_(path_) {}
+    : path_(std::move(path)), fps_(rate_of_film_hz(fps)), file_(path_) {}
 
 void FilmWriter::write(const cv::Mat& image) {
   if (frames_ == 0 &&

@@ -45,7 +45,8 @@ class Panel {
   Panel(std::vector<const Figure*> figures, std::string label, const RenderOptions& options,
         Size size);
 
-  /// Distance of the camera in body heights; panels side by side share the largest.
+  /// Distance of the camera in body heights; panels side by side share the largest, unless one is
+  /// given.
   double distance_in_heights() const { return distance_ / figures_.front()->height; }
   void set_distance_in_heights(double heights) { distance_ = heights * figures_.front()->height; }
 
@@ -71,10 +72,10 @@ Panel::Panel(std::vector<const Figure*> figures, std::string label, const Render
     : figures_(std::move(figures)), label_(std::move(label)), options_(options), size_(size) {
   framed_ = framed_points();
   const Eigen::Vector3d centre = box_centre(framed_);
-  constexpr double kOrbitStep_s = 1.0;
-  const double turn_s = options.orbit ? 360 / std::abs(options.orbit_deg_per_s) : 0;
-  for (int step = 0; step * kOrbitStep_s <= turn_s; ++step) {
-    CameraPlacement placement = placement_at(step * kOrbitStep_s);
+  const int directions = options.orbit ? 36 : 1;
+  for (int i = 0; i < directions; ++i) {
+    CameraPlacement placement = placement_at(0);
+    placement.azimuth_deg += 360.0 * i / directions;
     placement.distance = options.placement.distance;
     distance_ = std::max(distance_, distance_to(place_camera(framed_, placement), centre));
   }
@@ -189,6 +190,7 @@ std::vector<Panel> make_panels(const std::vector<RenderClip>& clips,
   for (std::size_t i = 0; i < clips.size(); ++i) {
     panels.emplace_back(std::vector<const Figure*>{&figures[i]}, clips[i].label, options, size);
   }
+  if (options.placement.distance) return panels;
   double heights = 0;
   for (const Panel& panel : panels) heights = std::max(heights, panel.distance_in_heights());
   for (Panel& panel : panels) panel.set_distance_in_heights(heights);
@@ -220,10 +222,10 @@ void render_video(const std::vector<Panel>& panels, const std::vector<Figure>& f
     }
     return image;
   };
-  const int frames = rendering::film_frames(duration_s(figures), fps, path);
+  const int frames = rendering::film_frames(duration_s(figures), film.fps(), path);
   for (int i = 0; i < frames; ++i) {
     check_interruption();
-    film.write(frame_at(i / fps));
+    film.write(frame_at(i / film.fps()));
   }
   film.finish();
 }

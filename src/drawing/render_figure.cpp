@@ -74,17 +74,31 @@ void draw_head(cv::Mat& image, const Eigen::Vector2d& neck, const Eigen::Vector2
   draw_disc(image, centre, 0.5 * length_px, colour);
 }
 
+/// By joint, whether it is above the joint that carries the body: it stays where it is, metres
+/// away.
+std::vector<bool> apart_from_body(const Skeleton& skeleton, int root) {
+  std::vector<bool> apart(skeleton.joints.size(), false);
+  for (int joint = skeleton.joints[static_cast<std::size_t>(root)].parent; joint >= 0;
+       joint = skeleton.joints[static_cast<std::size_t>(joint)].parent)
+    apart[static_cast<std::size_t>(joint)] = true;
+  return apart;
+}
+
 }  // namespace
 
 Figure::Figure(const Motion& motion) : fps(motion.fps()) {
   const Skeleton& skeleton = motion.skeleton;
   const int joints = skeleton.joint_count();
+  const int root_joint = moving_root({&motion});
+  const std::vector<bool> apart = apart_from_body(skeleton, root_joint);
   std::vector<Eigen::Vector3d> sites;
   std::vector<int> site_joints;
   for (int j = 0; j < joints; ++j) {
     const Joint& joint = skeleton.joints[static_cast<std::size_t>(j)];
+    if (apart[static_cast<std::size_t>(j)]) continue;
     const Side side = side_of(joint.name);
-    if (joint.parent >= 0) bones.push_back({joint.parent, j, side, false});
+    if (joint.parent >= 0 && !apart[static_cast<std::size_t>(joint.parent)])
+      bones.push_back({joint.parent, j, side, false});
     for (const Eigen::Vector3d& site : joint.end_sites) {
       const bool is_head = joint.name.find("ead") != std::string::npos && site.norm() > 0;
       bones.push_back({j, joints + static_cast<int>(sites.size()), side, is_head});
@@ -92,13 +106,14 @@ Figure::Figure(const Motion& motion) : fps(motion.fps()) {
       site_joints.push_back(j);
     }
   }
-  const int root_joint = moving_root({&motion});
   points.resize(motion.frames(), 3 * (joints + static_cast<Eigen::Index>(sites.size())));
   root.resize(motion.frames(), 3);
   for (int frame = 0; frame < motion.frames(); ++frame) {
     const WorldPose pose = forward_kinematics(skeleton, motion.channels.row(frame));
     for (int j = 0; j < joints; ++j) {
-      points.row(frame).segment<3>(3 * j) = pose.position[static_cast<std::size_t>(j)].transpose();
+      const int shown = apart[static_cast<std::size_t>(j)] ? root_joint : j;
+      points.row(frame).segment<3>(3 * j) =
+          pose.position[static_cast<std::size_t>(shown)].transpose();
     }
     for (std::size_t s = 0; s < sites.size(); ++s) {
       const auto joint = static_cast<std::size_t>(site_joints[s]);

@@ -20,8 +20,10 @@ struct Figure {
 
   explicit Figure(const Motion& motion);
 
-  MatrixD points;  ///< [frames x 3·points]: the joints, then the End Sites; world
-  MatrixD root;    ///< [frames x 3] on the ground below the root
+  /// [frames x 3·points]: the joints, then the End Sites; world. A joint above the one that carries
+  /// the body (moving_root) is no part of the figure: it has no bones, and its point is that one's.
+  MatrixD points;
+  MatrixD root;  ///< [frames x 3] on the ground below the root
   std::vector<Bone> bones;
   double fps;
   double height;    ///< about that of the body, file units

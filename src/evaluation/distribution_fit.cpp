@@ -33,14 +33,29 @@ bool needs_positive(Family family) {
   return family == Family::log_normal || family == Family::gamma || family == Family::weibull;
 }
 
+/// Why a GEV cannot be fitted to samples that are not all equal; empty if it can.
+std::string obstacle_of_gev(const Samples& samples) {
+  constexpr Eigen::Index kNeeded = 4;  // more than it has parameters
+  const double equal = kEqual * samples.cwiseAbs().maxCoeff();
+  Eigen::ArrayXd sorted = samples.array();
+  std::sort(sorted.begin(), sorted.end());
+  const Eigen::Index gaps = sorted.size() - 1;
+  const Eigen::Index different = 1 + (sorted.tail(gaps) - sorted.head(gaps) > equal).count();
+  if (different < kNeeded) return fmt::format("needs {} different samples or more", kNeeded);
+  const Eigen::Index smallest = (sorted - sorted(0) <= equal).count();
+  if (2 * smallest >= samples.size())  // its likelihood would have no maximum
+    return "needs more than half of the samples above the smallest";
+  return {};
+}
+
 /// Why the family cannot be fitted; empty if it can.
 std::string obstacle(Family family, const Samples& samples) {
-  const Eigen::Index needed = family == Family::generalized_extreme_value ? 3 : 2;
-  if (samples.size() < needed) return fmt::format("needs {} samples or more", needed);
+  if (samples.size() < 2) return "needs 2 samples or more";
   if (!samples.allFinite()) return "has samples that are not finite; leave them out";
   if (samples.maxCoeff() - samples.minCoeff() <= kEqual * samples.cwiseAbs().maxCoeff())
     return "has samples that are all equal";
   if (needs_positive(family) && !(samples.minCoeff() > 0)) return "needs positive samples";
+  if (family == Family::generalized_extreme_value) return obstacle_of_gev(samples);
   return {};
 }
 

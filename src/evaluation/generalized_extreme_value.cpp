@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kGumbelBelow = 1e-12;  ///< shapes that are zero for all purposes
+constexpr double kSteepest = 1;         ///< largest shape of either sign that is searched
 
 /// Shape, logarithm of the scale, location: free of constraints but for the shape.
 GeneralizedExtremeValue from_search(const Eigen::Vector3d& at) {
@@ -30,7 +31,7 @@ class Cost : public cv::MinProblemSolver::Function {
   int getDims() const override { return 3; }
   double calc(const double* at) const override {
     constexpr double kNotAllowed = 1e300;
-    if (at[0] < -1) return kNotAllowed;
+    if (std::abs(at[0]) > kSteepest) return kNotAllowed;
     const double cost =
         -from_search(Eigen::Map<const Eigen::Vector3d>(at)).log_likelihood(samples_);
     return cost < kNotAllowed ? cost : kNotAllowed;
@@ -95,7 +96,9 @@ Eigen::Matrix3d observed_information(const Eigen::VectorXd& samples,
 
 Eigen::Vector3d standard_errors(const Eigen::VectorXd& samples,
                                 const GeneralizedExtremeValue& fit) {
-  if (fit.shape <= -0.5) return Eigen::Vector3d::Constant(kNan);
+  constexpr double kOfTheBound = 1e-3;  // so near the search stops there
+  if (fit.shape <= -0.5 || fit.shape >= kSteepest - kOfTheBound)
+    return Eigen::Vector3d::Constant(kNan);
   const Eigen::Matrix3d information = observed_information(samples, fit);
   const Eigen::LLT<Eigen::Matrix3d> factor(information);
   if (!information.allFinite() || factor.info() != Eigen::Success)

@@ -19,7 +19,11 @@ struct GeneralizedExtremeValueFit {
   Eigen::Vector3d standard_errors;  ///< shape, scale, location; NaN where not regular
 };
 
-/// Maximum likelihood over shapes of −1 and above: below, the likelihood has no bound.
+/// Maximum likelihood over shapes from −1 to 1. Below −1 the likelihood has no bound: the density
+/// is infinite where the support ends. Nor has it one for large shapes: with the location at the
+/// smallest sample, of which there are m among n, it grows like scale^(−m + (n − m) / shape) as the
+/// scale shrinks, so without bound for shapes above (n − m) / m.
+/// @param samples 2·m < n; then the likelihood has a bound
 GeneralizedExtremeValueFit fit_generalized_extreme_value(
     const Eigen::Ref<const Eigen::VectorXd>& samples);
 

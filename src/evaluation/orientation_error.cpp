@@ -13,17 +13,15 @@
 namespace mcdbn {
 namespace {
 
-/// Of each joint of the truth that turns, its index and the other's.
+/// Of each joint of the truth that turns and that the other has, its index and the other's.
 std::vector<std::pair<std::size_t, std::size_t>> turning_joints(const Skeleton& truth,
                                                                 const Skeleton& other) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t j = 0; j < truth.joints.size(); ++j) {
     const Joint& joint = truth.joints[j];
     if (std::ranges::none_of(joint.channels, is_rotation)) continue;
-    const int there = other.find(joint.name);
-    if (there < 0)
-      throw ShapeError(fmt::format("orientations: the other skeleton has no joint {}", joint.name));
-    pairs.emplace_back(j, static_cast<std::size_t>(there));
+    if (const int there = other.find(joint.name); there >= 0)
+      pairs.emplace_back(j, static_cast<std::size_t>(there));
   }
   return pairs;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "evaluation/motion_code.hpp"
 #include "motion/joint_sides.hpp"
@@ -107,23 +108,27 @@ class ClipWriter {
 }  // namespace
 
 PageMotion page_motion(const std::vector<ReportClip>& clips, std::size_t budget_bytes) {
-  PageMotion motion;
+  PageMotion most;
+  most.left_out_clips = clips.size();
   for (const Detail& detail : kDetails) {
-    motion = {};
+    PageMotion motion;
     motion.frame_step = detail.frame_step;
     motion.others = detail.others || std::ranges::none_of(clips, has_simpler_methods);
     motion.samples = clips.empty() ? 0 : std::min(detail.samples, clips.front().samples.size());
     std::size_t bytes = 0;
     for (const ReportClip& clip : clips) {
       ClipWriter writer(clip, detail);
-      if (bytes + writer.bytes() > budget_bytes) break;
+      if (bytes + writer.bytes() > budget_bytes) continue;  // a shorter one may fit
       bytes += writer.bytes();
       motion.clips.push_back(writer.take());
     }
     motion.left_out_clips = clips.size() - motion.clips.size();
-    if (motion.left_out_clips == 0) break;
+    const bool all = motion.left_out_clips == 0;
+    // Less detail is worth it where it makes room for more clips.
+    if (all || motion.clips.size() > most.clips.size()) most = std::move(motion);
+    if (all) break;
   }
-  return motion;
+  return most;
 }
 
 }  // namespace mcdbn

@@ -30,6 +30,9 @@ std::string embeddable(const ordered_json& json) {
 
 /// What the viewer does not show, in words; empty if it shows everything.
 std::string omission(const EvaluationReport& report, const PageMotion& motion) {
+  if (motion.clips.empty() && motion.left_out_clips > 0)
+    return "To keep this page small there is no viewer: the clips are too long for it. The figures "
+           "count everything.";
   std::string text;
   const std::size_t samples = report.clips.empty() ? 0 : report.clips.front().samples.size();
   if (motion.samples < samples)

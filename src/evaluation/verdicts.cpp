@@ -149,15 +149,17 @@ void add_foot_slide(std::vector<Verdict>& list, const ClipScore& answer) {
 /// The share of the truth that 90 % intervals ought to hold: between these.
 constexpr double kFewestWithin90 = 0.85, kMostWithin90 = 0.95;
 
-void add_uncertainty(std::vector<Verdict>& list, const ClipScore& answer) {
-  if (!std::isfinite(answer.within_90)) return;
-  const bool right = answer.within_90 >= kFewestWithin90 && answer.within_90 <= kMostWithin90;
+/// Over all frames of all clips alike.
+void add_uncertainty(std::vector<Verdict>& list, const Coverage& joints) {
+  const double share = joints.overall().share();
+  if (!std::isfinite(share)) return;
+  const bool right = share >= kFewestWithin90 && share <= kMostWithin90;
   list.push_back({right ? Kind::good : Kind::bad,
                   fmt::format("Of 90 % intervals of the joints' places, {:.1f} % hold the truth{}.",
-                              100 * answer.within_90,
-                              right                                ? ""
-                              : answer.within_90 < kFewestWithin90 ? ": they are too narrow"
-                                                                   : ": they are too wide")});
+                              100 * share,
+                              right                     ? ""
+                              : share < kFewestWithin90 ? ": they are too narrow"
+                                                        : ": they are too wide")});
 }
 
 void add_training_warning(std::vector<Verdict>& list, const EvaluationReport& report) {
@@ -230,7 +232,7 @@ std::vector<Verdict> verdicts(const EvaluationReport& report) {
   if (report.actions.size() > 1)
     for (const ActionReport& action : report.actions) add_action_losses(list, action);
   add_foot_slide(list, answer);
-  add_uncertainty(list, answer);
+  add_uncertainty(list, report.joints);
   for (const ActionReport& action : report.actions) {
     add_samples(list, action);
     add_likeness(list, action);

@@ -156,6 +156,44 @@ TEST_CASE(
   });
 }
 
+TEST_CASE("sweep: a configuration has a folder, though its name may be too long for one") {
+  const TrainingFiles files({{.subject = 1}, {.subject = 2}});
+  const ScratchFolder folder;
+  // The longest name that file systems take, then two that begin alike.
+  const SweepConfiguration longest(32, given("order", 3));
+  REQUIRE(name_of(longest).size() == 255);
+  std::vector<SweepConfiguration> longer(2, SweepConfiguration(40, given("order", 3)));
+  longer[0].push_back(given("hidden", 7));
+  longer[1].push_back(given("hidden", 8));
+  on_every_device([&](Device& device) {
+    std::filesystem::remove_all(folder / "run");
+    int trainings = 0;
+    const auto run = [&](const SweepConfiguration& configuration) {
+      Sweep sweep(device, {files.files()[1]}, {files.files()[0]}, tiny, folder / "run");
+      const ordered_json record = sweep.run(configuration, [&](bool counts) {
+        trainings += counts ? 1 : 0;
+        return EpochObserver();
+      });
+      CAPTURE(record.dump());
+      REQUIRE(record.at("status") == "ok");
+      CHECK(record.at("name") == name_of(configuration));
+      const std::string own = record.at("folder");
+      CHECK(own.size() <= 255);
+      CHECK(std::filesystem::exists(folder / ("run/" + own) / "model.safetensors"));
+      return own;
+    };
+    CHECK(run(longest) == name_of(longest));
+    const std::string one = run(longer[0]), other = run(longer[1]);
+    CHECK(one != other);
+    CHECK(name_of(longer[0]).starts_with(one.substr(0, 150)));
+    CHECK(trainings == 3);
+    CHECK(run(longer[0]) == one);
+    CHECK(run(longest) == name_of(longest));
+    CHECK(trainings == 3);
+    CHECK(lines_of(folder / "run/sweep.jsonl").size() == 3);
+  });
+}
+
 TEST_CASE("sweep: what was scored with other clips or another skeleton is done anew in its place") {
   const TrainingFiles files({{.subject = 1}, {.subject = 2}, {.subject = 3}});
   const ScratchFolder folder;

@@ -130,8 +130,11 @@ TEST_CASE("mpjae_deg: by hand; of turns that move no joint, too") {
   other.channels(0, 4) = 0;
   CHECK(mpjae_deg(truth, other) == doctest::Approx((2 * 90.0 + 3 * 170) / 6));
 
+  // Without a joint that the other lacks.
   other.skeleton.joints[1].name = "Shin";
-  CHECK_THROWS_AS(mpjae_deg(truth, other), ShapeError);
+  CHECK(mpjae_deg(truth, other) == doctest::Approx((90.0 + 2 * 170) / 4));
+  for (Joint& joint : other.skeleton.joints) joint.name += " of another";
+  CHECK(std::isnan(mpjae_deg(truth, other)));
   CHECK_THROWS_AS(mpjae_deg(truth, {skeleton, 0.1, MatrixD::Zero(3, 6)}), ShapeError);
   for (Joint& joint : skeleton.joints) joint.channels.clear();
   const Motion still{skeleton, 0.1, MatrixD::Zero(2, 0)};

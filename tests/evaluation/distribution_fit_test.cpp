@@ -166,6 +166,54 @@ TEST_CASE("GEV: a shape of −0.5 or below gets no standard errors, −1 is the 
   CHECK(std::isfinite(steep.log_likelihood));
 }
 
+TEST_CASE("GEV: a fit to few samples keeps to shapes from −1 to 1, and has a finite scale") {
+  const Known known = known_distributions()[0];
+  int bounded = 0;
+  for (const int count : {4, 5, 6})
+    for (unsigned seed = 0; seed < 60; ++seed) {
+      CAPTURE(count);
+      CAPTURE(seed);
+      const Eigen::VectorXd samples = draw(known, count, seed);
+      const DistributionFit fit = fit_distribution(Family::generalized_extreme_value, samples);
+      CHECK(std::abs(fit.parameters[0].value) <= 1);
+      // The likelihood falls towards a scale of zero: its maximum is far from it.
+      CHECK(fit.parameters[1].value > 1e-3 * (samples.maxCoeff() - samples.minCoeff()));
+      CHECK(std::isfinite(fit.log_likelihood));
+      if (fit.parameters[0].value < 0.9995) continue;
+      ++bounded;
+      CHECK(std::isnan(fit.parameters[0].standard_error));
+    }
+  CHECK(bounded > 0);
+}
+
+TEST_CASE("GEV: as many samples as parameters are too few, and so are many that are the smallest") {
+  const auto refused = [](const std::vector<double>& values) {
+    const Eigen::VectorXd samples =
+        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<int>(values.size()));
+    CHECK_THROWS_AS(fit_distribution(Family::generalized_extreme_value, samples), InputError);
+    const auto fits = rank_distributions(samples);
+    CHECK(fits.size() == 4);
+    for (const DistributionFit& fit : fits) CHECK(fit.family != Family::generalized_extreme_value);
+    return fits.front();
+  };
+  refused({0.94, 0.95, 0.97});
+  // By the formulas: a mean of 0.95733, a deviation of 0.0089567.
+  const auto normal = fit_distribution(Family::normal, Eigen::Vector3d(0.951, 0.951, 0.97));
+  CHECK(normal.aic() == doctest::Approx(-15.7785).epsilon(1e-5));
+  CHECK(refused({0.951, 0.951, 0.97}).aic() > -16.5);
+  refused({0.951, 0.951, 0.96, 0.97});
+  refused({0.95, 0.95, 0.95, 0.96, 0.97, 0.97});
+  // Equal but for rounding.
+  refused({0.95, 0.95 + 1e-9, 0.95 - 1e-9, 0.96, 0.97, 0.98});
+  refused({0.95, 0.95, 0.95, 0.96, 0.97, 0.98});  // four values, but half are the smallest
+  // By a search over a grid of shapes, scales and locations: the largest shape is the likeliest.
+  const DistributionFit tied =
+      fit_distribution(Family::generalized_extreme_value,
+                       (Eigen::VectorXd(5) << 0.951, 0.951, 0.96, 0.97, 0.98).finished());
+  CHECK(tied.parameters[0].value == doctest::Approx(1).epsilon(1e-3));
+  CHECK(tied.log_likelihood == doctest::Approx(16.3258).epsilon(1e-4));
+}
+
 TEST_CASE("GEV: many samples crowd the end of the support, standard errors remain") {
   // 300 times the samples of another fit: a seventeenth of its standard errors.
   const Known known = gev(-0.4, 0.1, 0.9);

@@ -54,3 +54,27 @@ TEST_CASE("the page holds the simpler methods' answers while there is room, and 
   CHECK(small.left_out_clips == 0);
   CHECK(small.clips.at(0).at("motions").size() == 1);
 }
+
+TEST_CASE("the page leaves out a clip that is too long, and shows those after it") {
+  const auto clip_of = [](const char* name, int frames) {
+    ReportClip clip;
+    clip.name = name;
+    clip.point_names = {"Hips", "Head"};
+    clip.parents = {-1, 0};
+    clip.joints = 2;
+    clip.truth_mm = MatrixD::Random(frames, 6) * 1000;
+    clip.track_px = MatrixD::Random(frames, 4) * 1000;
+    clip.samples = {{clip.truth_mm, {}}};
+    return clip;
+  };
+  const ReportClip endless = clip_of("endless", 60'000), one = clip_of("one", 60),
+                   other = clip_of("other", 60);
+  const std::size_t room = std::size_t{100} * 60;  // for both, with every frame
+  const PageMotion motion = page_motion({endless, one, endless, other}, room);
+  REQUIRE(motion.clips.size() == 2);
+  CHECK(motion.clips[0].at("name") == "one");
+  CHECK(motion.clips[1].at("name") == "other");
+  CHECK(motion.left_out_clips == 2);
+  CHECK(motion.frame_step == 1);  // fewer frames would not make room for another clip
+  CHECK(motion.clips[1].at("frames") == 60);
+}

@@ -252,6 +252,25 @@ TEST_CASE("write_report: every file, a page of its own without network") {
   CHECK_THROWS_AS(write_report(blocked / "file", report), InputError);
 }
 
+TEST_CASE("a page whose clips are all too long for its viewer has none, and says so") {
+  ReportClip clip;
+  clip.name = "endless";
+  clip.point_names = {"Hips", "Head"};
+  clip.parents = {-1, 0};
+  clip.joints = 2;
+  // Numbers of a dozen characters each: a sixth of the frames is too much.
+  clip.truth_mm = MatrixD::Random(220'000, 6) * 1e17;
+  clip.track_px = MatrixD::Zero(220'000, 4);
+  clip.samples = {{clip.truth_mm, test::score_of(20, 0.9, 0.8)}};
+  EvaluationReport report;
+  report.clips = {clip};
+  const std::string page = report_page(report);
+  CHECK(page.find("To keep this page small there is no viewer: the clips are too long for it.") !=
+        std::string::npos);
+  CHECK(page.find("the viewer shows") == std::string::npos);
+  CHECK(page.find("\"clips\":[]") != std::string::npos);
+}
+
 TEST_CASE("the page stays within its budget, and names what it leaves out") {
   std::vector<ReportClip> clips;
   for (unsigned i = 0; i < 20; ++i)

@@ -50,6 +50,15 @@ bool has_verdict(const EvaluationReport& report, Kind kind, const std::string& t
   return false;
 }
 
+/// Of one joint along one axis, so many intervals that hold the truth, and so many that do not.
+Coverage coverage_of(int held, int missed) {
+  MatrixD off = MatrixD::Zero(held + missed, 1);
+  off.bottomRows(missed).setConstant(2);
+  Coverage coverage;
+  coverage.add({"Head"}, off, MatrixD::Zero(off.rows(), 1), MatrixD::Ones(off.rows(), 1));
+  return coverage;
+}
+
 }  // namespace
 
 TEST_CASE("verdicts: nearer, or following better, or both, or neither") {
@@ -127,23 +136,35 @@ TEST_CASE("verdicts: planted feet, samples and how alike clips are") {
 }
 
 TEST_CASE("verdicts: how many 90 % intervals hold the truth") {
-  EvaluationReport report = duel({20, 0.9}, {25, 0.8}, "ridge_window");
-  const auto with = [&](double share) {
-    for (ReportClip& clip : report.clips) clip.samples[0].score.within_90 = share;
+  const auto with = [&](int of_1000) {
+    EvaluationReport report = duel({20, 0.9}, {25, 0.8}, "ridge_window");
+    report.joints = coverage_of(of_1000, 1000 - of_1000);
     return report;
   };
-  CHECK(has_verdict(with(0.851), Kind::good,
+  CHECK(has_verdict(with(851), Kind::good,
                     "Of 90 % intervals of the joints' places, 85.1 % hold the truth."));
-  CHECK(has_verdict(with(0.949), Kind::good,
+  CHECK(has_verdict(with(949), Kind::good,
                     "Of 90 % intervals of the joints' places, 94.9 % hold the truth."));
   CHECK(has_verdict(
-      with(0.849), Kind::bad,
+      with(849), Kind::bad,
       "Of 90 % intervals of the joints' places, 84.9 % hold the truth: they are too narrow."));
   CHECK(has_verdict(
-      with(0.951), Kind::bad,
+      with(951), Kind::bad,
       "Of 90 % intervals of the joints' places, 95.1 % hold the truth: they are too wide."));
-  for (const Verdict& verdict : verdicts(with(NAN)))
+  EvaluationReport unknown = with(900);
+  unknown.joints = {};
+  for (const Verdict& verdict : verdicts(unknown))
     CHECK(verdict.text.find("intervals") == std::string::npos);
+}
+
+TEST_CASE("verdicts: the intervals of all frames count alike, not the clips' shares") {
+  EvaluationReport report = duel({20, 0.9}, {25, 0.8}, "ridge_window");
+  report.clips[0].samples[0].score.within_90 = 0.5;
+  report.clips[1].samples[0].score.within_90 = 0.9;
+  report.joints = coverage_of(5, 5);      // a short clip
+  report.joints.add(coverage_of(81, 9));  // a long one
+  CHECK(has_verdict(report, Kind::good,
+                    "Of 90 % intervals of the joints' places, 86.0 % hold the truth."));
 }
 
 TEST_CASE("verdicts: where a baseline is nearer on an action of several") {

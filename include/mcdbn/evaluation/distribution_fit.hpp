@@ -20,7 +20,7 @@ struct FittedParameter {
   std::string name;
   double value = 0;
   /// From the observed information; NaN where maximum likelihood is not regular (GEV of shape
-  /// −0.5 or below, whose estimates have no normal limit).
+  /// −0.5 or below, whose estimates have no normal limit, or of shape 1, where the search ends).
   double standard_error = 0;
 };
 
@@ -37,14 +37,15 @@ struct DistributionFit {
   double density(double x) const;
 };
 
-/// @param samples two different values at least (GEV: three), all finite; positive ones for
-///        log_normal, gamma and weibull
+/// A GEV has a shape from −1 to 1: outside of these its likelihood has no bound.
+/// @param samples two different values at least (GEV: four, and more than half of the samples above
+///        the smallest), all finite; positive ones for log_normal, gamma and weibull
 /// @throws InputError if the samples are not such
 DistributionFit fit_distribution(DistributionFamily family,
                                  const Eigen::Ref<const Eigen::VectorXd>& samples);
 
-/// Every family whose support holds the samples, the smallest AIC first. Empty if the samples are
-/// too few or all equal.
+/// Every family that fit_distribution takes the samples for, the smallest AIC first. Empty if they
+/// are too few or all equal.
 std::vector<DistributionFit> rank_distributions(const Eigen::Ref<const Eigen::VectorXd>& samples);
 
 struct Interval {

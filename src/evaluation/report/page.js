@@ -84,3 +84,4 @@ showFigures();
 byId("table-list").append(...report.tables.map(table => tableView(table, ["table_3.csv", "methods.csv"].includes(table.file))));
 byId("theme").addEventListener("click", switchTheme);
 if (report.clips.length) new Viewer(report.clips);
+else document.querySelector(".viewer").hidden = true;

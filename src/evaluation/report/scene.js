@@ -117,11 +117,12 @@ class Scene {
     }
     c.globalAlpha = 1;
   }
-  // Where nine of ten true joints are: around each bone the ellipses that its intervals make on the
-  // panel, filled as one, so that they are evenly pale.
+  // Where nine of ten true joints are on the panel: around each bone the ellipses that its deviations
+  // make there, filled as one, so that they are evenly pale. A share of 1 - exp(-reach² / 2) of a
+  // normal distribution in two dimensions lies within `reach` deviations.
   // @param deviations [x, y, z] each, of the joints
   intervals(panel, target, clip, points, deviations, colour) {
-    const c = this.context, steps = 8, reach = 1.645;
+    const c = this.context, steps = 8, reach = Math.sqrt(-2 * Math.log(.1));
     c.fillStyle = colour;
     c.globalAlpha = .28;
     c.beginPath();

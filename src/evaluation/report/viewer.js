@@ -70,7 +70,7 @@ class Viewer {
   key(e) {
     if (e.ctrlKey || e.metaKey || e.altKey || e.target.closest("select, input[type=radio], input[type=range]")) return;
     const arrow = {ArrowLeft: -1, ArrowRight: 1}[e.key], press = id => this.part(id).click();
-    if (e.key === " " && !e.target.closest("button, summary, input")) this.toggle();
+    if (e.key === " " && !e.target.closest("button, summary, input")) { if (!e.repeat) this.toggle(); }
     else if (arrow && e.shiftKey) { this.scene.orbit.turn(-arrow * .15, 0); this.draw(); }
     else if (arrow && !e.target.closest(".scroll")) { this.pause(); this.seek(Math.round(this.frame) + arrow); }
     else if (e.key === "+" || e.key === "=") this.zoom(1.15);
@@ -123,19 +123,19 @@ class Viewer {
     this.playing = true;
     let last = performance.now();
     const step = now => {
-      if (!this.playing) return;
       const frames = (now - last) / 1000 * this.clip.fps * +this.part("speed").value;
       last = now;
       this.frame += Math.max(0, frames);
       if (this.frame >= this.clip.frames - 1) this.frame = 0;
       this.draw();
-      requestAnimationFrame(step);
+      this.asked = requestAnimationFrame(step);
     };
-    requestAnimationFrame(step);
+    this.asked = requestAnimationFrame(step);
     this.showPlaying();
   }
   pause() {
     this.playing = false;
+    cancelAnimationFrame(this.asked);  // else it would go on beside that of the next play
     this.showPlaying();
   }
   showPlaying() {
