@@ -170,10 +170,11 @@ MatrixD project_points(const Camera& camera, const MatrixD& points) {
                       const_cast<double*>(points.data()));
   cv::Mat image(world.rows, 1, CV_64FC2, pixels.data());
   project_through_lens(camera, world, image);
+  const double steepest = steepest_ray(camera);
   for (Eigen::Index frame = 0; frame < points.rows(); ++frame) {
     for (Eigen::Index joint = 0; joint < joints; ++joint) {
       const Eigen::Vector3d point = points.row(frame).segment<3>(3 * joint);
-      if (!is_before_lens(camera, camera.camera_from_world * point + camera.translation))
+      if (!is_before_lens(camera.camera_from_world * point + camera.translation, steepest))
         pixels.row(frame).segment<2>(2 * joint).setConstant(kNan);
     }
   }

@@ -84,10 +84,14 @@ const std::vector<Detector>& detectors();
 
 /// The noise of the detector that made a track, as far as the track itself shows it. All noise of
 /// visible joints is estimated from the jitter, in OpenPose's proportions; the share of lost joints
-/// from the gaps; confidences from the track's. What a track without ground truth does not show is
-/// OpenPose's.
+/// from the gaps of those that any frame shows, in frames that show anybody; confidences from the
+/// track's. What a track without ground truth does not show is OpenPose's.
 /// @param height_px of the person  @throws InputError with fewer than 10 frames
 DetectorNoise measured_noise(const Track2d& track, double height_px);
+
+/// What the columns of a detector's track show. One that no frame shows keeps its name, and nothing
+/// is known of it: a detector like that one never sees it.
+std::vector<Keypoint> seen_keypoints(const Track2d& track);
 
 /// The height in pixels of the person whom a detector's track shows, by thighs and shanks where
 /// they look longest. NaN without those joints.

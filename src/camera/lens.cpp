@@ -1,6 +1,9 @@
 #include "camera/lens.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
@@ -23,6 +26,39 @@ cv::Vec4d fisheye_distortion(const Camera& camera) {
   return k;
 }
 
+/// A ray of length r becomes one of length r·N(r²)/D(r²), N and D the polynomials of OpenCV's k1,
+/// k2, k3 and k4, k5, k6.
+class RadialDistortion {
+ public:
+  /// @param values k1 k2 p1 p2 [k3 [k4 k5 k6 …]]; may be empty
+  explicit RadialDistortion(const std::vector<double>& values) {
+    constexpr std::array<std::size_t, 6> kPlaces{0, 1, 4, 5, 6, 7};
+    for (std::size_t i = 0; i < kPlaces.size(); ++i)
+      if (kPlaces[i] < values.size()) k_[i] = values[kPlaces[i]];
+  }
+
+  bool is_none() const {
+    return std::ranges::all_of(k_, [](double k) { return k == 0; });
+  }
+
+  /// Whether a ray a little longer becomes longer, too.
+  bool grows(double r) const {
+    const double s = r * r;
+    const auto polynomial = [s](double first, double second, double third) {
+      return s * (first + s * (second + s * third));
+    };
+    const double numerator = 1 + polynomial(k_[0], k_[1], k_[2]),
+                 denominator = 1 + polynomial(k_[3], k_[4], k_[5]);
+    // The derivative by r, times the denominator's square.
+    const double slope = (numerator + 2 * polynomial(k_[0], 2 * k_[1], 3 * k_[2])) * denominator -
+                         numerator * 2 * polynomial(k_[3], 2 * k_[4], 3 * k_[5]);
+    return denominator > 0 && slope > 0;
+  }
+
+ private:
+  std::array<double, 6> k_{};
+};
+
 }  // namespace
 
 void project_through_lens(const Camera& camera, const cv::Mat& world, cv::Mat& pixels) {
@@ -38,8 +74,27 @@ void project_through_lens(const Camera& camera, const cv::Mat& world, cv::Mat& p
     cv::projectPoints(world, rotation, translation, intrinsics(camera), camera.distortion, pixels);
 }
 
-bool is_before_lens(const Camera& camera, const Eigen::Vector3d& point) {
-  return point.z() > 0 && (!camera.fisheye || point.head<2>().norm() < kSteepest * point.z());
+double steepest_ray(const Camera& camera) {
+  if (camera.fisheye) return kSteepest;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const RadialDistortion distortion(camera.distortion);
+  if (distortion.is_none()) return kInfinity;
+  constexpr int kSteps = 900;  // of a tenth of a degree
+  const auto ray = [](int step) { return std::tan(step * EIGEN_PI / 2 / kSteps); };
+  for (int step = 1; step < kSteps; ++step) {
+    if (distortion.grows(ray(step))) continue;
+    double grows = ray(step - 1), turned = ray(step);
+    for (int halving = 0; halving < 50; ++halving) {
+      const double middle = (grows + turned) / 2;
+      (distortion.grows(middle) ? grows : turned) = middle;
+    }
+    return grows;
+  }
+  return kInfinity;
+}
+
+bool is_before_lens(const Eigen::Vector3d& point, double steepest) {
+  return point.z() > 0 && point.head<2>().norm() < steepest * point.z();
 }
 
 std::vector<cv::Point2d> rays_of(const Camera& camera, const std::vector<cv::Point2d>& pixels) {

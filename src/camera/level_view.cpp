@@ -8,9 +8,6 @@
 namespace mcdbn {
 namespace {
 
-/// Of the angle between a ray and the viewing direction: 84 degrees.
-constexpr double kLeastCosine = 0.1;
-
 /// @param rays [frames x 2·joints] x/z and y/z  @return [frames x 3·joints] along other axes, NaN
 /// where those do not see them
 MatrixD turned_rays(const TrackRays& rays, const Eigen::Matrix3d& turn) {
@@ -19,7 +16,7 @@ MatrixD turned_rays(const TrackRays& rays, const Eigen::Matrix3d& turn) {
     for (Eigen::Index joint = 0; joint < rays.joints(); ++joint) {
       const Eigen::Vector2d ray = rays.rays.row(frame).segment<2>(2 * joint);
       const Eigen::Vector3d direction = (turn * ray.homogeneous()).normalized();
-      const bool seen = rays.seen(frame, joint) && direction.z() > kLeastCosine;
+      const bool seen = rays.seen(frame, joint) && direction.z() > kLevelViewLeastCosine;
       turned.row(frame).segment<3>(3 * joint) =
           seen ? direction : Eigen::Vector3d::Constant(kNan).eval();
     }

@@ -71,18 +71,24 @@ struct Gaps {
   double share = 0, mean_frames = 1;
 };
 
+/// Of the joints that the detector has, while it sees anybody.
 Gaps gaps_of(const Track2d& track) {
-  double missing = 0, gaps = 0;
+  const auto shows_anybody = (track.confidence.array() > 0).rowwise().any().eval();
+  double all = 0, missing = 0, gaps = 0;
   for (Eigen::Index column = 0; column < track.joint_count(); ++column) {
-    const auto lost = (track.confidence.col(column).array() == 0).eval();
-    if (lost.all()) continue;  // the detector does not have the joint at all
+    const auto seen = (track.confidence.col(column).array() > 0).eval();
+    if (!seen.any()) continue;
+    bool was_lost = false;
     for (Eigen::Index frame = 0; frame < track.frames(); ++frame) {
-      missing += lost[frame];
-      gaps += lost[frame] && (frame == 0 || !lost[frame - 1]);
+      const bool is_lost = shows_anybody[frame] && !seen[frame];
+      all += shows_anybody[frame];
+      missing += is_lost;
+      gaps += is_lost && !was_lost;
+      was_lost = is_lost;
     }
   }
   if (gaps == 0) return {};
-  return {missing / static_cast<double>(track.confidence.size()), missing / gaps};
+  return {missing / all, missing / gaps};
 }
 
 }  // namespace
@@ -104,6 +110,14 @@ double person_height_px(const Track2d& track) {
     }
   }
   return quantile(std::move(legs), kUsual) / kLegOfHeight;
+}
+
+std::vector<Keypoint> seen_keypoints(const Track2d& track) {
+  std::vector<Keypoint> keypoints = track.keypoints;
+  for (std::size_t i = 0; i < keypoints.size(); ++i)
+    if (!(track.confidence.col(static_cast<Eigen::Index>(i)).array() > 0).any())
+      keypoints[i] = Keypoint{keypoints[i].name, {}, {0, 0, 0}, {}};
+  return keypoints;
 }
 
 DetectorNoise measured_noise(const Track2d& track, double height_px) {

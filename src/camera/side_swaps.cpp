@@ -216,13 +216,13 @@ void exchange_sides(Track2d& track, const std::vector<SideSwap>& swaps) {
         exchange_columns(track, t, swap.left[k], swap.right[k]);
 }
 
-std::string described(const std::vector<SideSwap>& swaps) {
+std::string described(const std::vector<SideSwap>& swaps, const std::vector<long long>& numbers) {
   std::string text;
   std::optional<LimbPair> previous;
   for (const SideSwap& swap : swaps) {
     const char* limbs = swap.limbs == LimbPair::legs ? "legs" : "arms";
     const std::string frames = described(
-        std::vector{FrameRange{swap.first_frame, swap.last_frame - swap.first_frame + 1}});
+        std::vector{FrameRange{swap.first_frame, swap.last_frame - swap.first_frame + 1}}, numbers);
     if (!previous)
       text = fmt::format("{} swapped in frames {}", limbs, frames);
     else if (*previous == swap.limbs)

@@ -8,6 +8,7 @@
 #include "base/numbers.hpp"
 #include "base/upper_median.hpp"
 #include "camera/keypoint_pairs.hpp"
+#include "camera/shown_body.hpp"
 #include "camera/track_columns.hpp"
 
 namespace mcdbn {
@@ -19,16 +20,18 @@ constexpr double kShortest_s = 0.3;
 constexpr double kLookBack_s = 1;
 constexpr std::size_t kFewestJoints = 3;
 
-/// A body on the image.
+/// A body on the image, or a part of one.
 struct Observation {
   int frame = 0;
   Eigen::Vector2d middle;
   double size_px = 0;
+  bool is_body = false;
 };
 
 /// The observations from `first` to `last` go on from one another.
 struct Run {
   Observation first, last;
+  bool shows_a_body = false;  ///< any of them
 };
 
 std::vector<int> body_columns(const Track2d& track) {
@@ -42,6 +45,7 @@ std::vector<int> body_columns(const Track2d& track) {
 
 std::vector<Observation> observations(const Track2d& track) {
   const std::vector<int> columns = body_columns(track);
+  const std::vector<bool> bodies = frames_of_a_body(track);
   std::vector<Observation> found;
   std::vector<double> sizes;
   for (int t = 0; t < track.frames(); ++t) {
@@ -56,7 +60,10 @@ std::vector<Observation> observations(const Track2d& track) {
     const auto [left, right] = std::ranges::minmax(x);
     const auto [top, bottom] = std::ranges::minmax(y);
     sizes.push_back(std::hypot(right - left, bottom - top));
-    found.push_back({t, {upper_median(std::move(x)), upper_median(std::move(y))}, sizes.back()});
+    found.push_back({t,
+                     {upper_median(std::move(x)), upper_median(std::move(y))},
+                     sizes.back(),
+                     bodies[static_cast<std::size_t>(t)]});
   }
   // Where a frame shows little of a person, or the person crouches, the clip's median size counts.
   const double usual = sizes.empty() ? 0 : upper_median(std::move(sizes));
@@ -75,7 +82,7 @@ int frames_of(const Run& run) {
 }
 
 bool is_stray(const Run& run, double fps) {
-  return frames_of(run) < kShortest_s * fps;
+  return frames_of(run) < kShortest_s * fps || !run.shows_a_body;
 }
 
 /// What goes on from a run behind strays is of that run.
@@ -83,29 +90,34 @@ std::vector<Run> runs_of(const std::vector<Observation>& observations, double fp
                          std::vector<FrameRange>& strays) {
   std::vector<Run> runs;
   for (const Observation& one : observations) {
-    auto from = runs.rbegin();
-    while (from != runs.rend() && !goes_on(from->last, one, fps) && is_stray(*from, fps) &&
-           one.frame - from->first.frame < kLookBack_s * fps)
-      ++from;
-    if (from == runs.rend() || !goes_on(from->last, one, fps)) {
-      runs.push_back({one, one});
+    std::size_t from = runs.size();  // the run is the one before
+    while (from > 0 && !goes_on(runs[from - 1].last, one, fps) && is_stray(runs[from - 1], fps) &&
+           one.frame - runs[from - 1].first.frame < kLookBack_s * fps)
+      --from;
+    if (from == 0 || !goes_on(runs[from - 1].last, one, fps)) {
+      runs.push_back({one, one, one.is_body});
       continue;
     }
-    from->last = one;
-    for (; runs.rbegin() != from; runs.pop_back())
+    for (; runs.size() > from; runs.pop_back())
       strays.push_back({runs.back().first.frame, frames_of(runs.back())});
+    runs.back().last = one;
+    runs.back().shows_a_body = runs.back().shows_a_body || one.is_body;
   }
   return runs;
 }
 
 }  // namespace
 
-std::string described(const std::vector<FrameRange>& ranges) {
+std::string described(const std::vector<FrameRange>& ranges,
+                      const std::vector<long long>& numbers) {
+  const auto number = [&](int frame) {
+    return numbers.empty() ? frame : numbers.at(static_cast<std::size_t>(frame));
+  };
   std::string text;
   for (const FrameRange& range : ranges) {
     if (!text.empty()) text += ", ";
-    text += range.frames == 1 ? fmt::format("{}", range.first)
-                              : fmt::format("{}-{}", range.first, range.end() - 1);
+    text += range.frames == 1 ? fmt::format("{}", number(range.first))
+                              : fmt::format("{}-{}", number(range.first), number(range.end() - 1));
   }
   return text;
 }

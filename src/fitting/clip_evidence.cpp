@@ -9,6 +9,7 @@
 #include "fitting/robust_residuals.hpp"
 #include "fitting/rotation.hpp"
 #include "fitting/turned_bones.hpp"
+#include "mcdbn/motion/humanoid_rig.hpp"
 #include "mcdbn/motion/planted_foot.hpp"
 #include "motion/body_size.hpp"
 #include "motion/foot_joints.hpp"
@@ -35,6 +36,22 @@ std::vector<int> length_groups(const PoseFeatures& features, const std::vector<i
   return groups;
 }
 
+/// By length.
+std::vector<BoneKind> kinds_of(const std::vector<int>& lengths, const PoseFeatures& features) {
+  const SkeletonRoles roles = skeleton_roles(features.skeleton());
+  std::vector<BoneKind> kinds;
+  for (std::size_t turn = 0; turn < lengths.size(); ++turn) {
+    const auto length = static_cast<std::size_t>(lengths[turn]);
+    if (kinds.size() <= length) kinds.resize(length + 1, BoneKind::other);
+    // What turns about a limb's first or second joint is a bone of it.
+    for (std::size_t limb = 0; limb < kPersonsLimbs.size(); ++limb)
+      for (const JointRole role : {kPersonsLimbs[limb][0], kPersonsLimbs[limb][1]})
+        if (roles.joint(role) == features.joints()[turn])
+          kinds[length] = limb == 0 ? BoneKind::leg : BoneKind::arm;
+  }
+  return kinds;
+}
+
 }  // namespace
 
 ClipEvidence::ClipEvidence(const PoseFeatures& features, const Motion& answer,
@@ -46,6 +63,7 @@ ClipEvidence::ClipEvidence(const PoseFeatures& features, const Motion& answer,
   turn_above_ = bones.turn_above();
   clip.parents = bones.parents();
   clip.lengths = length_groups(features, clip.parents);
+  clip.length_kinds = kinds_of(clip.lengths, features);
   clip.frame_time_s = 1 / track.fps;
   clip.root.resize(answer.frames(), 3);
   clip.travelled = travelled * camera.camera_from_world.transpose() / units_per_m_;

@@ -20,10 +20,14 @@ struct SeenJoint {
   double confidence = 0;  ///< the ray's variance is the track's over this; 0: not seen
 };
 
+/// Thighs and shanks, upper arms and forearms, and others.
+enum class BoneKind { leg, arm, other };
+
 /// The prior of a clip's motion, and its track. Metres of a 1.7 m body, camera axes.
 struct PosteriorClip {
   std::vector<int> parents;                  ///< by orientation, an earlier one, or −1
   std::vector<int> lengths;                  ///< by orientation, which length its bones have
+  std::vector<BoneKind> length_kinds;        ///< by length, what it is of; none: all of others
   MatrixD turn_deviation_rad;                ///< [frames x orientations] about each axis
   double root_m_s2 = 1;                      ///< deviation of the acceleration of what is wrong
                                              ///< with the travelled way

@@ -25,6 +25,13 @@ Eigen::Vector3d PriorErrors::expected_turn_at_rest(Eigen::Index frame, int turn)
   return (share_of_parent(frame, turn) - 1) * clip_.mean_lean.row(frame).transpose();
 }
 
+Eigen::Vector3d PriorErrors::expected_bend_at_rest(Eigen::Index frame, int turn) const {
+  if (clip_.mean_lean.rows() == 0) return Eigen::Vector3d::Zero();
+  const auto lean = clip_.mean_lean.middleRows(frame - 1, 3);
+  return (share_of_parent(frame, turn) - 1) *
+         (lean.row(0) - 2 * lean.row(1) + lean.row(2)).transpose();
+}
+
 Eigen::Vector3d PriorErrors::expected_turn(Eigen::Index frame, int turn,
                                            const Eigen::Vector3d& parent,
                                            const Eigen::Vector3d& lean) const {

@@ -29,6 +29,8 @@ class PriorErrors {
                                 const Eigen::Vector3d& lean) const;
   /// Of that, what neither parent nor lean changes.
   Eigen::Vector3d expected_turn_at_rest(Eigen::Index frame, int turn) const;
+  /// The same of how a turn bends, its second difference about the frame.
+  Eigen::Vector3d expected_bend_at_rest(Eigen::Index frame, int turn) const;
 
   /// Deviation of a turn from what its parent makes one expect, about each axis.
   double own_deviation_rad(Eigen::Index frame, int turn) const;

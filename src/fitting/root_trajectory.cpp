@@ -26,6 +26,9 @@ constexpr double kFreeAcceleration_m_s2 = 4.0;
 constexpr double kFastest_m_s = 50.0;
 constexpr int kRounds = 12;
 constexpr int kFewestJoints = 3;
+/// Of a body that sizes put there no joint is nearer to the camera than this share of the root's
+/// depth.
+constexpr double kNearestBySize = 0.1;
 
 /// One joint as one frame sees it.
 struct RootObservation {
@@ -43,44 +46,140 @@ struct Fix {
   std::vector<double> residuals;  ///< of the rays, two a joint
 };
 
-/// Gauss-Newton on the distance between where a joint is seen and where it should be. The first
-/// round puts (relative + root) onto the seen ray, which is linear: [1 0 -u; 0 1 -v]·root =
-/// (u·z - x, v·z - y). To stay with those equations would draw the body nearer, as u and v are
-/// noisy; the later rounds take u and v from the position found. Cauchy's weights discount a joint
-/// that the tracker swapped.
-Fix locate(const std::vector<RootObservation>& observations) {
-  Fix fix;
-  if (static_cast<int>(observations.size()) < kFewestJoints) return fix;
-  const auto joints = static_cast<Eigen::Index>(observations.size());
-  Eigen::Matrix<double, Eigen::Dynamic, 3> jacobian(2 * joints, 3);
-  Eigen::VectorXd residual(2 * joints), weight(2 * joints);
-  for (int round = 0; round < kRounds; ++round) {
-    for (Eigen::Index k = 0; k < joints; ++k) {
-      const RootObservation& observation = observations[k];
-      const Eigen::Vector3d position = observation.relative + fix.root;
-      const double depth = round == 0 ? 1.0 : position.z();
-      if (!(depth > 0)) return fix;  // a body behind the camera explains nothing
-      const Eigen::Vector2d ray =
-          round == 0 ? observation.ray : Eigen::Vector2d(position.head<2>() / depth);
-      jacobian.middleRows<2>(2 * k) << 1, 0, -ray.x(), 0, 1, -ray.y();
-      jacobian.middleRows<2>(2 * k) /= depth;
-      residual.segment<2>(2 * k) = round == 0
-                                       ? Eigen::Vector2d(jacobian.middleRows<2>(2 * k) * position)
-                                       : Eigen::Vector2d(ray - observation.ray);
-    }
+/// How far off the rays of a frame's joints are, two numbers a joint, and how that changes with the
+/// root's place.
+struct RayErrors {
+  explicit RayErrors(const std::vector<RootObservation>& seen)
+      : jacobian(2 * std::ssize(seen), 3), residual(jacobian.rows()), weight(jacobian.rows()) {}
+
+  /// @param ray where the joint is expected  @param depth of the joint
+  void put_joint(Eigen::Index k, const Eigen::Vector2d& ray, double depth) {
+    jacobian.middleRows<2>(2 * k) << 1, 0, -ray.x(), 0, 1, -ray.y();
+    jacobian.middleRows<2>(2 * k) /= depth;
+  }
+  /// Cauchy's: a joint that the tracker swapped counts less. The first round counts all alike.
+  void weigh(const std::vector<RootObservation>& seen, bool all_alike = false) {
     const double scale = kCauchy * robust_deviation({residual.begin(), residual.end()}) + 1e-12;
-    for (Eigen::Index k = 0; k < joints; ++k) {
-      const double scaled = round == 0 ? 0 : residual.segment<2>(2 * k).norm() / scale;
-      weight.segment<2>(2 * k).setConstant(observations[k].confidence / (1 + scaled * scaled));
+    for (Eigen::Index k = 0; k < std::ssize(seen); ++k) {
+      const double scaled = all_alike ? 0 : residual.segment<2>(2 * k).norm() / scale;
+      weight.segment<2>(2 * k).setConstant(seen[static_cast<std::size_t>(k)].confidence /
+                                           (1 + scaled * scaled));
     }
-    fix.information = jacobian.transpose() * weight.asDiagonal() * jacobian;
+  }
+  Eigen::Matrix3d information() const {
+    return jacobian.transpose() * weight.asDiagonal() * jacobian;
+  }
+
+  Eigen::Matrix<double, Eigen::Dynamic, 3> jacobian;
+  Eigen::VectorXd residual, weight;
+};
+
+bool all_before_camera(const std::vector<RootObservation>& seen, const Eigen::Vector3d& root) {
+  return std::ranges::all_of(seen, [&](const RootObservation& observation) {
+    return observation.relative.z() + root.z() > 0;
+  });
+}
+
+/// The errors with the root there.
+RayErrors errors_at(const std::vector<RootObservation>& seen, const Eigen::Vector3d& root) {
+  RayErrors errors(seen);
+  for (Eigen::Index k = 0; k < std::ssize(seen); ++k) {
+    const RootObservation& observation = seen[static_cast<std::size_t>(k)];
+    const Eigen::Vector3d position = observation.relative + root;
+    const Eigen::Vector2d ray = position.head<2>() / position.z();
+    errors.put_joint(k, ray, position.z());
+    errors.residual.segment<2>(2 * k) = ray - observation.ray;
+  }
+  errors.weigh(seen);
+  return errors;
+}
+
+/// The equations (relative + root) on the seen ray, which are linear: [1 0 -u; 0 1 -v]·root =
+/// (u·z - x, v·z - y).
+RayErrors linear_errors(const std::vector<RootObservation>& seen) {
+  RayErrors errors(seen);
+  for (Eigen::Index k = 0; k < std::ssize(seen); ++k) {
+    const RootObservation& observation = seen[static_cast<std::size_t>(k)];
+    errors.put_joint(k, observation.ray, 1);
+    errors.residual.segment<2>(2 * k) = errors.jacobian.middleRows<2>(2 * k) * observation.relative;
+  }
+  errors.weigh(seen, true);
+  return errors;
+}
+
+/// Gauss-Newton on the distance between where a joint is seen and where it should be. The first
+/// round is linear. To stay with its equations would draw the body nearer, as u and v are noisy;
+/// the later rounds take u and v from the position found.
+/// @return unknown where that puts a joint behind the camera: such a body explains nothing
+Fix locate(const std::vector<RootObservation>& seen) {
+  Fix fix;
+  if (std::ssize(seen) < kFewestJoints) return fix;
+  for (int round = 0; round < kRounds; ++round) {
+    if (round > 0 && !all_before_camera(seen, fix.root)) return fix;
+    const RayErrors errors = round == 0 ? linear_errors(seen) : errors_at(seen, fix.root);
+    fix.information = errors.information();
     const Eigen::LDLT<Eigen::Matrix3d> solver(fix.information);
     if (solver.info() != Eigen::Success || !(solver.rcond() > 1e-12)) return fix;
-    fix.root -= solver.solve(jacobian.transpose() * weight.asDiagonal() * residual);
+    fix.root -=
+        solver.solve(errors.jacobian.transpose() * errors.weight.asDiagonal() * errors.residual);
+    if (round + 1 == kRounds) fix.residuals.assign(errors.residual.begin(), errors.residual.end());
   }
-  fix.residuals.assign(residual.begin(), residual.end());
+  fix.known = fix.root.allFinite() && all_before_camera(seen, fix.root);
+  return fix;
+}
+
+/// The root where the joints' middle is on the rays' middle, at the depth Z that sizes give: of the
+/// true pose (x - u·z, y - v·z) + (X, Y) = Z·(u, v), so that both sides spread alike.
+/// @return unknown where all rays, or all joints, are one
+Fix locate_by_size(const std::vector<RootObservation>& seen) {
+  Fix fix;
+  if (std::ssize(seen) < kFewestJoints) return fix;
+  const auto offset = [](const RootObservation& observation) -> Eigen::Vector2d {
+    return observation.relative.head<2>() - observation.ray * observation.relative.z();
+  };
+  double sum = 0;
+  Eigen::Vector2d middle(0, 0), middle_ray(0, 0);
+  for (const RootObservation& observation : seen) {
+    sum += observation.confidence;
+    middle += observation.confidence * offset(observation);
+    middle_ray += observation.confidence * observation.ray;
+  }
+  middle /= sum;
+  middle_ray /= sum;
+  double spread = 0, ray_spread = 0, nearest = 0;
+  for (const RootObservation& observation : seen) {
+    spread += observation.confidence * (offset(observation) - middle).squaredNorm();
+    ray_spread += observation.confidence * (observation.ray - middle_ray).squaredNorm();
+    nearest = std::max(nearest, -observation.relative.z() / (1 - kNearestBySize));
+  }
+  constexpr double kAtOnePlace = 1e-12;  // squared, in units of a ray
+  if (!(spread > 0) || !(ray_spread > kAtOnePlace * sum)) return fix;
+  const double depth = std::max(nearest, std::sqrt(spread / ray_spread));
+  fix.root << middle_ray * depth - middle, depth;
+  const RayErrors errors = errors_at(seen, fix.root);
+  fix.information = errors.information();
+  fix.residuals.assign(errors.residual.begin(), errors.residual.end());
   fix.known = fix.root.allFinite();
   return fix;
+}
+
+/// @param frames what each of them shows
+/// @param by_size whether the pose matches the rays in less than half of those with enough joints
+/// @throws InputError if none can be located
+std::vector<Fix> located(const std::vector<std::vector<RootObservation>>& frames, bool& by_size) {
+  std::vector<Fix> fixes;
+  for (const auto& seen : frames) fixes.push_back(locate(seen));
+  const auto enough = std::ranges::count_if(
+      frames, [](const auto& seen) { return std::ssize(seen) >= kFewestJoints; });
+  by_size = 2 * std::ranges::count(fixes, true, &Fix::known) < enough;
+  if (by_size) std::ranges::transform(frames, fixes.begin(), locate_by_size);
+  if (std::ranges::any_of(fixes, &Fix::known)) return fixes;
+  constexpr const char* kUnknown = "the root's position cannot be determined";
+  if (enough > 0)
+    throw InputError(
+        fmt::format("the 2D track shows all joints of a frame at one place; {}", kUnknown));
+  throw InputError(fmt::format("the 2D track never shows {} joints of the model at once; {}",
+                               kFewestJoints, kUnknown));
 }
 
 /// Noise of the rays over all frames: the bulk of the residuals, counted for the three numbers that
@@ -163,11 +262,12 @@ void check_shapes(const MatrixD& relative_positions, const TrackRays& track,
 }  // namespace
 
 MatrixD root_trajectory(const MatrixD& relative_positions, const TrackRays& track,
-                        const Camera& camera, const MatrixD& velocity, double velocity_error_m_s2) {
+                        const Camera& camera, const MatrixD& velocity, double velocity_error_m_s2,
+                        bool* by_size) {
   check_shapes(relative_positions, track, velocity);
   const double frame_time_s = 1.0 / track.fps;
 
-  std::vector<Fix> fixes;
+  std::vector<std::vector<RootObservation>> seen;
   MatrixD prediction = MatrixD::Zero(track.frames(), 3);
   double squares = 0;
   for (int frame = 0; frame < track.frames(); ++frame) {
@@ -180,7 +280,7 @@ MatrixD root_trajectory(const MatrixD& relative_positions, const TrackRays& trac
       observations.push_back({camera.camera_from_world * relative,
                               track.rays.row(frame).segment<2>(2 * k), track.confidence(frame, k)});
     }
-    fixes.push_back(locate(observations));
+    seen.push_back(std::move(observations));
     if (frame > 0) {
       prediction.row(frame) = prediction.row(frame - 1);
       if (velocity.rows() > 0) {
@@ -189,12 +289,9 @@ MatrixD root_trajectory(const MatrixD& relative_positions, const TrackRays& trac
       }
     }
   }
-  if (std::none_of(fixes.begin(), fixes.end(), [](const Fix& fix) { return fix.known; })) {
-    throw InputError(fmt::format(
-        "the 2D track never shows {} joints of the model at once before the camera; the root's "
-        "position cannot be determined",
-        kFewestJoints));
-  }
+  bool sizes_alone = false;
+  const std::vector<Fix> fixes = located(seen, sizes_alone);
+  if (by_size) *by_size = sizes_alone;
   const double metre =
       std::sqrt(squares / static_cast<double>(fixes.size() * track.indices.size())) / kRmsOfBody_m;
   const MatrixD path =

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/interruption.hpp"
 #include "base/numbers.hpp"
 #include "base/upper_median.hpp"
 #include "fitting/prior_deviations.hpp"
@@ -10,6 +11,7 @@
 #include "fitting/rotation.hpp"
 #include "fitting/tracked_joints.hpp"
 #include "fitting/upright.hpp"
+#include "fitting/usual_body.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
 #include "motion/interpolated_pose.hpp"
@@ -63,7 +65,7 @@ SlidingFit::SlidingFit(const Modalities& modalities, const KnownOfClip& known, c
                        const TrackFitSettings& settings)
     : modalities_(modalities),
       settings_(settings),
-      skeleton_(known.skeleton ? *known.skeleton : modalities.pose_features.skeleton()),
+      skeleton_(body_to_begin_with(known, modalities)),
       body_(skeleton_),
       body_unknown_(!known.skeleton),
       may_be_exact_(known.may_be_exact()),
@@ -213,6 +215,8 @@ void SlidingFit::look_back() {
   RayNoise rays = rays_;
   rays.steady = false;
   look_ = std::async(std::launch::async, [=, settings = settings_] {
+    // Who takes the result decides where to stop.
+    const InterruptionDeferred until_the_end;
     return roughly_likely(evidence->clip, rays, settings, point);
   });
 }

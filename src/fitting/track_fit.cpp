@@ -21,6 +21,7 @@
 #include "fitting/track_smoothing.hpp"
 #include "fitting/tracked_joints.hpp"
 #include "fitting/upright.hpp"
+#include "fitting/usual_body.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
 
@@ -55,10 +56,11 @@ void check(const PosePrior& prior, const Modalities& features, const Track2d& tr
 /// The fit of one clip to its track.
 class ClipFit {
  public:
+  /// @param body that it begins with
   ClipFit(const PosePrior& prior, const Modalities& modalities, const Track2d& track,
-          const KnownOfClip& known)
+          const KnownOfClip& known, Skeleton body)
       : modalities_(modalities),
-        skeleton_(known.skeleton ? *known.skeleton : modalities.pose_features.skeleton()),
+        skeleton_(std::move(body)),
         assumed_(in_file_units(known.camera_of(track, modalities), skeleton_)),
         camera_(assumed_),
         units_per_m_(file_units_per_metre(skeleton_)),
@@ -76,7 +78,7 @@ class ClipFit {
   void place_root() {
     put_root(root_trajectory(positions_about(modalities_.root_name(), names_,
                                              decoded(MatrixD::Zero(features_.rows(), 3))),
-                             track_, camera_, velocity_, velocity_error_m_s2_));
+                             track_, camera_, velocity_, velocity_error_m_s2_, &placed_by_size_));
   }
 
   /// @param known as the constructor's; without a skeleton its proportions are unknown
@@ -178,6 +180,7 @@ class ClipFit {
 
   const Camera& camera() const { return camera_; }
   double energy() const { return point_.energy; }
+  bool placed_by_size() const { return placed_by_size_; }
   /// How it looks, as it was found, where it was not known.
   AssumedView view() const {
     const Eigen::Vector3d up = camera_.camera_from_world.col(1);
@@ -247,6 +250,7 @@ class ClipFit {
   MatrixD features_;  ///< not standardized, along the camera's own axes
   MatrixD velocity_;  ///< of the root, world axes, file units per second
   double velocity_error_m_s2_;
+  bool placed_by_size_ = false;
   MatrixD root_;                       ///< its path where the camera sees it, [frames x 3]
   std::optional<Motion> motion_;       ///< of features, skeleton, camera and root as they are
   Eigen::RowVector3d shift_{0, 0, 0};  ///< that put it at the origin
@@ -264,7 +268,10 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
                         const PosteriorDraws& draws) {
   check(prior, features, track);
   if (settings) check_settings(*settings);
-  ClipFit clip(prior, features, track, known);
+  KnownOfClip without_fit = known;
+  without_fit.detected = false;
+  ClipFit clip(prior, features, track, known,
+               body_to_begin_with(settings ? known : without_fit, features));
   clip.place_root();
   const bool draws_any = draws.count > 0;
   if (settings)
@@ -280,6 +287,7 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
   result.motion = clip.motion();
   result.camera = clip.camera();
   result.energy = clip.energy();
+  result.placed_by_size = clip.placed_by_size();
   if (!known.camera) result.view = settings ? clip.view() : known.assumed();
   return result;
 }

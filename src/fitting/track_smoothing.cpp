@@ -33,18 +33,22 @@ std::vector<Eigen::Index> runs(const Track2d& track, Eigen::Index joint, int cou
 }
 
 /// Spectral density of a coordinate's acceleration: integrated over a frame twice it leaves 2/3 of
-/// density·time³ in second differences, beside the noise.
+/// density·time³ in second differences, beside the noise. Each counts by the noise that its
+/// confidences leave in it, so that a keypoint that lies astray is not taken for motion.
 double acceleration_density(const Track2d& track, const MatrixD& coordinate_px, Eigen::Index joint,
                             double noise_px) {
-  double squares = 0;
+  double squares = 0, weights = 0;
   const auto starts = runs(track, joint, 3);
   for (const Eigen::Index t : starts) {
     const double second =
         coordinate_px(t + 2, joint) - 2 * coordinate_px(t + 1, joint) + coordinate_px(t, joint);
-    squares += second * second;
+    const auto variance = [&](Eigen::Index frame) { return 1 / track.confidence(frame, joint); };
+    const double weight = kSecondGain / (variance(t) + 4 * variance(t + 1) + variance(t + 2));
+    squares += weight * second * second;
+    weights += weight;
   }
   const double noise = kSecondGain * noise_px * noise_px;
-  const double mean = starts.empty() ? 0 : squares / static_cast<double>(starts.size());
+  const double mean = weights > 0 ? squares / weights : 0;
   return 1.5 * std::max(mean - noise, 0.05 * noise) * std::pow(track.fps, 3);
 }
 

@@ -21,8 +21,11 @@
 namespace mcdbn {
 namespace {
 
-/// A joint is seen as if it were no nearer to the camera than this share of the root's first depth.
+/// A joint that is nearer to the camera than this share of the root's first depth is seen as
+/// Reprojection has it.
 constexpr double kNearest = 0.1;
+/// The same of a root that the path before the fit has next to the camera.
+constexpr double kNearest_m = 0.01;
 /// What hardly stands is not worth an equation.
 constexpr double kHardlyStands = 0.05;
 /// From so many deviations on a foot that slips counts by its distance, not the square.
@@ -168,6 +171,7 @@ void WindowProblem::add_rays() {
   const double lasting = noise_.lasting * noise_.lasting, white = noise_.white * noise_.white;
   const double weight = (white + lasting) / (white + same_frames * lasting);
   for (Eigen::Index t = 0; t < x_.turns.rows(); ++t) {
+    const double nearest_m = std::max(kNearest * std::abs(clip_.root(first_ + t, 2)), kNearest_m);
     for (std::size_t joint = 0; joint < seen(t).size(); ++joint) {
       const SeenJoint& at = seen(t)[joint];
       if (!(at.confidence > 0)) continue;
@@ -175,7 +179,7 @@ void WindowProblem::add_rays() {
       append(blocks, length_blocks(joint));
       if (clip_.camera) blocks.push_back(&x_.log_focal);
       add(t,
-          new Reprojection(place(t, joint), kNearest * clip_.root(first_ + t, 2), at.ray,
+          new Reprojection(place(t, joint), nearest_m, at.ray,
                            std::sqrt((white + lasting) / at.confidence), clip_.camera.has_value()),
           scaled(new ceres::CauchyLoss(settings_.outlier), weight), blocks);
     }
@@ -185,7 +189,6 @@ void WindowProblem::add_rays() {
 /// What an orientation turns otherwise than its parent makes likely is a slow process about zero.
 void WindowProblem::add_turns() {
   const SlowProcess& process = prior_.process();
-  const Eigen::Vector3d zero(0, 0, 0);
   for (int turn = 0; turn < turns_; ++turn) {
     if (!used_[static_cast<std::size_t>(turn)]) continue;
     const int parent = clip_.parents[static_cast<std::size_t>(turn)];
@@ -213,8 +216,10 @@ void WindowProblem::add_turns() {
         append(blocks, {turn_at(t - 1, parent), turn_at(t, parent), turn_at(t + 1, parent)});
         for (const double step : {1, -2, 1}) shares.push_back(-step * share);
       }
-      add(t - 1, new LinearTerm(shares, zero, deviation / std::sqrt(process.bend)), nullptr,
-          blocks);
+      add(t - 1,
+          new LinearTerm(shares, prior_.expected_bend_at_rest(first_ + t, turn),
+                         deviation / std::sqrt(process.bend)),
+          nullptr, blocks);
     }
   }
 }
@@ -340,11 +345,29 @@ MarginalPrior WindowProblem::without_first(Eigen::Index frames) {
   return past;
 }
 
+/// One camera does not distinguish a small person from one far away: a person's size is that of the
+/// legs, and where they are hidden, of what is seen.
+double WindowProblem::proportion_deviation(std::size_t length, bool legs_hidden) const {
+  if (legs_hidden) return settings_.part_proportions;
+  const bool of_limb =
+      length < clip_.length_kinds.size() && clip_.length_kinds[length] != BoneKind::other;
+  return of_limb ? settings_.limb_proportions : settings_.proportions;
+}
+
 void WindowProblem::add_lengths(Unknowns unknowns) {
-  for (double& length : x_.log_lengths)
+  bool has_legs = false, sees_legs = false;
+  for (std::size_t i = 0; i < clip_.length_kinds.size(); ++i) {
+    if (clip_.length_kinds[i] != BoneKind::leg) continue;
+    has_legs = true;
+    sees_legs |= problem_.HasParameterBlock(&x_.log_lengths[static_cast<Eigen::Index>(i)]);
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(x_.log_lengths.size()); ++i) {
+    double& length = x_.log_lengths[static_cast<Eigen::Index>(i)];
     if (unknowns != Unknowns::seen || problem_.HasParameterBlock(&length))
-      problem_.AddResidualBlock(
-          new LinearTerm({1}, Eigen::VectorXd::Zero(1), settings_.proportions), nullptr, &length);
+      problem_.AddResidualBlock(new LinearTerm({1}, Eigen::VectorXd::Zero(1),
+                                               proportion_deviation(i, has_legs && !sees_legs)),
+                                nullptr, &length);
+  }
 }
 
 }  // namespace mcdbn

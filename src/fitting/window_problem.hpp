@@ -65,6 +65,7 @@ class WindowProblem {
   void add_feet();
   void add_ground();
   void add_camera();
+  double proportion_deviation(std::size_t length, bool legs_hidden) const;
   void add_lengths(Unknowns unknowns);
   void add_past();
   void add(Eigen::Index first, ceres::CostFunction* cost, ceres::LossFunction* loss,

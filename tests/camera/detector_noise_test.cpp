@@ -323,4 +323,43 @@ TEST_CASE("a track's own noise is measured again: its size, its gaps and its con
   CHECK_THROWS_AS(measured_noise(standing(5), kHeight_px), InputError);
 }
 
+TEST_CASE("a track's gaps are those of joints that it has, while it shows anybody") {
+  Track2d track = standing(40, 20);
+  const auto hide = [&](Eigen::Index column, Eigen::Index first, Eigen::Index frames) {
+    track.confidence.col(column).segment(first, frames).setZero();
+    for (MatrixD* values : {&track.x_px, &track.y_px})
+      values->col(column).segment(first, frames).setConstant(std::nan(""));
+  };
+  for (const int never : {0, kLeftHeel, kRightHeel}) hide(never, 0, 40);
+  hide(kLeftKnee, 5, 6);
+  hide(kRightWrist, 28, 2);  // to where nobody is seen any more
+  for (Eigen::Index column = 0; column < track.joint_count(); ++column) hide(column, 30, 10);
+  const DetectorNoise found = measured_noise(track, kHeight_px);
+  const double seen_columns = 8, frames_of_anybody = 30, lost = 6 + 2, gaps = 2, fps = 20;
+  CHECK(found.lost == doctest::Approx(lost / (seen_columns * frames_of_anybody)));
+  CHECK(found.lost_hidden == found.lost);
+  CHECK(found.lost_s == doctest::Approx(lost / gaps / fps));
+  // A detector like that one has the same columns, and never sees those.
+  const std::vector<Keypoint> keypoints = seen_keypoints(track);
+  REQUIRE(keypoints.size() == kBody.size());
+  for (std::size_t i = 0; i < kBody.size(); ++i) {
+    const bool never = i == 0 || i == kLeftHeel || i == kRightHeel;
+    CHECK(keypoints[i].name == kBody[i].name);
+    CHECK(keypoints[i].role == (never ? std::nullopt : kBody[i].role));
+    CHECK(keypoints[i].offset == (never ? Eigen::Vector3d(0, 0, 0) : kBody[i].offset));
+  }
+}
+
+TEST_CASE("a track's gaps: the share that is lost is found, whatever columns are never seen") {
+  const Track2d exact = standing(4000);
+  DetectorNoise noise = noiseless();
+  noise.lost = 0.2;
+  Track2d track = detected(exact, noise, 3);
+  const double share = measured_noise(track, kHeight_px).lost;
+  CHECK(share == doctest::Approx(0.2).epsilon(0.1));
+  track.confidence.leftCols(3).setZero();
+  track.confidence.topRows(1000).setZero();
+  CHECK(measured_noise(track, kHeight_px).lost == doctest::Approx(share).epsilon(0.1));
+}
+
 }  // namespace detector_noise_test

@@ -106,6 +106,20 @@ TEST_CASE("a detector sees its joints where the camera has them, and none outsid
   CHECK(cut.confidence.col(2).isOnes());
 }
 
+TEST_CASE("a detector that is like a track never sees what no frame of the track shows") {
+  const Motion motion = test::standing_still(test::role_body(), 40);
+  const SkeletonRoles roles = test::roles_of_role_body();
+  const Camera camera = place_camera(motion, {});
+  Track2d model = project_keypoints(motion, roles, kSet, camera);
+  for (const Eigen::Index never : {0, 1}) model.confidence.col(never).setZero();
+  const Track2d track =
+      detector_track(motion, roles, seen_keypoints(model), camera, DetectorNoise{}, 1);
+  CHECK(track.joint_names == model.joint_names);
+  CHECK(track.confidence.leftCols(2).isZero());
+  CHECK(track.x_px.leftCols(2).array().isNaN().all());
+  CHECK((track.confidence.middleCols(2, 2).array() > 0).any());
+}
+
 TEST_CASE("a detector's noise is a share of the body's height in the image") {
   const Motion motion = test::standing_still(test::role_body(), 400);
   const SkeletonRoles roles = test::roles_of_role_body();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "camera/keypoint_track.hpp"
 #include "camera/track_noise.hpp"
@@ -75,6 +76,11 @@ TEST_CASE("side swaps: planted ones are found and put right, frame by frame") {
   const auto swaps = find_side_swaps(track);
   REQUIRE(swaps.size() == 3);
   CHECK(described(swaps) == "legs swapped in frames 20-28, 70; arms in 40-55");
+  // By the file's numbers, which may be those of days.
+  std::vector<long long> numbers(100);
+  std::iota(numbers.begin(), numbers.end(), 3'487'918'200);
+  CHECK(described(swaps, numbers) ==
+        "legs swapped in frames 3487918220-3487918228, 3487918270; arms in 3487918240-3487918255");
   CHECK(swaps[0].limbs == LimbPair::legs);
   CHECK(swaps[2].limbs == LimbPair::arms);
   exchange_sides(track, swaps);

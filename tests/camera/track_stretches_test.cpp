@@ -2,6 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "mcdbn/camera/joint_sets.hpp"
+
 namespace track_stretches_test {
 
 using namespace mcdbn;
@@ -28,6 +33,29 @@ Track2d walking(int frames) {
 
 void move(Track2d& track, int first, int frames, double heights) {
   track.x_px.middleRows(first, frames).array() += heights * kHeight_px;
+}
+
+/// OpenPose's joints of somebody about as tall who stands still.
+Track2d standing(int frames) {
+  Track2d track;
+  track.keypoints = joint_set("BODY_25").keypoints;
+  for (const Keypoint& keypoint : track.keypoints) track.joint_names.push_back(keypoint.name);
+  track.x_px = track.y_px = track.confidence = MatrixD::Ones(frames, track.joint_count());
+  for (int joint = 0; joint < track.joint_count(); ++joint) {
+    track.x_px.col(joint).setConstant(600 + 20 * (joint % 4));
+    track.y_px.col(joint).setConstant(200 + 12 * joint);
+  }
+  return track;
+}
+
+/// Only those joints are seen.
+void show_only(Track2d& track, int first, int frames, const std::vector<std::string>& names) {
+  for (int joint = 0; joint < track.joint_count(); ++joint)
+    if (std::ranges::count(names, track.joint_names[static_cast<std::size_t>(joint)]) == 0) {
+      track.confidence.col(joint).segment(first, frames).setZero();
+      for (MatrixD* values : {&track.x_px, &track.y_px})
+        values->col(joint).segment(first, frames).setConstant(std::nan(""));
+    }
 }
 
 }  // namespace
@@ -111,9 +139,48 @@ TEST_CASE("stretches: some frames elsewhere are strays, and the others are one")
   CHECK(track.y_px.row(60).array().isNaN().all());
 }
 
+TEST_CASE("stretches: a part of a body elsewhere is a stray, however long it is there") {
+  using Names = std::vector<std::string>;
+  const std::vector<Names> parts{{"RHeel", "RBigToe", "RSmallToe"},
+                                 {"RKnee", "RAnkle", "RHeel"},
+                                 {"RShoulder", "RElbow", "RWrist"},
+                                 {"RShoulder", "RElbow", "RWrist", "LShoulder"}};
+  for (const FrameRange& range :
+       std::vector<FrameRange>{{98, 12}, {60, 12}, {60, 40}, {0, 12}, {50, 60}})
+    for (const Names& part : parts) {
+      CAPTURE(range.first);
+      CAPTURE(range.frames);
+      CAPTURE(part.front());
+      Track2d track = standing(110);
+      show_only(track, range.first, range.frames, part);
+      move(track, range.first, range.frames, -3);
+      const TrackStretches found = find_stretches(track);
+      CHECK(found.stretches == std::vector<FrameRange>{{0, 110}});
+      CHECK(found.strays == std::vector<FrameRange>{range});
+    }
+  // With the other arm it is half of the limbs' joints: a person behind a table.
+  Track2d track = standing(110);
+  show_only(track, 60, 50,
+            {"Nose", "RShoulder", "RElbow", "RWrist", "LShoulder", "LElbow", "LWrist"});
+  move(track, 60, 50, -3);
+  CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 60}, {60, 50}});
+}
+
+TEST_CASE("stretches: a track that never shows more than an arm is not all strays") {
+  Track2d track = standing(110);
+  show_only(track, 0, 110, {"RShoulder", "RElbow", "RWrist"});
+  move(track, 60, 50, -3);
+  CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 60}, {60, 50}});
+  CHECK(find_stretches(track).strays.empty());
+}
+
 TEST_CASE("stretches: frames are described by the first and the last") {
   CHECK(described(std::vector<FrameRange>{}).empty());
   CHECK(described(std::vector<FrameRange>{{0, 12}, {30, 1}, {40, 13}}) == "0-11, 30, 40-52");
+  // By the file's numbers, which may be those of days.
+  const std::vector<long long> numbers{3'487'918'223, 3'487'918'224, 3'487'918'230};
+  CHECK(described(std::vector<FrameRange>{{0, 2}, {2, 1}}, numbers) ==
+        "3487918223-3487918224, 3487918230");
 }
 
 TEST_CASE("stretches: of a detector's joints those of the limbs decide") {

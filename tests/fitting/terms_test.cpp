@@ -105,12 +105,28 @@ TEST_CASE("terms: reprojection") {
     DOCTEST_CHECK(still[0] == doctest::Approx((x.x() / x.z() - 0.1) / 0.003));
     DOCTEST_CHECK(still[1] == doctest::Approx((x.y() / x.z() + 0.05) / 0.003));
   }
-  // Behind the camera it is as far off as at the nearest depth: nothing is gained there.
-  const Reprojection behind({kArm, {0, 0, -1}, false}, 0.4, {0.1, -0.05}, 0.003);
+}
+
+TEST_CASE("terms: reprojection near the camera and behind it: the further, the further off") {
   const Eigen::Vector3d x = kArm[0].bone + kArm[1].bone + kArm[2].bone;
-  const Eigen::Vector2d wanted = (x.head<2>() / 0.4 - Eigen::Vector2d(0.1, -0.05)) / 0.003;
-  DOCTEST_CHECK((residuals(behind, {behind, 1, 0.0}) - wanted).norm() < 1e-9);
-  check_jacobians(behind, {behind, 1, 0.1});
+  const Eigen::Vector2d ray(0.1, -0.05);
+  const auto shown = [&](double depth) -> Eigen::Vector2d {
+    const Reprojection cost({kArm, {0, 0, depth - x.z()}, false}, 0.4, ray, 0.003);
+    return residuals(cost, {cost, 1, 0.0}) * 0.003 + ray;
+  };
+  // As if at 0.4² / (2·0.4 - z), which goes on from z without a bend.
+  DOCTEST_CHECK((shown(-0.9) - x.head<2>() * (0.8 + 0.9) / 0.16).norm() < 1e-12);
+  DOCTEST_CHECK((shown(0.4) - x.head<2>() / 0.4).norm() < 1e-12);
+  constexpr double kStep = 1e-5;
+  const Eigen::Vector2d before = (shown(0.4) - shown(0.4 - kStep)) / kStep,
+                        after = (shown(0.4 + kStep) - shown(0.4)) / kStep;
+  DOCTEST_CHECK((before - after).norm() < 1e-3 * after.norm());
+  for (const double depth : {0.3, 0.1, 0.0, -0.5, -5.0, -50.0}) {
+    CAPTURE(depth);
+    DOCTEST_CHECK(shown(depth - 0.1).norm() > shown(depth).norm());
+    const Reprojection cost({kArm, {0, 0, depth - x.z()}, true}, 0.4, ray, 0.003);
+    check_jacobians(cost, {cost, 1, 0.1});
+  }
 }
 
 TEST_CASE("terms: reprojection through a camera of unknown focal length") {
@@ -124,12 +140,13 @@ TEST_CASE("terms: reprojection through a camera of unknown focal length") {
     at.blocks.back()[0] = std::log(2);
     DOCTEST_CHECK((residuals(cost, at) * 0.003 + ray - 2 * once).norm() < 1e-12);
   }
-  // Behind the camera, too, as at the nearest depth.
+  // Behind the camera, too: 1.7 m and 0.4² as in the case before.
   const Reprojection behind({kArm, {0, 0, -1}, false}, 0.4, {0.1, -0.05}, 0.003, true);
   Unknowns at(behind, 1, 0.0);
   at.blocks.back()[0] = std::log(2);
   const Eigen::Vector3d x = kArm[0].bone + kArm[1].bone + kArm[2].bone;
-  const Eigen::Vector2d wanted = (2 * x.head<2>() / 0.4 - Eigen::Vector2d(0.1, -0.05)) / 0.003;
+  const Eigen::Vector2d wanted =
+      (2 * x.head<2>() * 1.7 / 0.16 - Eigen::Vector2d(0.1, -0.05)) / 0.003;
   DOCTEST_CHECK((residuals(behind, at) - wanted).norm() < 1e-9);
   check_jacobians(behind, {behind, 1, 0.1});
 }

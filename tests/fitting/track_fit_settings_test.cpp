@@ -26,6 +26,8 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"caution", [](S& s) { return at(s.caution); }, "2"},
       {"outlier", [](S& s) { return at(s.outlier); }, "4"},
       {"proportions", [](S& s) { return at(s.proportions); }, "0.3"},
+      {"limb-proportions", [](S& s) { return at(s.limb_proportions); }, "0.15"},
+      {"part-proportions", [](S& s) { return at(s.part_proportions); }, "0.1"},
       {"people", [](S& s) { return at(s.people); }, "0.1"},
       {"footing", [](S& s) { return at(s.footing_m_s); }, "0.5"},
       {"ground", [](S& s) { return at(s.ground_m); }, "0.05"},
@@ -44,10 +46,27 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
 }
 
 TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves something") {
-  for (const char* name :
-       {"turn", "lasting", "root", "detector", "caution", "proportions", "people", "footing",
-        "spread", "outlier", "ground", "step", "pitch", "roll", "balance", "focal", "exact-noise",
-        "measured-lasting", "measured-caution"})
+  for (const char* name : {"turn",
+                           "lasting",
+                           "root",
+                           "detector",
+                           "caution",
+                           "proportions",
+                           "people",
+                           "footing",
+                           "spread",
+                           "outlier",
+                           "ground",
+                           "step",
+                           "pitch",
+                           "roll",
+                           "balance",
+                           "focal",
+                           "exact-noise",
+                           "measured-lasting",
+                           "measured-caution",
+                           "limb-proportions",
+                           "part-proportions"})
     for (const double value : {0.0, -1.0, kNan})
       check_refused<TrackFitSettings>(name, value, "above 0");
   check_refused<TrackFitSettings>("roughly", 0, "above 0");

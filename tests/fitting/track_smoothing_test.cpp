@@ -55,3 +55,35 @@ TEST_CASE("smoothing a track takes noise out, and leaves a clean one and its gap
   CHECK(smooth.confidence == noisy.confidence);
   CHECK(smooth_track(track_of(1)).x_px.allFinite());
 }
+
+TEST_CASE("a joint that lies astray now and then with little confidence is smoothed as else") {
+  Track2d track = track_of(2);
+  constexpr Eigen::Index kFrames = 300;
+  const Eigen::Index joints = track.joint_count();
+  track.x_px = Eigen::VectorXd::LinSpaced(kFrames, 0, 300).replicate(1, joints);
+  track.y_px = track.x_px;
+  track.confidence = MatrixD::Ones(kFrames, joints);
+  const MatrixD clean = track.x_px;
+  add_pixel_noise(track, 3, 1);
+  const auto rms = [&](const Track2d& answer) {
+    double squares = 0;
+    int count = 0;
+    for (Eigen::Index t = 0; t < kFrames; ++t) {
+      if (t % 40 > 8 && t % 40 < 32) continue;  // near those that lie astray, below
+      squares += (answer.x_px.row(t) - clean.row(t)).squaredNorm();
+      count += static_cast<int>(joints);
+    }
+    return std::sqrt(squares / count);
+  };
+  const double usual = rms(smooth_track(track));
+  const auto astray = [&](double confidence) {
+    Track2d some = track;
+    for (Eigen::Index t = 20; t < kFrames; t += 40) {
+      some.x_px.row(t).array() += 120;
+      some.confidence.row(t).setConstant(confidence);
+    }
+    return rms(smooth_track(some));
+  };
+  CHECK(astray(1) > 2 * usual);
+  CHECK(astray(1e-3) < 1.2 * usual);
+}

@@ -89,4 +89,64 @@ TEST_CASE("window problem: what moves no seen joint leans with the camera no mor
   }
 }
 
+TEST_CASE("window problem: turns that follow the lean that the mean was seen by cost nothing") {
+  PosteriorClip clip = hidden_ankle();
+  clip.feet.clear();
+  clip.grounds.clear();
+  clip.planted = MatrixD::Zero(kFrames, 0);
+  for (auto& frame : clip.seen)
+    for (SeenJoint& joint : frame) joint.confidence = 0;
+  clip.camera = CameraDoubt{};
+  const Eigen::Vector3d lean(0.25, 0, 0);
+  const auto energy = [&](Eigen::Index last_held) {
+    clip.mean_lean = MatrixD::Zero(kFrames, 3);
+    PosteriorPoint from = PosteriorPoint::zero(clip);
+    from.lean = lean;
+    for (Eigen::Index t = 0; t < kFrames; ++t) {
+      if (t > last_held) clip.mean_lean.row(t) << 0.1, 0, -0.05;
+      for (Eigen::Index turn = 0; turn < from.turns.cols() / 3; ++turn)
+        from.turns.row(t).segment<3>(3 * turn) = lean.transpose() - clip.mean_lean.row(t);
+    }
+    return WindowProblem(clip, kNoise, {}, from, 0, kFrames, Unknowns::all).energy();
+  };
+  const double steady = energy(kFrames);
+  for (const Eigen::Index last_held : {0, 2, 5}) {
+    CAPTURE(last_held);
+    DOCTEST_CHECK(std::abs(energy(last_held) - steady) < 1e-9);
+  }
+}
+
+TEST_CASE("window problem: how far a bone's length strays, by what it is of and what is seen") {
+  TrackFitSettings settings;
+  settings.proportions = 0.5;
+  settings.limb_proportions = 0.25;
+  settings.part_proportions = 0.125;
+  /// ½ (0.1 / deviation)² of the first length, the only one that is not 0.
+  const auto deviation = [&](const PosteriorClip& clip) {
+    const auto energy = [&](double log_length, double expected_deviation) {
+      TrackFitSettings same = settings;
+      same.proportions = same.limb_proportions = same.part_proportions = expected_deviation;
+      PosteriorPoint from = PosteriorPoint::zero(clip);
+      from.log_lengths[0] = log_length;
+      return WindowProblem(clip, kNoise, expected_deviation > 0 ? same : settings, from, 0, kFrames)
+          .energy();
+    };
+    // All else is the same with any deviation.
+    const double more = energy(0.1, 0) - energy(0.1, 1e3);
+    return 0.1 / std::sqrt(2 * more);
+  };
+  PosteriorClip clip = hidden_ankle();
+  clip.length_kinds = {BoneKind::other, BoneKind::other};
+  DOCTEST_CHECK(deviation(clip) == doctest::Approx(0.5).epsilon(1e-3));
+  clip.length_kinds = {BoneKind::leg, BoneKind::leg};  // the thigh is seen
+  DOCTEST_CHECK(deviation(clip) == doctest::Approx(0.25).epsilon(1e-3));
+  clip.length_kinds = {BoneKind::arm, BoneKind::other};
+  DOCTEST_CHECK(deviation(clip) == doctest::Approx(0.25).epsilon(1e-3));
+  clip.feet.clear();
+  clip.grounds.clear();
+  clip.planted = MatrixD::Zero(kFrames, 0);
+  clip.length_kinds = {BoneKind::other, BoneKind::leg};  // the leg's ankle is not
+  DOCTEST_CHECK(deviation(clip) == doctest::Approx(0.125).epsilon(1e-3));
+}
+
 }  // namespace window_problem_test

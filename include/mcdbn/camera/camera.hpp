@@ -15,8 +15,9 @@
 
 namespace mcdbn {
 
-/// A pinhole camera with OpenCV's distortion, or with OpenCV's fisheye lens. Camera axes are
-/// OpenCV's: x right, y down, z forward.
+/// A pinhole camera with OpenCV's distortion, or with OpenCV's fisheye lens. What is so far aside
+/// that the distortion turns back is not seen. Camera axes are OpenCV's: x right, y down, z
+/// forward.
 struct Camera {
   /// What an image's width and height may be.
   static constexpr Range kImage_px = within(1, 100'000);
@@ -96,7 +97,7 @@ Camera place_camera(const MatrixD& points, const CameraPlacement& placement);
 MatrixD project_points(const Camera& camera, const MatrixD& points);
 
 /// The 2D track of a clip's joints as the camera sees it; confidence 1, NaN and 0 where a joint is
-/// behind the camera.
+/// behind the camera, or further aside than its lens sees.
 Track2d project_motion(const Motion& motion, const Camera& camera);
 
 }  // namespace mcdbn

@@ -7,6 +7,10 @@
 
 namespace mcdbn {
 
+/// Of the angle between a ray and the level view's direction: what is 84 degrees or more aside is
+/// not in it.
+inline constexpr double kLevelViewLeastCosine = 0.1;
+
 /// level_from_world of a camera with the world's +y up: its pitch and roll are taken out, its
 /// heading stays. The level axes are x right and horizontal, y straight down, z the horizontal part
 /// of the viewing direction; of a camera that looks straight up or down, of the image's upper edge

@@ -61,7 +61,9 @@ SideSwap moved(SideSwap swap, int frames);
 /// Exchanges what find_side_swaps found.
 void exchange_sides(Track2d& track, const std::vector<SideSwap>& swaps);
 
-/// "legs swapped in frames 120-134, 150; arms in 7", frames counted from 0; empty for none.
-std::string described(const std::vector<SideSwap>& swaps);
+/// "legs swapped in frames 120-134, 150; arms in 7"; empty for none.
+/// @param numbers [frames] of the track's frames, as its file has them; none: counted from 0
+std::string described(const std::vector<SideSwap>& swaps,
+                      const std::vector<long long>& numbers = {});
 
 }  // namespace mcdbn

@@ -14,7 +14,9 @@ struct FrameRange {
 };
 
 /// First and last frames as text: "0-11, 30, 40-52".
-std::string described(const std::vector<FrameRange>& ranges);
+/// @param numbers [frames] of the track's frames, as its file has them; none: counted from 0
+std::string described(const std::vector<FrameRange>& ranges,
+                      const std::vector<long long>& numbers = {});
 
 /// The frames that show no joint at all, in order.
 std::vector<FrameRange> frames_of_nobody(const Track2d& track);
@@ -22,14 +24,15 @@ std::vector<FrameRange> frames_of_nobody(const Track2d& track);
 /// A track in parts, each of which can be one person's motion.
 struct TrackStretches {
   std::vector<FrameRange> stretches;  ///< all frames of the track, in order
-  std::vector<FrameRange> strays;  ///< frames that show a body elsewhere, too few to be a stretch
+  std::vector<FrameRange> strays;     ///< frames that show something elsewhere that is no stretch
 };
 
 /// Where a whole body is suddenly elsewhere the detector went on with another person, or the film
 /// was cut. The middle of the joints that are seen moves by no more than three quarters of the
 /// body's height on the image and seven heights a second: joints come and go, and a runner's 12 m/s
-/// are as much. What is elsewhere for less than 0.3 s is a stray, and what comes before and after
-/// it may be one stretch. A detector's joints are those of the limbs.
+/// are as much. What is elsewhere for less than 0.3 s, or in no frame shows half of the joints that
+/// the track shows, is a stray, and what comes before and after it may be one stretch. A detector's
+/// joints are those of the limbs.
 /// @return one stretch of all frames if there is no such jump, or nothing but jumps; none of no
 ///         frames
 TrackStretches find_stretches(const Track2d& track);

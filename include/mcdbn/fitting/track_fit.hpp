@@ -66,12 +66,12 @@ struct KnownOfClip {
 /// What the fit takes for likely: of the prior, of the track, of a camera, and of a body that
 /// moves. Chosen on clips of training people with other bodies and detector-like tracks, and on the
 /// exact projections of the same: six CMU walks, of a model of walks and of a general one;
-/// `likeness`, `lasting`, `outlier`, `proportions`, `roll` and `focal` on seven CMU clips and
-/// twelve of Bandai's training halves, of the general model, which never saw Bandai's; `exact`,
-/// `exact_cost` and `alternatives` on the exact projections of the same; `exact_likeness`,
-/// `measured_lasting` and `measured_caution` on fourteen others of CMU's and 24 of Bandai's, exact
-/// and with noise of 2 and 5 px; `spread` and `draws-noise-lasts` on eleven of CMU's,
-/// detector-like, exact, with noise of 5 px and with joints missing.
+/// `likeness`, `lasting`, `outlier`, `proportions` and those after it, `roll` and `focal` on seven
+/// CMU clips and twelve of Bandai's training halves, of the general model, which never saw
+/// Bandai's; `exact`, `exact_cost` and `alternatives` on the exact projections of the same;
+/// `exact_likeness`, `measured_lasting` and `measured_caution` on fourteen others of CMU's and 24
+/// of Bandai's, exact and with noise of 2 and 5 px; `spread` and `draws-noise-lasts` on eleven of
+/// CMU's, detector-like, exact, with noise of 5 px and with joints missing.
 struct TrackFitSettings {
   double turn_deg = 9;
   double likeness = 0.6;
@@ -88,6 +88,8 @@ struct TrackFitSettings {
   double caution = 2;
   double outlier = 4;
   double proportions = 0.3;
+  double limb_proportions = 0.15;
+  double part_proportions = 0.1;
   double people = 0.1;
   double footing_m_s = 0.5;
   double ground_m = 0.05;
@@ -158,9 +160,16 @@ struct TrackFitSettings {
     visit(
         Setting{
             "proportions", above(0), "",
-            "deviation of the logarithm of a bone's length from the model's, where the person's "
-            "own is not known: people, and where a detector sees the joints between them"},
+            "deviation of the logarithm of a bone's length from the usual, where the person's own "
+            "is not known: people, and where a detector sees the joints between them"},
         self.proportions);
+    visit(Setting{"limb-proportions", above(0), "",
+                  "the same of thighs, shanks, upper arms and forearms"},
+          self.limb_proportions);
+    visit(Setting{"part-proportions", above(0), "",
+                  "the same of all bones where no frame shows a leg: nothing else shows how large "
+                  "the person is"},
+          self.part_proportions);
     visit(Setting{"people", above(0), "",
                   "the same of people alone: how far draws without a track's fit stray"},
           self.people);
@@ -223,6 +232,9 @@ struct FittedClip {
   Track2d shown;  ///< all its joints as the camera sees them; image size as the track's
   Camera camera;  ///< that sees `motion` so, in the skeleton's file units
   AssumedView view = {};  ///< of it, where none was known
+  /// Whether the prior's mean does not match what the camera shows: the root started from how large
+  /// body and image are, and the motion may be far off.
+  bool placed_by_size = false;
   /// −log of how likely the motion is given prior and track, but for a constant: of two readings of
   /// a track in which the same joints are seen, that of the lower energy is the likelier. 0 without
   /// settings.

@@ -21,14 +21,15 @@ bool Reprojection::Evaluate(double const* const* unknowns, double* residuals,
                             double** jacobians) const {
   const Eigen::Vector3d x = place_.at(unknowns);
   const bool near = !(x.z() > nearest_m_);
-  const double depth = near ? nearest_m_ : x.z();
+  const double depth = near ? nearest_m_ * nearest_m_ / (2 * nearest_m_ - x.z()) : x.z();
+  const double depth_of_z = near ? depth * depth / (nearest_m_ * nearest_m_) : 1;
   const int focal = place_.blocks();
   const double magnified = camera_unknown_ ? std::exp(unknowns[focal][0]) : 1;
   const Eigen::Vector2d shown = magnified * x.head<2>() / depth;
   Eigen::Map<Eigen::Vector2d>{residuals} = (shown - ray_) / deviation_;
   if (!jacobians) return true;
   Eigen::Matrix<double, 2, 3> of_place;
-  of_place << Eigen::Matrix2d::Identity(), (near ? 0 : -1 / depth) * x.head<2>();
+  of_place << Eigen::Matrix2d::Identity(), -depth_of_z / depth * x.head<2>();
   of_place *= magnified / (depth * deviation_);
   place_.differentiate(of_place, unknowns, jacobians);
   if (camera_unknown_ && jacobians[focal])

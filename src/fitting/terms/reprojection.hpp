@@ -9,9 +9,10 @@ namespace mcdbn {
 /// A joint lies on the ray that the camera saw it along:
 ///   r = (exp(focal) · (x/z, y/z) − ray) / deviation       two numbers of variance 1
 /// where focal is, if the camera is unknown, one more block (1): the logarithm of the camera's
-/// focal length over the one that ray and deviation were made with; else 0. Nearer to the camera
-/// than nearest_m, or behind it, a joint is seen as if it were so near: else whole bodies would be
-/// likeliest where all residuals are 0, behind the camera.
+/// focal length over the one that ray and deviation were made with; else 0. A joint nearer to the
+/// camera than nearest_m, n, or behind it, is seen as if at the depth n² / (2·n − z), which goes on
+/// smoothly from z and stays above 0: the further behind, the further off it is seen. As if at one
+/// depth, bodies behind the camera would be likely that are long along the view and thin across.
 class Reprojection : public ceres::CostFunction {
  public:
   /// @param ray x/z and y/z, lens taken out  @param deviation of each of both, in the same unit
