@@ -174,6 +174,7 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
       ->capture_default_str();
   add_device_options(*command, context);
   add_json_option(*command, context);
+  add_quiet_option(*command, context);
   command->footer("Example:\n  mcdbn-cl bench --only gaussian_crbm --json");
   command->callback(
       [&context, options] { context.run = [&context, options] { run_bench(context, *options); }; });

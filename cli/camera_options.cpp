@@ -22,13 +22,14 @@ Camera CameraOptions::camera_for(const Motion& motion) const {
 }
 
 Camera read_camera_with_notices(const std::filesystem::path& file) {
-  std::vector<std::string> assumed;
-  Camera camera = read_camera(file, &assumed);
+  std::vector<std::string> assumed, stated;
+  Camera camera = read_camera(file, &assumed, &stated);
   if (camera.unit_m)
-    assumed.push_back(fmt::format(
+    stated.push_back(fmt::format(
         "{}: its units of {:g} m are scaled to the motion's, whose body is taken as 1.7 m",
         file.string(), *camera.unit_m));
   for (const std::string& line : assumed) spdlog::warn("{}", line);
+  for (const std::string& line : stated) spdlog::info("{}", line);
   return camera;
 }
 

@@ -28,7 +28,8 @@ struct SeenByOptions {
   std::optional<Camera> camera() const;
 };
 
-/// A camera file's camera; warns what was assumed of it. @throws InputError
+/// A camera file's camera; warns what was assumed of it, and reports what its file states.
+/// @throws InputError
 Camera read_camera_with_notices(const std::filesystem::path& file);
 
 /// The camera as it gives the track's images; warns where it is scaled to them.

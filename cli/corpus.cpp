@@ -11,6 +11,7 @@
 #include "base/shown.hpp"
 #include "commands.hpp"
 #include "corpus/corpus_survey.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/joint_map.hpp"
 
 namespace mcdbn::cli {
@@ -108,7 +109,10 @@ void print_table(const std::vector<SurveyedClip>& clips, const Amount& usable) {
 void run_corpus(const CommandContext& context, const CorpusOptions& options) {
   const JointMap joint_map =
       options.joint_map.empty() ? JointMap() : read_joint_map(options.joint_map);
-  const std::vector<SurveyedClip> clips = survey(find_listed_clips(options.data), {}, joint_map);
+  std::vector<std::string> notices;
+  const std::vector<SurveyedClip> clips =
+      survey(find_listed_clips(options.data), {}, joint_map, &notices);
+  for (const std::string& notice : notices) spdlog::warn("{}", notice);
   Amount usable;
   std::vector<ListedClip> listed;
   for (const SurveyedClip& clip : clips)
@@ -121,6 +125,11 @@ void run_corpus(const CommandContext& context, const CorpusOptions& options) {
   else
     print_table(clips, usable);
   if (options.list.empty()) return;
+  if (listed.empty())
+    throw InputError(
+        fmt::format("{}: not written, as no clip can be brought onto the canonical humanoid: a "
+                    "list without clips is none that `train` takes",
+                    options.list.string()));
   write_clip_list(options.list, listed);
   spdlog::info("{}: {}, {} left out", options.list.string(), counted(listed.size(), "clip"),
                clips.size() - listed.size());

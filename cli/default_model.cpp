@@ -15,13 +15,14 @@ CLI::Option* add_model_option(CLI::App& command, std::filesystem::path& model) {
       ->type_name("FILE");
 }
 
-std::filesystem::path model_or_default(const std::filesystem::path& given) {
+std::filesystem::path model_or_default(const std::filesystem::path& given,
+                                       const std::string& instead) {
   if (!given.empty()) return given;
   auto model = beside_program("share/mcdbn-cl/default_model.safetensors");
   if (!std::filesystem::exists(model))
-    throw ConfigError(
-        fmt::format("no --model, and none comes with this program: {} is missing", model.string()));
-  spdlog::info("no --model: the general one, {}", model.string());
+    throw ConfigError(fmt::format("{}: this program comes without the general model; {} is missing",
+                                  instead, model.string()));
+  spdlog::info("{}: the general one, {}", instead, model.string());
   return model;
 }
 

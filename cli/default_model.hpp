@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <string>
 
 namespace mcdbn::cli {
 
@@ -10,7 +11,10 @@ namespace mcdbn::cli {
 CLI::Option* add_model_option(CLI::App& command, std::filesystem::path& model);
 
 /// `given`; where it is empty, the model that comes with the program, with a notice. That lies
-/// under share/mcdbn-cl beside the program's own folder. @throws ConfigError if there is none
-std::filesystem::path model_or_default(const std::filesystem::path& given);
+/// under share/mcdbn-cl beside the program's own folder.
+/// @param instead what the command line has in place of a file, for the notice
+/// @throws ConfigError if there is none
+std::filesystem::path model_or_default(const std::filesystem::path& given,
+                                       const std::string& instead = "no --model");
 
 }  // namespace mcdbn::cli

@@ -34,7 +34,7 @@ DetectorViews detector_like(const std::string& name_or_file) {
         "{}: shows no person's hip, knee and ankle as a detector names them; its noise cannot be "
         "measured",
         name_or_file));
-  return {track.keypoints, measured_noise(track, height_px), {}, {}};
+  return {seen_keypoints(track), measured_noise(track, height_px), {}, {}};
 }
 
 std::vector<CLI::Option*> add_detector_camera_flags(CLI::App& command, DetectorCameras& cameras) {

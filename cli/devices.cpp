@@ -54,17 +54,18 @@ void print_as_text(const std::vector<DeviceInfo>& devices) {
 void add_devices_command(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("devices", "Lists the OpenCL platforms and devices");
   add_json_option(*command, context);
+  add_quiet_option(*command, context);
   command->footer(
       "Example:\n  mcdbn-cl devices --json\n  mcdbn-cl train clips/ -o run/ --device 0");
   command->callback([&context] {
     context.run = [&context] {
       const std::vector<DeviceInfo> devices = list_devices();
-      if (devices.empty()) throw DeviceError(describe_devices(devices));
       if (context.json) {
         print_as_json(devices);
       } else {
         print_as_text(devices);
       }
+      if (devices.empty()) throw DeviceError(describe_devices(devices));
     };
   });
 }

@@ -19,6 +19,8 @@
 #include "fit_option.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/formats/joint_map.hpp"
+#include "mcdbn/motion/humanoid.hpp"
 #include "progress.hpp"
 #include "sampling_options.hpp"
 #include "setting_flags.hpp"
@@ -77,6 +79,14 @@ void choose_tracks(EvaluateOptions& options) {
     options.run.detector->body = options.people;
   }
   options.run.camera_known = !options.camera_unknown;
+}
+
+/// @throws ConfigError if the joint map would do nothing
+void check_joint_map(const Model& model, const EvaluateOptions& options) {
+  if (!options.run.joint_map.empty() && !is_humanoid(model.modalities.pose_features.skeleton()))
+    throw ConfigError(
+        "--joint-map is for models of the canonical humanoid, and this one is of its clips' own "
+        "skeleton; leave it out");
 }
 
 /// What compares with other programs and with detectors' joints.
@@ -148,6 +158,7 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   Device device = Device::open({context.platform, context.device});
   const std::filesystem::path model_file = model_or_default(options.model);
   const Model model = load_model(device, model_file);
+  check_joint_map(model, options);
   leave_out_baselines(model, options);
   EvaluationReport report;
   {
@@ -204,7 +215,7 @@ void add_test_options(CLI::App& command, EvaluateOptions& options) {
   command
       .add_option("--protocol", options.protocol,
                   "subject: clips of people that were not trained on; paper: every clip, also "
-                  "those trained on, 10 samples, by folder")
+                  "those trained on, 10 samples at temperature 1, by folder")
       ->check(CLI::IsMember({"subject", "paper"}))
       ->capture_default_str();
   command
@@ -228,10 +239,22 @@ void add_test_options(CLI::App& command, EvaluateOptions& options) {
                    "Accept clips that were trained on");
   command.add_flag("--keep-first-frame", options.run.keep_first_frame,
                    "Keep a leading calibration pose");
+  command
+      .add_option_function<std::filesystem::path>(
+          "--joint-map",
+          [&options](const std::filesystem::path& file) {
+            options.run.joint_map = read_joint_map(file);
+          },
+          "TOML file of role = \"joint name\", for a model of the canonical humanoid and clips "
+          "whose joint names do not show the roles; `train` takes it too (docs/joints.md)")
+      ->type_name("FILE");
 }
 
 void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
-  add_sampling_options(command, options.sampling, "Regenerations of each clip (default: 1)");
+  add_sampling_options(command, options.sampling,
+                       "Regenerations of each clip (default: 1; 10 with --protocol paper)");
+  CLI::Option* temperature = command.get_option("--temperature");
+  temperature->description(temperature->get_description() + "; 1 with --protocol paper");
   add_fit_option(command, options.fit, "default: track, none in the paper's protocol; all methods");
   command
       .add_option("--uncertainty-draws", options.uncertainty_draws,

@@ -134,7 +134,7 @@ void fit_and_save(const CommandContext& context, const FitOptions& options, Fit&
   OutputFile metrics_file(metrics_path.replace_extension(".metrics.jsonl"));
   MetricsLog metrics(metrics_file.temporary());
   ProgressLine progress(context.quiet);
-  const EpochObserver show = shown_on(progress);
+  const EpochObserver show = shown_on(progress, device);
   SavedMachine saved = fit(device, [&](const EpochReport& report) {
     metrics.add(report);
     show(report);

@@ -14,6 +14,7 @@
 #include "base/interruption.hpp"
 #include "base/output_file.hpp"
 #include "camera_options.hpp"
+#include "formats/track_reading.hpp"
 #include "line_source.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/frame_stream.hpp"
@@ -96,38 +97,50 @@ class FrameOutput {
 /// Regenerates a track frame by frame.
 class Following {
  public:
-  /// @param name the track's, for messages
+  /// @param name the track's, for messages  @param rate_hz of frames that do not give it
+  /// @throws ConfigError as LiveRegeneration
   Following(const Model& model, std::string name, std::filesystem::path output,
-            ClipPlacement placement, FollowOptions options)
+            ClipPlacement placement, FollowOptions options, double rate_hz)
       : model_(model),
         name_(std::move(name)),
         output_(std::move(output)),
         placement_(std::move(placement)),
-        options_(std::move(options)) {}
+        options_(std::move(options)),
+        rate_hz_(rate_hz),
+        nobody_(LiveRegeneration::before_anybody(model_, placement_, options_.look_ahead)) {}
 
   void take(const TrackFrame& frame, const TrackLines& lines) {
-    if (!lines.knows_joints()) {
-      ++before_;
-      return;
-    }
-    if (!live_) begin(lines.like());
-    push(frame);
+    if (!live_ && lines.knows_joints()) begin(lines.like());
+    if (live_)
+      push(frame);
+    else
+      write_nobody();
   }
 
-  void take_broken() { push(TrackFrame::unseen(joints_)); }
-  bool has_begun() const { return live_ != nullptr; }
+  void take_broken() {
+    if (live_)
+      push(TrackFrame::unseen(joints_));
+    else
+      write_nobody();
+  }
+  bool has_frames() const { return frames_ != nullptr; }
   bool saw_anybody() const { return saw_anybody_; }  ///< any joint of the person in any frame
   bool shows_somebody() const { return frames_ && frames_->shows_somebody(); }
 
   /// @return frames written
   std::size_t finish() {
-    if (!live_) return 0;
-    frames_->write(live_->skeleton(), live_->finish());
+    if (!frames_) return 0;
+    if (live_) frames_->write(live_->skeleton(), live_->finish());
     frames_->finish();
     return frames_->written();
   }
 
  private:
+  /// @param fps of the track
+  FrameOutput& frames(double fps) {
+    if (!frames_) frames_ = std::make_unique<FrameOutput>(output_, options_.frames, fps);
+    return *frames_;
+  }
   void begin(const Track2d& like) {
     joints_ = like.joint_count();
     if (placement_.camera) placement_.camera = camera_of_track(*placement_.camera, like, name_);
@@ -136,15 +149,18 @@ class Following {
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", name_, error.what()));
     }
-    frames_ = std::make_unique<FrameOutput>(output_, options_.frames, like.fps);
+    frames(like.fps);
     spdlog::info("a frame is written at most {} frames (of {:g} a second) after it came in",
                  live_->latency_frames(), model_.modalities.fps);
-    for (; before_ > 0; --before_) push(TrackFrame::unseen(joints_));
   }
   void push(const TrackFrame& frame) {
     saw_anybody_ = saw_anybody_ || (frame.confidence.array() > 0).any();
     const std::vector<LiveFrame> finished = live_->push(frame);
     frames_->write(live_->skeleton(), finished);
+  }
+  /// For a frame before the joints are known, of which only JSON has any: at once.
+  void write_nobody() {
+    frames(rate_hz_).write(nobody_.skeleton, {{nobody_.channels.row(0), false}});
   }
 
   const Model& model_;
@@ -152,7 +168,8 @@ class Following {
   std::filesystem::path output_;
   ClipPlacement placement_;
   FollowOptions options_;
-  long long before_ = 0;  ///< frames before the joints were known
+  double rate_hz_;
+  Motion nobody_;  ///< one frame
   Eigen::Index joints_ = 0;
   bool saw_anybody_ = false;
   std::unique_ptr<LiveRegeneration> live_;
@@ -205,7 +222,7 @@ void follow_track(const Model& model, const std::filesystem::path& input,
   const std::string name = input == "-" ? "standard input" : input.string();
   TrackLines lines(name, reading);
   LineSource source(input);
-  Following following(model, name, output, placement, options);
+  Following following(model, name, output, placement, options, reading.fps.value_or(kUsualFps));
   // After a request to stop the frames in progress are still written.
   const InterruptionDeferred until_the_end;
   while (const std::optional<std::string> line = source.next()) {
@@ -214,7 +231,9 @@ void follow_track(const Model& model, const std::filesystem::path& input,
     try {
       frame = lines.read(*line);
     } catch (const InputError& error) {
-      if (!following.has_begun()) throw;
+      // An image whose size nothing gives would be missed in every frame that shows a person.
+      const bool size_is_known = lines.knows_joints() || reading.image_size || reading.camera_image;
+      if (!following.has_frames() || !size_is_known) throw;
       spdlog::warn("{}: taken as a frame that shows no person", error.what());
       broken = true;
     }

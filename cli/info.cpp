@@ -7,12 +7,17 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "base/shown.hpp"
 #include "clip_options.hpp"
 #include "commands.hpp"
 #include "default_model.hpp"
+#include "machine_settings.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/base/matrix_file.hpp"
 #include "mcdbn/camera/track_stretches.hpp"
 #include "mcdbn/camera/track_summary.hpp"
 #include "mcdbn/formats/camera_file.hpp"
@@ -86,9 +91,41 @@ json describe_person(const Track2d& track, const std::vector<long long>& numbers
   return person;
 }
 
+/// Rows and columns, where `fit` could read the file.
+std::optional<std::pair<Eigen::Index, Eigen::Index>> matrix_size(const fs::path& path) {
+  if (!is_matrix_file(path)) return {};
+  try {
+    const MatrixF values = read_matrix(path);
+    return std::pair{values.rows(), values.cols()};
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+/// What a file may be that is no track; empty if that is not known.
+std::string other_use(const fs::path& path) {
+  if (path.string().ends_with("metrics.jsonl"))
+    return "it is the log of a training, JSON, a line an epoch";
+  if (extension_of(path) != ".npy" && track_format_of(path)) return {};
+  if (const auto size = matrix_size(path))
+    return fmt::format("it is a matrix of {} x {} numbers, for `mcdbn-cl fit`", size->first,
+                       size->second);
+  return {};
+}
+
+TrackReading tracks_in(const fs::path& path, const TrackReadOptions& options) {
+  try {
+    return read_tracks(path, options);
+  } catch (const InputError& error) {
+    const std::string use = options.format.empty() ? other_use(path) : "";
+    if (use.empty()) throw;
+    throw InputError(fmt::format("{}; {}", error.what(), use));
+  }
+}
+
 json describe_track(const fs::path& path, TrackReadOptions options) {
   if (options.person == TrackReadOptions{}.person) options.person = "all";
-  const TrackReading reading = read_tracks(path, options);
+  const TrackReading reading = tracks_in(path, options);
   const Track2d& track = reading.people.front();
   json joints = json::array(), roles = json::object(), people = json::array();
   for (const std::string& name : track.joint_names) joints.push_back(name);
@@ -98,6 +135,10 @@ json describe_track(const fs::path& path, TrackReadOptions options) {
     people.push_back(describe_person(person, reading.frame_numbers));
   json notices = json::array();
   for (const std::string& notice : reading.notices) notices.push_back(with_flags(notice));
+  if (const auto size = reading.format == "npy" ? matrix_size(path) : std::nullopt)
+    notices.push_back(fmt::format(
+        "a matrix of {} x {} numbers, read as a frame a row; `mcdbn-cl fit` reads it as data",
+        size->first, size->second));
   return {{"kind", "2D track"},
           {"format", reading.format},
           {"joint_set", reading.joint_set.empty() ? json() : json(reading.joint_set)},
@@ -116,7 +157,8 @@ json describe_track(const fs::path& path, TrackReadOptions options) {
 
 json describe_cameras(const fs::path& path, const CameraFormat& format) {
   const CameraRig rig = read_cameras(path);
-  json cameras = json::array();
+  json cameras = json::array(), notices = rig.assumed;
+  for (const std::string& line : rig.stated) notices.push_back(line);
   for (const auto& [name, camera] : rig.cameras) {
     const Eigen::Vector3d centre = -camera.camera_from_world.transpose() * camera.translation;
     cameras.push_back({{"name", name},
@@ -129,8 +171,26 @@ json describe_cameras(const fs::path& path, const CameraFormat& format) {
                        {"centre", {centre.x(), centre.y(), centre.z()}},
                        {"unit_m", camera.unit_m ? json(*camera.unit_m) : json()}});
   }
-  return {
-      {"kind", "cameras"}, {"format", format.name}, {"cameras", cameras}, {"notices", rig.assumed}};
+  return {{"kind", "cameras"}, {"format", format.name}, {"cameras", cameras}, {"notices", notices}};
+}
+
+/// @throws InputError for a folder that holds no track, with what to give in its place if that is
+/// known
+void check_folder(const fs::path& folder) {
+  const auto holds = [](auto entries, const auto& test) {
+    return std::any_of(begin(entries), end(entries),
+                       [&](const fs::directory_entry& entry) { return test(entry.path()); });
+  };
+  if (holds(fs::directory_iterator(folder),
+            [](const fs::path& file) { return extension_of(file) == ".json"; }))
+    return;
+  if (const fs::path model = folder / "model.safetensors"; fs::exists(model))
+    throw InputError(fmt::format("{}: the folder of a training; its model is {}", folder.string(),
+                                 model.string()));
+  if (holds(fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied),
+            is_motion_file))
+    throw InputError(fmt::format("{}: a folder of clips; `mcdbn-cl corpus {}` describes them",
+                                 folder.string(), folder.string()));
 }
 
 json describe(const fs::path& path, const TrackReadOptions& options) {
@@ -143,40 +203,69 @@ json describe(const fs::path& path, const TrackReadOptions& options) {
     description["kind"] = "trained model";
     return description;
   }
-  if (const CameraFormat* format = fs::is_directory(path) ? nullptr : camera_format_of(path))
+  if (fs::is_directory(path))
+    check_folder(path);
+  else if (const CameraFormat* format = camera_format_of(path))
     return describe_cameras(path, *format);
+  else if (extension == ".toml" && options.format.empty())
+    throw InputError(
+        fmt::format("{}: no calibration; a list of clips is for `mcdbn-cl train`, "
+                    "settings are for its option --config",
+                    path.string()));
   return describe_track(path, options);
 }
 
-void print_value(const std::string& key, const json& value, const std::string& indent) {
+/// Each value on a line of its own. @param width of the keys
+void print_value(const std::string& key, const json& value, const std::string& indent,
+                 std::size_t width) {
   const std::string text = value.is_number_float() ? fmt::format("{:.6g}", value.get<double>())
                            : value.is_string()     ? printable(value.get<std::string>())
                                                    : json_text(value);
-  std::cout << fmt::format("{}{:<21} {}\n", indent, key, text);
+  std::cout << fmt::format("{}{:<{}} {}\n", indent, key, width, text);
 }
 
-/// Lists of names line by line; people and cameras each with their values.
-void print_for_people(const json& description) {
-  const json roles = description.value("roles", json::object());
-  for (const auto& [key, value] : description.items()) {
-    if (key == "roles") continue;
-    if (!value.is_array()) {
-      print_value(key, value, "");
+/// That of the longest key whose value stands beside it.
+std::size_t width_of_keys(const json& object) {
+  std::size_t width = 21;
+  for (const auto& [key, value] : object.items())
+    if (!value.is_structured()) width = std::max(width, key.size());
+  return width;
+}
+
+void print_fields(const json& object, const std::string& indent) {
+  const std::size_t width = width_of_keys(object);
+  for (const auto& [key, value] : object.items()) print_value(key, value, indent, width);
+}
+
+void print_list(const std::string& key, const json& list, const json& roles, std::size_t width) {
+  std::cout << fmt::format("{:<{}} {}\n", key, width, list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].is_object()) {
+      std::cout << fmt::format("  {}\n", i + 1);
+      print_fields(list[i], "    ");
       continue;
     }
-    std::cout << fmt::format("{:<22}{}\n", key, value.size());
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      if (!value[i].is_object()) {
-        const std::string name =
-            value[i].is_string() ? value[i].get<std::string>() : value[i].dump();
-        const json role = key == "joints" ? roles.value(name, json()) : json();
-        std::cout << (role.is_null()
-                          ? fmt::format("  {}\n", printable(name))
-                          : fmt::format("  {:<20}{}\n", printable(name), role.get<std::string>()));
-        continue;
-      }
-      std::cout << fmt::format("  {}\n", i + 1);
-      for (const auto& [field, content] : value[i].items()) print_value(field, content, "    ");
+    const std::string name = list[i].is_string() ? list[i].get<std::string>() : list[i].dump();
+    const json role = key == "joints" ? roles.value(name, json()) : json();
+    std::cout << (role.is_null()
+                      ? fmt::format("  {}\n", printable(name))
+                      : fmt::format("  {:<20}{}\n", printable(name), role.get<std::string>()));
+  }
+}
+
+/// Lists of names line by line; people, cameras and settings each with their values.
+void print_for_people(const json& description) {
+  const json roles = description.value("roles", json::object());
+  const std::size_t width = width_of_keys(description);
+  for (const auto& [key, value] : description.items()) {
+    if (key == "roles") continue;
+    if (value.is_array()) {
+      print_list(key, value, roles, width);
+    } else if (value.is_object()) {
+      std::cout << key << '\n';
+      print_fields(key == "config" ? settings_of(description) : value, "  ");
+    } else {
+      print_value(key, value, "", width);
     }
   }
 }
@@ -195,10 +284,11 @@ void add_info_command(CLI::App& app, CommandContext& context) {
       ->type_name("FILE");
   add_track_options(*command, *options);
   add_json_option(*command, context);
+  add_quiet_option(*command, context);
   command->footer("Example:\n  mcdbn-cl info walk.bvh\n  mcdbn-cl info openpose_json/");
   command->callback([&context, path, options] {
     context.run = [&context, path, options] {
-      const json description = describe(path->empty() ? model_or_default({}) : *path, *options);
+      const json description = describe(model_or_default(*path, "no file"), *options);
       if (context.json) {
         print_json(description);
       } else {

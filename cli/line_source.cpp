@@ -26,8 +26,9 @@ LineSource::LineSource(const std::filesystem::path& path)
     : name_(path == "-" ? "standard input" : path.string()) {
   if (path == "-") return;
   struct stat what {};
-  awaits_writer_ = ::stat(path.c_str(), &what) == 0 && S_ISFIFO(what.st_mode);
-  file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | (awaits_writer_ ? O_NONBLOCK : 0));
+  // Opening a pipe without a writer yet would wait for one, and not for Ctrl-C.
+  const bool is_pipe = ::stat(path.c_str(), &what) == 0 && S_ISFIFO(what.st_mode);
+  file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | (is_pipe ? O_NONBLOCK : 0));
   if (file_ < 0)
     throw InputError(fmt::format("{}: cannot be opened: {}", name_, std::strerror(errno)));
 }
@@ -46,12 +47,7 @@ bool LineSource::read_more() {
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return false;
   if (count < 0)
     throw InputError(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno)));
-  if (count == 0 && awaits_writer_) {  // a pipe without a writer yet
-    ::usleep(kLookEvery_ms * 1000);
-    return false;
-  }
-  awaits_writer_ = false;
-  ended_ = count == 0;
+  ended_ = count == 0;  // poll waits for a pipe's first writer
   buffer_.append(piece.data(), static_cast<std::size_t>(count));
   return true;
 }

@@ -24,7 +24,7 @@ class LineSource {
 
   std::string name_;
   int file_ = 0;
-  bool awaits_writer_ = false, ended_ = false;
+  bool ended_ = false;
   std::string buffer_;
   std::size_t at_ = 0;  ///< where the next line begins
 };

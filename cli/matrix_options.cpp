@@ -87,13 +87,16 @@ MatrixF unscaled(const SavedMachine& saved, const MatrixF& values, std::size_t m
   return scale ? scale->undo(values) : values;
 }
 
-void check_values(const MatrixF& values, VisibleKind kind, const std::filesystem::path& file) {
+void check_values(const MatrixF& values, VisibleKind kind, const std::filesystem::path& file,
+                  bool may_be_unknown) {
   for (Eigen::Index r = 0; r < values.rows(); ++r)
     for (Eigen::Index c = 0; c < values.cols(); ++c) {
       const float x = values(r, c);
+      if (may_be_unknown && std::isnan(x)) continue;
       if (!std::isfinite(x))
-        throw InputError(fmt::format("{}: row {}, column {} is {}; numbers are needed throughout",
-                                     file.string(), r + 1, c + 1, x));
+        throw InputError(fmt::format(
+            "{}: row {}, column {} is {}; {}", file.string(), r + 1, c + 1, x,
+            may_be_unknown ? "a number is needed, or nan" : "numbers are needed throughout"));
       if (kind == VisibleKind::binary && (x < 0.0F || x > 1.0F))
         throw InputError(fmt::format(
             "{}: row {}, column {} is {}; binary units need values from 0 to 1 (a Gaussian "

@@ -46,8 +46,9 @@ std::vector<MatrixF> scaled(const SavedMachine& saved, std::vector<MatrixF> data
 MatrixF unscaled(const SavedMachine& saved, const MatrixF& values, std::size_t modality = 0);
 
 /// Checks what a machine can take: numbers throughout, from 0 to 1 where its units are binary.
-/// @throws InputError naming the file, row and column
-void check_values(const MatrixF& values, VisibleKind kind, const std::filesystem::path& file);
+/// @param may_be_unknown NaN is let through  @throws InputError naming the file, row and column
+void check_values(const MatrixF& values, VisibleKind kind, const std::filesystem::path& file,
+                  bool may_be_unknown = false);
 /// Checks that at least one sequence is longer than the history. @param first file, for errors
 /// @throws InputError
 void check_lengths(const std::vector<MatrixF>& data, std::size_t order,

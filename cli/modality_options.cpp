@@ -72,10 +72,9 @@ MrbmUnits mrbm_units(Device& device, const SavedMachine& saved, const Mrbm& mrbm
   Eigen::Index rows = 1;
   for (const ModalityData& input : inputs) {
     const std::size_t m = modality_of(mrbm, input.name, "--modality");
+    for (std::size_t i = 0; i < input.data.size(); ++i)
+      check_values(input.data[i], mrbm.kind(m), input.files.files[i]);
     given[m] = stacked(scaled(saved, input.data, mrbm.visible(m), input.files, m), 0);
-    if (!given[m].allFinite())
-      throw InputError(fmt::format("{}: not numbers throughout; a modality is given whole",
-                                   input.files.files.front().string()));
     rows = given[m].rows();
   }
   MrbmUnits result;

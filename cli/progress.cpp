@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -33,13 +34,14 @@ double ProgressLine::elapsed_s() const {
   return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
-void ProgressLine::show(const std::string& what, double fraction) {
+void ProgressLine::show(const std::string& what, double fraction, double once_s) {
   const auto now = Clock::now();
   const bool due = now - last_shown_ >= (terminal_ ? Clock::duration(kTerminalInterval)
                                                    : Clock::duration(kPlainInterval));
   if (quiet_ || (!due && fraction < 1.0)) return;
   last_shown_ = now;
-  const double left_s = fraction > 0 ? elapsed_s() * (1.0 - fraction) / fraction : 0.0;
+  const double worked_s = std::max(elapsed_s() - once_s, 0.0);
+  const double left_s = fraction > 0 ? worked_s * (1.0 - fraction) / fraction : 0.0;
   put(fmt::format("{:3.0f} %  {}  {} left", 100.0 * fraction, what, duration_text(left_s)));
 }
 

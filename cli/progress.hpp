@@ -15,7 +15,8 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   /// @param fraction done, 0 … 1; adds the time left by the rate so far
-  void show(const std::string& what, double fraction);
+  /// @param once_s of the time so far that does not come again, as that of compiling kernels
+  void show(const std::string& what, double fraction, double once_s = 0);
   /// For work after all that the fraction counts.
   void show(const std::string& what);
   double elapsed_s() const;

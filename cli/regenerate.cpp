@@ -221,11 +221,20 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
       options.method == kModel
           ? nullptr
           : fitted_baseline(options.method, model, lessons_of(options.method, model));
+  bool anybody = false;
   for (std::size_t person = 0; person < people.size(); ++person) {
     TrackFindings findings;
     const std::string name = person_name(options.input, person, people.size());
-    const auto motions = regenerate_named(name, model, simpler.get(), people[person], placement,
-                                          regeneration, findings);
+    std::vector<Motion> motions;
+    try {
+      motions = regenerate_named(name, model, simpler.get(), people[person], placement,
+                                 regeneration, findings);
+    } catch (const InputError& error) {
+      if (people.size() == 1) throw;
+      spdlog::warn("{}; this person is left out", error.what());
+      continue;
+    }
+    anybody = true;
     report_findings(name, people[person], read.frame_numbers, findings);
     if (!placement.camera) {
       report_assumed(findings.camera, finds_angles(model.modalities, placement));
@@ -244,6 +253,9 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
       write_uncertainty_csv(person_path(options.uncertainty, person, people.size()),
                             motions.front(), findings.uncertainty);
   }
+  if (!anybody)
+    throw InputError(
+        fmt::format("{}: nobody shows enough to be regenerated", options.input.string()));
 }
 
 void follow(const Model& model, const RegenerateOptions& options,

@@ -10,37 +10,10 @@
 #include <utility>
 
 #include "base/counted.hpp"
+#include "mcdbn/camera/level_view.hpp"
 #include "mcdbn/camera/track_stretches.hpp"
 
 namespace mcdbn::cli {
-namespace {
-
-/// Of frames counted from 0, as the track's file numbers them.
-class FileFrames {
- public:
-  /// @param numbers [frames] the file's
-  explicit FileFrames(const std::vector<long long>& numbers) : numbers_(numbers) {}
-
-  std::string described(std::vector<FrameRange> ranges) const {
-    for (FrameRange& range : ranges)
-      range = {number(range.first),
-               number(range.first + range.frames - 1) - number(range.first) + 1};
-    return mcdbn::described(ranges);
-  }
-  std::string described(std::vector<SideSwap> swaps) const {
-    for (SideSwap& swap : swaps)
-      for (int* frame : {&swap.first_frame, &swap.last_frame}) *frame = number(*frame);
-    return mcdbn::described(swaps);
-  }
-
- private:
-  int number(int frame) const {
-    return static_cast<int>(numbers_[static_cast<std::size_t>(frame)]);
-  }
-  const std::vector<long long>& numbers_;
-};
-
-}  // namespace
 
 void report_written(const std::filesystem::path& path, int frames, double fps) {
   spdlog::info("{}: {} at {:.4g} fps", path.string(), counted(frames, "frame"), fps);
@@ -60,26 +33,37 @@ void report_assumed(const Camera& camera, bool found) {
 
 void report_findings(const std::string& name, const Track2d& track,
                      const std::vector<long long>& numbers, const TrackFindings& findings) {
-  const FileFrames frames(numbers);
   const TrackFeatures::FillCount& filled = findings.filled;
   const std::vector<FrameRange>& stretches = findings.stretches.stretches;
   if (stretches.size() > 1)
     spdlog::warn(
         "{}: jumps to another place, as if to another person: frames {} are regenerated each by "
         "themselves, with one body",
-        name, frames.described(stretches));
+        name, described(stretches, numbers));
   if (const auto& strays = findings.stretches.strays; !strays.empty())
-    spdlog::warn("{}: another person in frames {}: left out", name, frames.described(strays));
+    spdlog::warn("{}: another person in frames {}: left out", name, described(strays, numbers));
   if (!findings.swaps.empty())
-    spdlog::warn("{}: {}; put right", name, frames.described(findings.swaps));
+    spdlog::warn("{}: {}; put right", name, described(findings.swaps, numbers));
   if (const auto nobody = frames_of_nobody(track); !nobody.empty())
     spdlog::warn("{}: nobody is seen in frames {}: the motion there is made up", name,
-                 frames.described(nobody));
+                 described(nobody, numbers));
   if (!filled.unseen.empty())
-    spdlog::warn("{}: {} are in no column: inferred", name, fmt::join(filled.unseen, ", "));
+    spdlog::warn("{}: {} are never seen: inferred", name, fmt::join(filled.unseen, ", "));
   if (filled.interpolated + filled.missing > 0)
     spdlog::warn("{}: {} missing joints interpolated over short gaps, {} inferred from the others",
                  name, filled.interpolated, filled.missing);
+  if (filled.outside > 0)
+    spdlog::warn(
+        "{}: {} seen joints are outside of the level view, {:.0f} degrees and more from its "
+        "direction: the network does not see them; from a camera that looks down by more than 65 "
+        "degrees the motion may be metres off",
+        name, filled.outside, std::acos(kLevelViewLeastCosine) * 180 / EIGEN_PI);
+  if (findings.placed_by_size)
+    spdlog::warn(
+        "{}: the network's poses do not match what the camera shows: the person is placed by size, "
+        "and the motion may be far off; check --camera, --camera-pitch and --camera-roll. Persons "
+        "upside down, lying or seen in part are answered so, too",
+        name);
 }
 
 void report_uncertainty(const Motion& motion, const MatrixD& deviations) {

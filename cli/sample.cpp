@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "commands.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -39,8 +40,11 @@ MatrixF free_samples(Device& device, const Cdbn& stack, const SampleOptions& opt
 /// The given sequences with what was NaN in them drawn, `count` times over.
 MatrixF given_samples(Device& device, const Cdbn& stack, const SavedMachine& saved,
                       const SampleOptions& options) {
-  const std::vector<MatrixF> given =
-      scaled(saved, options.given.read(), stack.layers.front().shape().visible, options.given);
+  const CrbmShape shape = stack.layers.front().shape();
+  std::vector<MatrixF> given = options.given.read();
+  for (std::size_t i = 0; i < given.size(); ++i)
+    check_values(given[i], shape.kind, options.given.files[i], true);
+  given = scaled(saved, std::move(given), shape.visible, options.given);
   std::vector<MatrixF> copies;
   for (std::size_t i = 0; i < options.count; ++i)
     copies.insert(copies.end(), given.begin(), given.end());

@@ -25,6 +25,7 @@ struct ScoreOptions {
   std::vector<std::string> modalities;  ///< NAME=FILE, of an MRBM
   bool log_partition = false;
   AisSettings annealing;
+  std::vector<const CLI::Option*> of_log_partition;  ///< to check whether they were given
 };
 
 /// A number for each row that has a history.
@@ -147,6 +148,9 @@ void print_scores(const CommandContext& context, const Scores& scores) {
 void run_score(const CommandContext& context, const ScoreOptions& options) {
   check_matrix_output(options.output);
   check_settings(options.annealing);
+  for (const CLI::Option* option : options.of_log_partition)
+    if (option->count() > 0 && !options.log_partition)
+      throw ConfigError(option->get_name() + " is for --log-partition");
   Device device = Device::open({context.platform, context.device});
   const SavedMachine saved = load_machine(device, options.model);
   const bool joint = std::holds_alternative<Mrbm>(saved.machine) || !options.modalities.empty();
@@ -175,10 +179,13 @@ void add_score_command(CLI::App& app, CommandContext& context) {
                     "Estimate log Z of an RBM by annealed importance sampling, and with it the "
                     "log-likelihood");
   add_setting_flags(*command, options->annealing);
+  for (const char* flag : {"--temperatures", "--chains"})
+    options->of_log_partition.push_back(command->get_option(flag));
   add_matrix_output(*command, context, options->output,
                     "File to write, .npy, .csv or .safetensors: a row for each row that has a "
                     "history, a column for each printed score, in that order");
   add_json_option(*command, context);
+  add_quiet_option(*command, context);
   add_device_options(*command, context);
   command->footer(
       "Example:\n  mcdbn-cl score --model digits.safetensors digits.npy --log-partition --json\n"

@@ -77,10 +77,11 @@ void train_run(const CommandContext& context, Device& device, const TrainOptions
                device.info().name, data.modalities.pose_scale.output_dimension(),
                data.modalities.track_scale.output_dimension());
   ProgressLine progress(context.quiet);
-  const TrainedRun trained = train_to_folder(
-      device, data, clips, run, options.checkpoints,
-      {shown_on(progress), [](const std::string& text) { spdlog::warn("{}", with_flags(text)); }},
-      start ? &*start : nullptr);
+  const TrainedRun trained =
+      train_to_folder(device, data, clips, run, options.checkpoints,
+                      {shown_on(progress, device),
+                       [](const std::string& text) { spdlog::warn("{}", with_flags(text)); }},
+                      start ? &*start : nullptr);
   if (const auto& stopped = trained.model.early_stopping)
     spdlog::info("{} kept out to stop early: stopped after {} of {} mini-batches",
                  fmt::join(stopped->held_out, ", "), stopped->steps, config.fine_tuning.steps);
@@ -129,10 +130,19 @@ void print_record(const nlohmann::ordered_json& record) {
     fmt::print("{:<44}  failed: {}\n", name, printable(record.value("error", "")));
 }
 
+bool fine_tunes(const TrainingConfig& config) {
+  return config.fine_tuning.steps > 0;
+}
+
 /// Before anything is trained. @throws ConfigError of the first that cannot be
 void check_settings(const TrainingOptions& settings, const SweepFile& file) {
-  for (const SweepConfiguration& configuration : file.configurations)
-    settings.resolve(configuration).validate();
+  bool any_fine_tunes = false;
+  for (const SweepConfiguration& configuration : file.configurations) {
+    const TrainingConfig config = settings.resolve(configuration);
+    config.validate();
+    any_fine_tunes |= fine_tunes(config);
+  }
+  settings.check_used(any_fine_tunes);
 }
 
 void train_sweep(const CommandContext& context, Device& device, const TrainOptions& options,
@@ -140,13 +150,15 @@ void train_sweep(const CommandContext& context, Device& device, const TrainOptio
   std::optional<ProgressLine> progress;
   const auto watch = [&](bool counts) {
     progress.emplace(context.quiet || !counts);
-    return shown_on(*progress);
+    return shown_on(*progress, device);
   };
   const auto resolve = [&](const SweepConfiguration& varied) {
     return options.settings.resolve(varied);
   };
-  Sweep sweep(device, file.test, clips, resolve, options.run,
-              [](const std::string& notice) { spdlog::warn("{}", with_flags(notice)); });
+  Sweep sweep(
+      device, file.test, clips, resolve, options.run,
+      [](const std::string& notice) { spdlog::warn("{}", with_flags(notice)); },
+      options.checkpoints);
   std::vector<nlohmann::ordered_json> records;
   for (const SweepConfiguration& configuration : file.configurations) {
     spdlog::info("configuration {} of {}: {}", records.size() + 1, file.configurations.size(),
@@ -166,7 +178,7 @@ void train_sweep(const CommandContext& context, Device& device, const TrainOptio
 
 /// The model file that --from names; empty where it is not given.
 std::filesystem::path start_of(const TrainOptions& options) {
-  return options.from == "default" ? model_or_default({}) : options.from;
+  return options.from == "default" ? model_or_default({}, "--from default") : options.from;
 }
 
 /// The settings of a training that starts from that model.
@@ -186,6 +198,7 @@ void print_settings(const CommandContext& context, const TrainOptions& options) 
     Device device = Device::open({context.platform, context.device});
     config = config_from(load_model(device, from), options.settings);
   }
+  options.settings.check_used(fine_tunes(config));
   fmt::print("{}", settings_toml(config));
 }
 
@@ -197,10 +210,15 @@ void run_train(const CommandContext& context, const TrainOptions& options,
   }
   if (!options.from.empty() && !options.sweep.empty())
     throw ConfigError("--sweep compares trainings from nothing; leave --from out");
+  if (options.force && !options.sweep.empty())
+    throw ConfigError(
+        "--sweep trains anew what was not scored with these settings and clips, and nothing else; "
+        "leave --force out, or remove its sweep.jsonl");
   if (options.print_settings) return print_settings(context, options);
   if (options.data.empty() || options.run.empty())
     throw ConfigError("clips to train on and --output RUN are wanted, or --resume RUN");
   TrainingConfig config = options.settings.resolve();
+  if (options.sweep.empty()) options.settings.check_used(fine_tunes(config));
   const auto clips = find_listed_clips(options.data);
   std::optional<SweepFile> sweep;
   if (!options.sweep.empty()) sweep = read_sweep_file(options.sweep);

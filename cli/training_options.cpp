@@ -1,10 +1,13 @@
 #include "training_options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <utility>
 #include <vector>
 
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/joint_map.hpp"
 #include "setting_flags.hpp"
 
@@ -118,6 +121,18 @@ TrainingConfig TrainingOptions::resolve(const std::vector<GivenSetting>& last,
   const TrainingConfig config = applied_to(preset->second());
   const bool greedy = preset_ == "default" && config.fine_tuning.steps == 0;
   return greedy ? applied_to(TrainingConfig::greedy()) : config;
+}
+
+void TrainingOptions::check_used(bool fine_tunes) const {
+  if (fine_tunes) return;
+  const auto refuse = [](const std::string& flag) {
+    throw ConfigError(fmt::format(
+        "{} is of the views that fine-tuning learns from, and nothing is fine-tuned; leave it out",
+        flag));
+  };
+  if (tracks_ == "detector") refuse("--tracks detector");
+  for (const GivenSetting& given : flags_)
+    if (given.name.starts_with("augment.")) refuse(given.who);
 }
 
 void TrainingOptions::apply_stages(TrainingConfig& config) const {

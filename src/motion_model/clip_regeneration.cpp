@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "camera/shown_body.hpp"
 #include "camera/track_resample.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
@@ -76,9 +77,11 @@ struct RegeneratedPart {
   MatrixD uncertainty;
   TrackFeatures::FillCount filled;
   std::vector<SideSwap> swaps;
+  bool placed_by_size = false;
 };
 
-/// The body and the camera, where not given, are found in the longest stretch, for all others.
+/// The body and the camera, where not given, are found in the stretch that shows a body in the most
+/// frames, for all others.
 class PartRegeneration {
  public:
   /// @param placement of the skeleton that is regenerated, which `other` moves to the wanted one
@@ -96,20 +99,22 @@ class PartRegeneration {
   std::vector<RegeneratedPart> regenerated(const std::vector<FrameRange>& stretches) {
     std::vector<SideSwap> swaps;
     std::vector<TrackPart> parts;
-    std::size_t first_of_longest = 0;
-    int longest = -1;
+    const std::vector<bool> bodies = frames_of_a_body(track_);
+    std::size_t reference = 0;
+    std::ptrdiff_t most = -1;
     for (const FrameRange& stretch : stretches) {
       if (placement_.detected) put_sides_right(stretch, swaps);
-      if (stretch.frames > longest) {
-        longest = stretch.frames;
-        first_of_longest = parts.size();
+      const auto begin = bodies.begin() + stretch.first;
+      if (const auto shown = std::count(begin, begin + stretch.frames, true); shown > most) {
+        most = shown;
+        reference = parts.size();
       }
       for (const TrackPart& part : parts_of(track_, stretch)) parts.push_back(part);
     }
     std::vector<RegeneratedPart> done(parts.size());
-    done[first_of_longest] = regenerated(parts[first_of_longest], nullptr);
+    done[reference] = regenerated(parts[reference], nullptr);
     for (std::size_t i = 0; i < parts.size(); ++i)
-      if (i != first_of_longest) done[i] = regenerated(parts[i], &done[first_of_longest]);
+      if (i != reference) done[i] = regenerated(parts[i], &done[reference]);
     done.front().swaps.insert(done.front().swaps.begin(), swaps.begin(), swaps.end());
     return done;
   }
@@ -149,6 +154,7 @@ class PartRegeneration {
                        answer == 0 ? placement.uncertainty_draws : PosteriorDraws{});
       done.motions.push_back(at_tracks_rate(clip.motion, range));
       done.bodies.push_back({clip.camera, clip.motion.skeleton});
+      done.placed_by_size = done.placed_by_size || clip.placed_by_size;
       if (clip.draws.empty()) continue;
       std::vector<Motion> draws;
       for (const Motion& draw : clip.draws) draws.push_back(at_tracks_rate(draw, range));
@@ -181,13 +187,14 @@ class PartRegeneration {
 
 /// Of all parts together; what two of them share counts twice.
 TrackFeatures::FillCount filled_in(const std::vector<RegeneratedPart>& parts) {
-  TrackFeatures::FillCount all{0, 0, parts.front().filled.unseen};
+  TrackFeatures::FillCount all{0, 0, 0, parts.front().filled.unseen};
   const auto unseen_in = [](const RegeneratedPart& part, const std::string& joint) {
     return std::ranges::find(part.filled.unseen, joint) != part.filled.unseen.end();
   };
   for (const RegeneratedPart& part : parts) {
     all.interpolated += part.filled.interpolated;
     all.missing += part.filled.missing;
+    all.outside += part.filled.outside;
     std::erase_if(all.unseen, [&](const auto& joint) { return !unseen_in(part, joint); });
   }
   for (const RegeneratedPart& part : parts)
@@ -250,7 +257,8 @@ std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d&
                {},
                parts.front().bodies.front().camera,
                std::move(uncertainty),
-               std::move(found)};
+               std::move(found),
+               std::ranges::any_of(parts, &RegeneratedPart::placed_by_size)};
   for (const RegeneratedPart& part : parts)
     findings->swaps.insert(findings->swaps.end(), part.swaps.begin(), part.swaps.end());
   std::ranges::sort(findings->swaps, {}, &SideSwap::first_frame);

@@ -73,6 +73,21 @@ double lowest_joint(const Motion& motion) {
   return lowest;
 }
 
+/// The model's mean pose above the origin, its feet on the ground, in one frame.
+Motion standing_mean(const Modalities& modalities, const Skeleton& body, const Camera& camera) {
+  const MatrixF mean = MatrixF::Zero(1, modalities.pose_scale.output_dimension());
+  const auto at_height = [&](double root) {
+    return modalities.pose_features.decode(
+        modalities.pose_in_camera(mean, camera.camera_from_world), camera.camera_from_world, body,
+        modalities.fps, Eigen::RowVector3d(0, root, 0));
+  };
+  return at_height(-lowest_joint(at_height(0)));
+}
+
+bool shows_anybody(const TrackFrame& frame) {
+  return (frame.confidence.array() > 0).any();
+}
+
 Track2d without_frames(Track2d track) {
   drop_first(track, track.x_px.rows());
   return track;
@@ -104,7 +119,7 @@ class LiveRegeneration::Frames {
   std::vector<LiveFrame> push(const TrackFrame& frame) {
     append(raw_, frame);
     ++pushed_;
-    shows_anybody_.push_back((frame.confidence.array() > 0).any());
+    shows_anybody_.push_back(shows_anybody(frame));
     return with_seen(take_frames(false));
   }
 
@@ -156,17 +171,18 @@ class LiveRegeneration::Frames {
   }
 
   /// The next frame at the model's rate.
-  std::vector<LiveFrame> take(const Track2d& frame) {
-    append(recent_, {frame.x_px.row(0), frame.y_px.row(0), frame.confidence.row(0)});
+  std::vector<LiveFrame> take(const Track2d& track) {
+    const TrackFrame frame{track.x_px.row(0), track.y_px.row(0), track.confidence.row(0)};
+    if (!placed_ && !shows_anybody(frame)) return await_person();
+    append(recent_, frame);
     ++open_;
     std::vector<LiveFrame> finished;
     if (!placed_) {
       try {
         solve();
-      } catch (const InputError&) {  // no person yet
+      } catch (const InputError&) {  // too little of a person
         forget();
-        if (++waiting_ > open_at_most_) add(finished, mean_pose());
-        return finished;
+        return await_person();
       }
       placed_ = true;
       while (waiting_ > 0) add(finished, mean_pose());
@@ -175,6 +191,11 @@ class LiveRegeneration::Frames {
     }
     if (open_ > open_at_most_) add(finished, settle(open_ - open_at_most_));
     return finished;
+  }
+
+  /// One frame more before the first person. @return the first of them, once it has to come back
+  std::vector<LiveFrame> await_person() {
+    return ++waiting_ > open_at_most_ ? mean_pose() : std::vector<LiveFrame>();
   }
 
   void forget() {
@@ -265,17 +286,10 @@ class LiveRegeneration::Frames {
     return finished;
   }
 
-  /// For a frame before the first person was seen: above the origin, its feet on the ground.
+  /// For a frame before the first person was seen.
   std::vector<LiveFrame> mean_pose() {
     --waiting_;
-    const MatrixF mean = MatrixF::Zero(1, modalities_.pose_scale.output_dimension());
-    const Camera camera = fit_.camera();
-    const auto at_height = [&](double root) {
-      return modalities_.pose_features.decode(
-          modalities_.pose_in_camera(mean, camera.camera_from_world), camera.camera_from_world,
-          fit_.body(), modalities_.fps, Eigen::RowVector3d(0, root, 0));
-    };
-    const Motion pose = at_height(-lowest_joint(at_height(0)));
+    const Motion pose = standing_mean(modalities_, fit_.body(), fit_.camera());
     return output_.add(pose.skeleton, pose.channels.row(0), false);
   }
 
@@ -307,6 +321,18 @@ LiveRegeneration::LiveRegeneration(const Model& model, const Track2d& like,
 }
 
 LiveRegeneration::~LiveRegeneration() = default;
+
+Motion LiveRegeneration::before_anybody(const Model& model, const ClipPlacement& placement,
+                                        std::optional<std::size_t> look_ahead) {
+  (void)fit_of(placement);
+  (void)look_ahead_of(model, look_ahead);
+  check_skeleton(model.modalities, placement);
+  // How large the camera's image is does not matter to the pose.
+  return standing_mean(
+      model.modalities,
+      placement.skeleton ? *placement.skeleton : model.modalities.pose_features.skeleton(),
+      placement.camera_of(Track2d{}, model.modalities));
+}
 
 std::vector<LiveFrame> LiveRegeneration::push(const TrackFrame& frame) {
   return frames_->push(frame);

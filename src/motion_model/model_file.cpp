@@ -7,6 +7,7 @@
 #include "base/setting_values.hpp"
 #include "machines/machine_tensors.hpp"
 #include "mcdbn/machines/size_limits.hpp"
+#include "mcdbn/motion/humanoid.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
 #include "motion_model/modalities_json.hpp"
 
@@ -18,24 +19,7 @@ using nlohmann::json;
 constexpr int kFormatVersion = 1;
 
 constexpr const char* kMrbmPrefix = "mrbm.";
-constexpr const char *kDeviationC = "pose.deviation.C", *kDeviationBias = "pose.deviation.c";
-
-json sampling_json(const SamplingRule& rule) {
-  return {{"gibbs_steps", rule.gibbs_steps},
-          {"mrbm_gibbs_steps", rule.mrbm_gibbs_steps},
-          {"steady", rule.steady},
-          {"scale", rule.scale},
-          {"always", rule.always}};
-}
-
-/// Algorithm 5's rule for models without one.
-SamplingRule sampling_from(const JsonPlace& about) {
-  if (!about.has("sampling")) return {};
-  const JsonPlace entry = about["sampling"];
-  return {entry["gibbs_steps"].count(size_limits::kGibbsSteps),
-          entry["mrbm_gibbs_steps"].count(size_limits::kGibbsSteps), entry["steady"].truth(),
-          entry["scale"].number(within(0, 1000)), entry.has("always") && entry["always"].truth()};
-}
+constexpr const char* kDeviationPrefix = "pose.deviation.";
 
 /// The settings that there are today, where the record has them.
 void check_config(const JsonPlace& config) {
@@ -53,15 +37,6 @@ void check_config(const JsonPlace& config) {
     else
       given.number(setting.range);
   });
-}
-
-/// Unset for models that were saved without one.
-std::optional<AnswerDeviation> deviation_from(const TensorFile& file, const Cdbn& pose) {
-  if (!file.content.tensors.contains(kDeviationC)) return {};
-  const auto code = static_cast<Eigen::Index>(pose.code_dimension()),
-             visible = static_cast<Eigen::Index>(pose.layers.front().shape().visible);
-  return AnswerDeviation{file.content.get(kDeviationC, file.path, code, visible),
-                         file.content.get(kDeviationBias, file.path, 1, visible)};
 }
 
 json parsed_description(const TensorFile& file) {
@@ -96,6 +71,20 @@ Mcdbn network_from(Device& device, const TensorFile& file, const JsonPlace& abou
           !about.has("fills_gaps") || about["fills_gaps"].truth()};
 }
 
+/// In the words of train's options. @param config checked
+json kind_of_training(const json& config) {
+  json kind = json::object();
+  if (const auto share = record_pointer("augment.detector"); config.contains(share))
+    kind["tracks"] = config.at(share).get<double>() > 0 ? "detector" : "exact";
+  const auto steps = record_pointer("fine-tuning.steps"),
+             from_greedy = record_pointer("fine-tuning.from-greedy");
+  if (config.contains(steps) && config.contains(from_greedy))
+    kind["stages"] = config.at(steps) == 0                ? "greedy"
+                     : config.at(from_greedy).get<bool>() ? "both"
+                                                          : "fine-tuning";
+  return kind;
+}
+
 EarlyStopping early_stopping_from(const JsonPlace& stopped) {
   return {stopped["held_out"].texts(), stopped["steps"].count(any_seed()),
           stopped["loss"].number(any_number())};
@@ -112,7 +101,8 @@ Model model_from(Device& device, const TensorFile& file) {
               modalities_from(about["modalities"]),
               {},
               about["config"].value()};
-  model.network.deviation = deviation_from(file, model.network.cdbns[kPose]);
+  model.network.deviation =
+      get_answer_deviation(file, kDeviationPrefix, model.network.cdbns[kPose]);
   check_config(about["config"]);
   check_frames(about, model.modalities, model.network.cdbns);
   for (const JsonPlace& clip : about["training_clips"].list())
@@ -135,10 +125,7 @@ void save_model(const std::filesystem::path& path, const Model& model, StoredNum
     about[name] = put_cdbn(file, name + ".", model.network.cdbns[m]);
   }
   put_mrbm(file, kMrbmPrefix, model.network.mrbm);
-  if (const auto& deviation = model.network.deviation) {
-    file.put(kDeviationC, deviation->C);
-    file.put(kDeviationBias, deviation->c);
-  }
+  put_answer_deviation(file, kDeviationPrefix, model.network.deviation);
   about["mrbm_hidden"] = model.network.mrbm.hidden();
   about["look_ahead"] = model.network.look_ahead;
   about["mean_field_steps"] = model.network.mean_field_steps;
@@ -168,16 +155,19 @@ nlohmann::json describe_model(const std::filesystem::path& path) {
   const JsonPlace about(parsed, path.string());
   const json& config = about["config"].value();
   check_config(about["config"]);
-  std::size_t numbers = 0;
-  for (const auto& [name, tensor] : file.tensors) numbers += tensor.values.size();
   json clips = json::array();
   for (const JsonPlace& clip : about["training_clips"].list())
     clips.push_back(std::filesystem::path(clip["path"].text()).filename().string());
-  json description = {{"training_clips", clips}, {"parameters", numbers}};
-  for (const char* name : {"fps", "order", "layers", "hidden", "mrbm-hidden", "camera.azimuth",
-                           "camera.elevation", "camera.fov", "seed"})
+  json description = {{"training_clips", clips}, {"parameters", parameter_count(file)}};
+  for (const char* name :
+       {"fps", "order", "layers", "hidden", "mrbm-hidden", "camera.azimuth", "camera.elevation",
+        "camera.fov", "seed", "gaussian.history-noise", "fine-tuning.steps"})
     if (const json::json_pointer place = record_pointer(name); config.contains(place))
       description[name] = config.at(place);
+  description.update(kind_of_training(config));
+  description["skeleton"] =
+      is_humanoid(modalities_from(about["modalities"]).pose_features.skeleton()) ? "canonical"
+                                                                                 : "own";
   if (about.has("look_ahead"))
     description["look_ahead"] = about["look_ahead"].count(size_limits::kLookAhead);
   if (about.has("mean_field_steps"))

@@ -26,9 +26,9 @@ constexpr const char *kModelFile = "model.safetensors", *kMetricsFile = "metrics
 /// The model at last: while it is among the unfinished files the others may be, too.
 constexpr std::array kResults{"config.toml", kMetricsFile, kModelFile};
 
-/// What is recorded is text.
+/// What is recorded is text, and files are recorded by their absolute names.
 void check_names(const ListedClip& clip) {
-  const std::string file = clip.file.string();
+  const std::string file = fs::absolute(clip.file).lexically_normal().string();
   require_utf8(file, file + ": its name");
   require_utf8(clip.person, file + ": its person");
   require_utf8(clip.action, file + ": its action");

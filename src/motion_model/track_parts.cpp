@@ -3,23 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/shown_body.hpp"
+
 namespace mcdbn {
 namespace {
 
 constexpr double kPart_s = 300;
 constexpr double kShared_s = 2;
 
-/// Whether a frame of it shows half of the joints.
-bool shows_a_body(const Track2d& track, const FrameRange& range) {
-  const auto seen = track.confidence.middleRows(range.first, range.frames).array() > 0;
-  return 2 * seen.cast<int>().rowwise().sum().maxCoeff() >= track.joint_count();
-}
-
 /// The frames of a stretch in ranges that do not overlap, none shorter than its margin. Each shows
 /// a body, if any does.
-std::vector<FrameRange> divided(const Track2d& track, const FrameRange& stretch, int frames,
-                                int margin) {
+/// @param bodies which frames of the track show one
+std::vector<FrameRange> divided(const std::vector<bool>& bodies, const FrameRange& stretch,
+                                int frames, int margin) {
   std::vector<FrameRange> ranges;
+  const auto shows_a_body = [&](const FrameRange& range) {
+    const auto first = bodies.begin() + range.first;
+    return std::find(first, first + range.frames, true) != first + range.frames;
+  };
   const auto merge_last = [&] {
     const FrameRange last = ranges.back();
     ranges.pop_back();
@@ -29,8 +30,7 @@ std::vector<FrameRange> divided(const Track2d& track, const FrameRange& stretch,
     ranges.push_back({first, std::min(frames, stretch.end() - first)});
     if (ranges.size() == 1) continue;
     const FrameRange before = ranges[ranges.size() - 2];
-    if (ranges.back().frames <= margin || !shows_a_body(track, ranges.back()) ||
-        !shows_a_body(track, before))
+    if (ranges.back().frames <= margin || !shows_a_body(ranges.back()) || !shows_a_body(before))
       merge_last();
   }
   return ranges;
@@ -45,7 +45,7 @@ std::vector<TrackPart> parts_of(const Track2d& track, const FrameRange& stretch)
   const int margin = frames_of(kShared_s), frames = std::max(1, frames_of(kPart_s));
   std::vector<TrackPart> parts;
   int known = stretch.first;
-  for (const FrameRange& own : divided(track, stretch, frames, margin)) {
+  for (const FrameRange& own : divided(frames_of_a_body(track), stretch, frames, margin)) {
     const int first = std::max(stretch.first, own.first - margin);
     const int end = std::min(stretch.end(), own.end() + margin);
     parts.push_back({{first, end - first}, known - first});

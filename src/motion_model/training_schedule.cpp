@@ -1,14 +1,18 @@
 #include "mcdbn/motion_model/training_schedule.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 
 #include "corpus/augmented_views.hpp"
 #include "corpus/clip_pieces.hpp"
 #include "corpus/held_out_person.hpp"
+#include "learning/contrastive_divergence.hpp"
 #include "learning/learnt_deviation.hpp"
 #include "learning/memory_need.hpp"
 #include "learning/random_start.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/learning/fine_tuning.hpp"
 #include "mcdbn/learning/greedy_schedule.hpp"
 #include "motion_model/pose_loss.hpp"
@@ -68,6 +72,19 @@ Mcdbn greedy_start(Device& device, const SequenceSource& source, Mcdbn start,
                       checkpoints);
 }
 
+/// Hidden limbs teach no deviation.
+/// @throws ConfigError
+void check_deviation(std::size_t dimension, const TrainingConfig& config) {
+  const AugmentationSettings& views = config.augment;
+  if (views.missing == 0 && views.detector == 0) return;
+  if (!learns_deviation(layer_shapes(dimension, config).front(), config.gaussian)) return;
+  throw ConfigError(fmt::format(
+      "`gaussian.deviation-rate` (now {:g}) is learnt from limbs that are all seen, and "
+      "`augment.missing` (now {:g}) and `augment.detector` ({:g}) hide some: set it, or both of "
+      "these, to 0",
+      config.gaussian.deviation_rate, views.missing, views.detector));
+}
+
 /// What would only be found out in the middle of the training.
 void check_before(const DeviceInfo& device, const TrainingSet& data, const ClipStore& clips,
                   const TrainingConfig& config) {
@@ -80,6 +97,7 @@ void check_before(const DeviceInfo& device, const TrainingSet& data, const ClipS
   std::vector<std::size_t> dimensions;
   for (const ModalityClips& modality : ClipSource(data).sequences().modalities)
     dimensions.push_back(modality.dimension());
+  if (tunes && config.fine_tuning.from_greedy) check_deviation(dimensions[kTrack], config);
   const auto frames = static_cast<double>(data.frames());
   const double kept =
       !tunes ? frames
@@ -92,17 +110,20 @@ void check_before(const DeviceInfo& device, const TrainingSet& data, const ClipS
 }  // namespace
 
 TrainingSet make_training_set(const ClipStore& clips, const TrainingConfig& config) {
-  return make_training_set(clips, config, config.seed, config.fine_tuning.steps > 0);
+  return make_training_set(clips, config, config.seed, config.fine_tuning.steps > 0,
+                           person_to_hold_out(clips, config.hold_out_among));
 }
 
 TrainingSet make_training_set(const ClipStore& clips, const Modalities& modalities,
                               const TrainingConfig& config) {
-  return encoded_training_set(clips, modalities, config, config.fine_tuning.steps > 0);
+  return encoded_training_set(clips, modalities, config, config.fine_tuning.steps > 0,
+                              person_to_hold_out(clips, config.hold_out_among));
 }
 
 TrainingSet make_augmented_views(const ClipStore& clips, const Modalities& modalities,
                                  const TrainingConfig& config) {
-  return make_augmented_views(clips, modalities, config, config.seed);
+  return make_augmented_views(clips, modalities, config, config.seed, {},
+                              person_to_hold_out(clips, config.hold_out_among));
 }
 
 TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& views,
@@ -141,7 +162,9 @@ TrainedNetwork train_network(Device& device, const TrainingSet& data, const Clip
   }
   const ViewSource views(clips, data, config);
   start = greedy_start(device, views, std::move(start), config, observer, checkpoints);
-  return fine_tune(device, start, views.views(), config, tuning, checkpoints);
+  const auto& strangers = views.strangers();
+  return fine_tune_on(device, start, views, strangers ? &*strangers : nullptr, data.modalities,
+                      config, tuning, checkpoints);
 }
 
 }  // namespace mcdbn

@@ -34,9 +34,20 @@ int frames_of_pieces(const TrainingConfig& config) {
   return std::max(kPieceFrames, static_cast<int>(3 * window));
 }
 
-const TrainingSet& ViewSource::views() const {
-  if (!views_)
-    views_ = make_augmented_views(clips_, data_.modalities, config_, config_.seed, data_.new_poses);
+ViewSource::ViewSource(ClipStore clips, const TrainingSet& data, TrainingConfig config)
+    : clips_(std::move(clips)),
+      data_(data),
+      config_(std::move(config)),
+      held_out_(person_to_hold_out(clips_, config_.hold_out_among)) {}
+
+const ViewSource::Views& ViewSource::made() const {
+  if (views_) return *views_;
+  TrainingSet all = make_augmented_views(clips_, data_.modalities, config_, config_.seed,
+                                         data_.new_poses, held_out_);
+  if (held_out_)
+    views_ = Views{views_without(all, *held_out_), views_of(all, *held_out_)};
+  else
+    views_ = Views{std::move(all), {}};
   return *views_;
 }
 
@@ -56,8 +67,10 @@ std::size_t fresh_views_at_once(const ClipStore& clips, const TrainingConfig& co
 
 TrainingSet some_fresh_views(const ClipStore& clips, const Modalities& modalities,
                              const TrainingConfig& config) {
-  const PieceChoice pieces = pieces_of(config);
-  return FreshViews(clips, modalities, config, pose_pool_for(clips, config), config.seed, pieces)
+  PieceChoice pieces = pieces_of(config);
+  pieces.people.without = person_to_hold_out(clips, config.hold_out_among);
+  return FreshViews(clips, modalities, config, pose_pool_for(clips, config, pieces.people),
+                    config.seed, pieces)
       .make_set(0, static_cast<std::size_t>(kMostFramesInMemory / pieces.frames));
 }
 
@@ -124,15 +137,16 @@ class ViewLoader {
 FreshViewSource::FreshViewSource(const ClipStore& clips, const TrainingSet& data,
                                  const TrainingConfig& config) {
   PieceChoice pieces = pieces_of(config);
-  pieces.without = person_to_hold_out(clips, config.hold_out_among);
+  pieces.people.without = person_to_hold_out(clips, config.hold_out_among);
   loader_ = std::make_unique<ViewLoader>(
       FreshViews(clips, data.modalities, config, data.new_poses, config.seed, pieces),
       fresh_views_at_once(clips, config), config.fine_tuning);
-  if (!pieces.without) return;
+  if (!pieces.people.without) return;
   constexpr std::size_t kViewsOfStranger = 24;
-  pieces.only = std::exchange(pieces.without, {});
+  pieces.people = {.without = {}, .only = pieces.people.without};
   strangers_ =
-      FreshViews(clips, data.modalities, config, data.new_poses, seed_of_strangers(config), pieces)
+      FreshViews(clips, data.modalities, config, pose_pool_for(clips, config, pieces.people),
+                 seed_of_strangers(config), pieces)
           .make_set(0, kViewsOfStranger);
 }
 

@@ -212,6 +212,7 @@ TEST_CASE("info: every option changes what its help describes") {
           CHECK(sized.at("width_px") == 1000);
           CHECK(sized.at("height_px") == 800);
         }},
+       {"--quiet", [&] { CHECK(info_of(" --quiet") == plain); }},
        {"--json", [&] {
           const CliResult result = run_cli("info --json " + clip.string());
           CHECK(json::parse(result.standard_output).at("frames") == 6);
@@ -235,38 +236,47 @@ TEST_CASE("info gives a model's training settings") {
   CHECK(about.at("camera.azimuth") == 30);
   CHECK(about.at("camera.elevation") == 10);
   CHECK(about.at("camera.fov") == 45);
+  CHECK(about.at("tracks") == "exact");
+  CHECK(about.at("skeleton") == "own");
+  CHECK(about.at("stages") == "both");
   const std::string text = run_cli("info " + model.string()).standard_output;
-  CHECK(text.starts_with("camera.azimuth        30\n"));
+  CHECK(text.starts_with("camera.azimuth         30\n"));
+  CHECK(text.find("\ngaussian.history-noise 0\n") != std::string::npos);
 }
 
 TEST_CASE("devices: every option changes what its help describes") {
   if (!have_device()) return;
-  check_options("devices",
-                {{"--json", [] {
-                    const json listed = json::parse(run_cli("devices --json").standard_output);
-                    const auto devices = mcdbn::list_devices();
-                    REQUIRE(listed.at("devices").size() == devices.size());
-                    for (std::size_t i = 0; i < devices.size(); ++i) {
-                      const json& one = listed.at("devices").at(i);
-                      const mcdbn::DeviceInfo& info = devices[i];
-                      CHECK(one == json{{"platform_index", info.platform_index},
-                                        {"platform", info.platform_name},
-                                        {"device_index", info.device_index},
-                                        {"name", info.name},
-                                        {"vendor", info.vendor},
-                                        {"driver", info.driver_version},
-                                        {"opencl_c_version", info.opencl_c_version},
-                                        {"type", info.is_gpu ? "gpu" : "cpu"},
-                                        {"compute_units", info.compute_units},
-                                        {"global_memory_bytes", info.global_memory_bytes},
-                                        {"largest_buffer_bytes", info.largest_buffer_bytes},
-                                        {"local_memory_bytes", info.local_memory_bytes},
-                                        {"largest_work_group", info.largest_group},
-                                        {"largest_work_group_sides", info.largest_group_sides},
-                                        {"preferred_vector_width", info.preferred_vector_width},
-                                        {"native_vector_width", info.native_vector_width}});
-                    }
-                  }}});
+  check_options(
+      "devices",
+      {{"--json",
+        [] {
+          const json listed = json::parse(run_cli("devices --json").standard_output);
+          const auto devices = mcdbn::list_devices();
+          REQUIRE(listed.at("devices").size() == devices.size());
+          for (std::size_t i = 0; i < devices.size(); ++i) {
+            const json& one = listed.at("devices").at(i);
+            const mcdbn::DeviceInfo& info = devices[i];
+            CHECK(one == json{{"platform_index", info.platform_index},
+                              {"platform", info.platform_name},
+                              {"device_index", info.device_index},
+                              {"name", info.name},
+                              {"vendor", info.vendor},
+                              {"driver", info.driver_version},
+                              {"opencl_c_version", info.opencl_c_version},
+                              {"type", info.is_gpu ? "gpu" : "cpu"},
+                              {"compute_units", info.compute_units},
+                              {"global_memory_bytes", info.global_memory_bytes},
+                              {"largest_buffer_bytes", info.largest_buffer_bytes},
+                              {"local_memory_bytes", info.local_memory_bytes},
+                              {"largest_work_group", info.largest_group},
+                              {"largest_work_group_sides", info.largest_group_sides},
+                              {"preferred_vector_width", info.preferred_vector_width},
+                              {"native_vector_width", info.native_vector_width}});
+          }
+        }},
+       {"--quiet", [] {
+          CHECK(run_cli("devices --quiet").standard_output == run_cli("devices").standard_output);
+        }}});
 }
 
 TEST_CASE("bench: every option changes what its help describes") {
@@ -336,6 +346,12 @@ TEST_CASE("bench: every option changes what its help describes") {
          CHECK(count("thread_name") == 2);  // both sizes of mini-batch
          CHECK(count("joint_chain") == 2);
          CHECK(count("joint_likelihood_update") == 2);
+       }},
+      {"--quiet",
+       [] {
+         const CliResult result = run_cli("bench --quiet --seconds 0 --only gemm regeneration");
+         CHECK(result.standard_error.empty());
+         check_bench_lines(result.standard_output);
        }},
       // Not run: it takes minutes.
       {"--tune", [] {}}};

@@ -66,6 +66,20 @@ TEST_CASE("corpus: every option changes what its help describes") {
           CHECK(json.at("usable") == 0);
           const std::string problem = json.at("clips").at(0).at("problems").at(0).at("text");
           CHECK(problem.find("left_ankle") != std::string::npos);
+          // Then there is nothing to list.
+          const fs::path none = folder / "none.toml";
+          const CliResult empty = run_cli(
+              fmt::format("{} --joint-map '{}' -o '{}'", data, map.string(), none.string()));
+          CHECK(empty.exit_code == 3);
+          CHECK(empty.standard_error.find(none.string() + ": not written") != std::string::npos);
+          CHECK(!fs::exists(none));
+          // A name that no clip has is a mistake.
+          folder.write("map.toml", "left_knee = \"LeftLeggg\"\n");
+          const CliResult odd =
+              run_cli(fmt::format("{} --quiet --joint-map '{}'", data, map.string()));
+          CHECK(odd.exit_code == 0);
+          CHECK(odd.standard_error.find("left_knee is 'LeftLeggg', and no clip has") !=
+                std::string::npos);
           CHECK(run_cli(data + " --joint-map absent").exit_code == 3);
         }},
        {"--quiet", [&] {
@@ -115,6 +129,20 @@ TEST_CASE("a list of several skeletons trains the humanoid, which is written bac
                             (pipeline.motion() / "walk_s02_01.bvh").string(),
                             (folder / "report").string()))
             .exit_code == 0);
+  // A clip whose knee has no known name needs a map.
+  mcdbn::Motion unknown = mcdbn::read_bvh(pipeline.motion() / "walk_s02_02.bvh");
+  for (mcdbn::Joint& joint : unknown.skeleton.joints)
+    if (joint.name == "LeftLeg") joint.name = "spam";
+  const fs::path renamed = folder / "renamed.bvh";
+  write_bvh(renamed, unknown);
+  const std::string evaluated =
+      fmt::format("evaluate {} --test '{}' --fit none --baselines none", model, renamed.string());
+  const CliResult refused = run_cli(evaluated);
+  CHECK(refused.exit_code == 3);
+  CHECK(refused.standard_error.find(renamed.string() + ": no joint is known to be left_knee") !=
+        std::string::npos);
+  const fs::path map = folder.write("map.toml", "left_knee = \"spam\"\n");
+  CHECK(run_cli(fmt::format("{} --joint-map '{}'", evaluated, map.string())).exit_code == 0);
   CHECK(run_cli(fmt::format("regenerate {} --to track --input '{}' -o '{}'", model, walk,
                             (folder / "again.csv").string()))
             .exit_code == 0);

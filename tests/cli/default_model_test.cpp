@@ -69,11 +69,26 @@ TEST_CASE("the default model: info, regenerate and evaluate take it and report i
   CHECK(usual("--baselines usual").exit_code == 3);
 }
 
-TEST_CASE("the default model: a program without one asks for --model") {
+TEST_CASE("the default model: notices name what the command has, and a program without one too") {
+  const auto notice = [](const std::string& call, const std::string& words) {
+    const CliResult result = run_cli(call);
+    CAPTURE(result.standard_error);
+    CHECK(result.exit_code == 0);
+    CHECK(result.standard_error.find("info: " + words + ": the general one, ") !=
+          std::string::npos);
+  };
+  notice("info", "no file");
+  notice("train --from default --print-settings", "--from default");
   const ScratchFolder folder;
   fs::create_directory(folder / "bin");
   fs::copy(kProgram, folder / "bin");
-  const CliResult alone = run_program(folder / "bin" / kProgram.filename(), "info");
-  CHECK(alone.exit_code == 2);
-  CHECK(alone.standard_error.find("--model") != std::string::npos);
+  const auto check_without = [&](const std::string& call, const std::string& words) {
+    const CliResult alone = run_program(folder / "bin" / kProgram.filename(), call);
+    CAPTURE(alone.standard_error);
+    CHECK(alone.exit_code == 2);
+    CHECK(alone.standard_error.find("error: " + words + ": this program comes without") !=
+          std::string::npos);
+  };
+  check_without("info", "no file");
+  check_without("train --from default --print-settings", "--from default");
 }

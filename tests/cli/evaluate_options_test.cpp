@@ -289,6 +289,12 @@ TEST_CASE("evaluate: every option changes what its help describes") {
          CHECK(by_program(fitted, "--baselines none").at("model").at("within_90").is_null());
          CHECK(refused("--include-training --uncertainty-draws -1", 2));
        }},
+      {"--joint-map",  // corpus_test.cpp has a model of the humanoid, which takes it
+       [&] {
+         const fs::path map = folder.write("map.toml", "head = \"Neck\"\n");
+         CHECK(refused(fmt::format("--include-training --joint-map '{}'", map.string()), 2));
+         CHECK(refused("--include-training --joint-map absent", 3));
+       }},
       {"--protocol", [&] { CHECK(refused("--protocol other", 2)); }},
       {"--platform", [&] { CHECK(refused("--platform no-such-name", 4)); }},
       {"--device", [&] { CHECK(refused("--device no-such-name", 4)); }},
@@ -311,9 +317,12 @@ TEST_CASE("evaluate: what holds where an option is not given, and the text for p
   CHECK(text.standard_output.starts_with("1 clip, 36 frames\n"));
   call.uncertainty_draws = 50;
   const json wanted = by_library(call, views_of_training(call.model));
-  CHECK(text.standard_output.find(fmt::format(
-            " Of 90 % intervals of the joints' places, {:.1f} % hold the truth",
-            100 * wanted.at("model").at("within_90").get<double>())) != std::string::npos);
+  const double share = wanted.at("coverage").at("joints").at("all").at("share");
+  const std::string held = fmt::format("{:.1f} % ", 100 * share);
+  for (const std::string& sentence :
+       {" Of 90 % intervals of the joints' places, " + held + "hold the truth",
+        "\n90 % intervals that hold the truth: of joints " + held})
+    CHECK(text.standard_output.find(sentence) != std::string::npos);
   const json& track = wanted.at("track_from_pose");
   const std::string line = fmt::format(
       "\n2D from 3D: joints {:.1f} px off, relative to the root (the mean track {:.1f} px)\n",

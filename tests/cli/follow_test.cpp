@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <csignal>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <sstream>
 
 #include "base/text_file.hpp"
+#include "follow_scene.hpp"
 #include "library_calls.hpp"
 #include "mcdbn/camera/track_stretches.hpp"
 #include "mcdbn/formats/bvh.hpp"
@@ -16,36 +16,14 @@
 #include "mcdbn/formats/frame_stream.hpp"
 #include "mcdbn/formats/track_csv.hpp"
 #include "mcdbn/motion_model/live_regeneration.hpp"
-#include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;
 namespace fs = std::filesystem;
 
 namespace {
 
-struct Scene {
-  ScratchFolder folder;
-  fs::path track = folder / "track.csv", camera = folder / "camera.yaml";
-
-  Scene() {
-    REQUIRE(run_cli(fmt::format("project '{}' -o '{}' --write-camera '{}' --noise-px 1",
-                                (TinyPipeline::instance().motion() / "walk_s02_01.bvh").string(),
-                                track.string(), camera.string()))
-                .exit_code == 0);
-  }
-  std::string call(const std::string& options) const {
-    return fmt::format("regenerate --follow --model '{}' --camera '{}' {}",
-                       TinyPipeline::instance().model().string(), camera.string(), options);
-  }
-  /// With the track at its standard input.
-  CliResult follow(const std::string& options, const fs::path& input) const {
-    return run_program("/bin/bash", fmt::format("-c \"cat '{}' | '{}' {}\"", input.string(),
-                                                MCDBN_CLI, call(options)));
-  }
-};
-
 /// What the library makes of the track, as that stream writes it.
-std::string by_library(const Scene& scene, const std::string& frames,
+std::string by_library(const FollowScene& scene, const std::string& frames,
                        std::optional<std::size_t> look_ahead = {}) {
   const mcdbn::Model model = load_model(usual_device(), TinyPipeline::instance().model());
   mcdbn::ClipPlacement placement;
@@ -71,7 +49,7 @@ std::string by_library(const Scene& scene, const std::string& frames,
 
 TEST_CASE("regenerate --follow: a piped track as the library follows it, in every form of frames") {
   if (!have_device()) return;
-  const Scene scene;
+  const FollowScene scene;
   const fs::path out = scene.folder / "out.bvh";
   const CliResult result = scene.follow(fmt::format("-o '{}'", out.string()), scene.track);
   CAPTURE(result.standard_error);
@@ -94,7 +72,7 @@ TEST_CASE("regenerate --follow: a piped track as the library follows it, in ever
 TEST_CASE(
     "regenerate --follow: frames come while the track is written; Ctrl-C leaves a whole file") {
   if (!have_device()) return;
-  const Scene scene;
+  const FollowScene scene;
   const fs::path out = scene.folder / "out.bvh";
   // 30 frames, then nothing until all but the last 8 are there (look-ahead and 3), then Ctrl-C.
   const fs::path script = scene.folder.write(
@@ -119,7 +97,7 @@ TEST_CASE(
 
 TEST_CASE("regenerate --follow: a broken line is named and counts as a frame without anybody") {
   if (!have_device()) return;
-  const Scene scene;
+  const FollowScene scene;
   std::string text = mcdbn::read_text_file(scene.track);
   std::size_t at = 0;
   for (int line = 1; line < 12; ++line) at = text.find('\n', at) + 1;
@@ -134,7 +112,7 @@ TEST_CASE("regenerate --follow: a broken line is named and counts as a frame wit
 
 TEST_CASE("regenerate --follow: a track that shows too little is refused by its name") {
   if (!have_device()) return;
-  const Scene scene;
+  const FollowScene scene;
   const fs::path hips = scene.folder.write("hips.csv", "Hips_x_px,Hips_y_px\n10,20\n11,21\n");
   CHECK(scene.follow("", hips).standard_error.find(
             "error: standard input: the 2D track shows too little of the body") !=
@@ -148,7 +126,7 @@ TEST_CASE("regenerate --follow: a track that shows too little is refused by its 
 
 TEST_CASE("regenerate --follow: a reader that closes the pipe ends it") {
   if (!have_device()) return;
-  const Scene scene;
+  const FollowScene scene;
   // The track goes on for as long as it is read.
   const fs::path script = scene.folder.write(
       "closed.sh",
@@ -165,7 +143,7 @@ TEST_CASE("regenerate --follow: a reader that closes the pipe ends it") {
 
 TEST_CASE("regenerate --follow: an output that cannot be written is named, no frame is blamed") {
   if (!have_device()) return;
-  const Scene scene;
+  const FollowScene scene;
   const CliResult full = run_program(
       "/bin/bash",
       fmt::format("-c \"'{}' {} > /dev/full\"", MCDBN_CLI,
@@ -190,16 +168,9 @@ TEST_CASE("regenerate --follow: an output that cannot be written is named, no fr
 
 TEST_CASE("regenerate --follow: a person by number who never comes is exit code 3") {
   if (!have_device()) return;
-  const Scene scene;
+  const FollowScene scene;
   // Of our CSV, which has one person, and of a detector's frames, a line each.
-  const fs::path detected = scene.folder / "detected";
-  REQUIRE(run_cli(fmt::format("project '{}' --like openpose --format openpose -o '{}'",
-                              (TinyPipeline::instance().motion() / "walk_s02_01.bvh").string(),
-                              detected.string()))
-              .exit_code == 0);
-  std::set<fs::path> files(fs::directory_iterator(detected), {});
-  std::string lines;
-  for (const fs::path& file : files) lines += mcdbn::read_text_file(file) + "\n";
+  const std::string lines = scene.detected_lines();
   for (const fs::path& track : {scene.track, scene.folder.write("lines.jsonl", lines)}) {
     CAPTURE(track.string());
     const CliResult second = scene.follow("--person 2 --quiet --frames json", track);
@@ -221,7 +192,7 @@ TEST_CASE("regenerate --follow: a person by number who never comes is exit code 
 TEST_CASE(
     "regenerate --follow: a track in which nobody is seen gives the mean pose and a warning") {
   if (!have_device()) return;
-  const Scene scene;
+  const FollowScene scene;
   mcdbn::Track2d track = mcdbn::read_track_csv(scene.track);
   const auto warned = [&](Eigen::Index hidden) {
     leave_out(track, {{0, static_cast<int>(hidden)}});
@@ -238,7 +209,7 @@ TEST_CASE(
 
 TEST_CASE("regenerate --follow: the output's ending is that of a format of frames") {
   if (!have_device()) return;
-  const Scene scene;
+  const FollowScene scene;
   const auto call = [&](const std::string& name, const std::string& options) {
     return run_cli(scene.call(fmt::format("--input '{}' -o '{}' --quiet {}", scene.track.string(),
                                           (scene.folder / name).string(), options)));
@@ -254,7 +225,7 @@ TEST_CASE("regenerate --follow: the output's ending is that of a format of frame
 
 TEST_CASE("regenerate --follow: what cannot be followed") {
   if (!have_device()) return;
-  const Scene scene;
+  const FollowScene scene;
   for (const char* other :
        {"--samples 2", "--fit none", "--to track", "--method mean_pose", "--write-camera c.yml",
         "--uncertainty u.csv", "--temperature 0.5", "--gibbs-steps 1", "--mrbm-gibbs-steps 1",

@@ -64,6 +64,39 @@ TEST_CASE("a frame rate that no clip has is reported by every command that reads
                warning);
 }
 
+TEST_CASE("of a camera that looks steeply down it is reported what the network does not see") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const auto file = [&](const char* name) { return (folder / name).string(); };
+  // @return what regenerate reports of a track from that elevation
+  const auto reported = [&](int elevation_deg, const std::string& options) {
+    REQUIRE(run_cli(fmt::format("project '{}' -o '{}' --write-camera '{}' --camera-elevation {}",
+                                (pipeline.motion() / "walk_s02_01.bvh").string(), file("t.csv"),
+                                file("c.yaml"), elevation_deg))
+                .exit_code == 0);
+    const CliResult result = run_cli(fmt::format(
+        "regenerate --model '{}' --input '{}' --camera '{}' -o '{}' --fit none {}",
+        pipeline.model().string(), file("t.csv"), file("c.yaml"), file("o.bvh"), options));
+    CHECK(result.exit_code == 0);
+    return result.standard_error;
+  };
+  const std::string steep = reported(85, "--quiet");
+  CAPTURE(steep);
+  CHECK(steep.find("mcdbn-cl: warning: " + file("t.csv") + ": ") == 0);
+  CHECK(steep.find(" seen joints are outside of the level view, 84 degrees and more from its "
+                   "direction") != std::string::npos);
+  CHECK(steep.find("never seen") == std::string::npos);
+  CHECK(steep.find("missing joints") == std::string::npos);
+  // Of a usual view there is nothing to warn of: of its own camera file all is known.
+  CHECK(reported(10, "--quiet").empty());
+  const std::string usual = reported(10, "");
+  CAPTURE(usual);
+  CHECK(usual.find("warning") == std::string::npos);
+  for (const char* line : {": its world is y-up (opencv)\n", " m are scaled to the motion's, "})
+    CHECK(usual.find(line) != std::string::npos);
+}
+
 TEST_CASE("what is odd about a skeleton's file is reported") {
   if (!have_device()) return;
   const TinyPipeline& pipeline = TinyPipeline::instance();

@@ -299,6 +299,7 @@ TEST_CASE("score: every option changes what its help describes") {
                     CHECK(text.starts_with("rows                    60\nfree_energy"));
                     CHECK(text.find("log_partition") == std::string::npos);
                   }});
+  rows.push_back({"--quiet", [&] { CHECK(output_of(call + " --quiet") == output_of(call)); }});
   check_options("score", rows);
 }
 
@@ -359,7 +360,7 @@ TEST_CASE("sample: a modality of an MRBM, free or with others given, in its own 
   check_refused(call + " --infer v --given " + files.file("v.npy"), 2,
                 "--given: what is known of an MRBM");
   check_refused(call + " --infer v --modality a=" + files.file("holes.npy"), 3,
-                "holes.npy: not numbers throughout");
+                "holes.npy: row 8, column 2 is nan; numbers are needed throughout");
 }
 
 TEST_CASE("sample: every option changes what its help describes") {

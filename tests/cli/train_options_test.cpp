@@ -125,7 +125,7 @@ TEST_CASE("train: every option changes what its help describes") {
   // What these do has test cases of its own, and scripts_test.py.
   rows.push_back({"--preset", [&] {
                     CHECK(train("x.bvh", run, "--preset other").exit_code == 2);
-                    trained(pipeline.training_clips(), "--preset general --augment-views 1");
+                    trained(pipeline.training_clips(), "--preset general");
                     CHECK(model().find("JOINT left_shoulder") !=
                           std::string::npos);  // the humanoid
                   }});
@@ -155,6 +155,10 @@ TEST_CASE("train: every option changes what its help describes") {
              train(pipeline.training_clips(), run, kQuick + " --force " + mapped);
          CHECK(lame.exit_code == 3);
          CHECK(lame.standard_error.find("left_ankle") != std::string::npos);
+         folder.write("map.toml", "left_knee = \"LeftLeggg\"\n");
+         CHECK(trained(pipeline.training_clips(), mapped)
+                   .standard_error.find("left_knee is 'LeftLeggg', and no clip has") !=
+               std::string::npos);
          folder.write("map.toml", "left_knee = 3\n");
          CHECK(train("x.bvh", run, mapped).exit_code == 3);
        }});

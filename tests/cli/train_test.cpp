@@ -55,7 +55,7 @@ TEST_CASE("train --stages leaves stages out") {
     return stages_of(run);
   };
   const std::set<std::string> greedy{"pose.0", "pose.1", "track.0", "track.1", "mrbm"};
-  CHECK(stages("--stages greedy", kTiny) == greedy);
+  CHECK(stages("--stages greedy --fine-tuning-steps 3", kTinyGreedy) == greedy);
   CHECK(stages("--fine-tuning-steps 0", kTinyGreedy) == greedy);
   CHECK(stages("--stages both", kTiny) ==
         std::set<std::string>{"pose.0", "track.0", "mrbm", "fine-tuning"});
@@ -63,6 +63,39 @@ TEST_CASE("train --stages leaves stages out") {
   std::set<std::string> all = greedy;
   all.insert("fine-tuning");
   CHECK(stages("--stages both --layers 2", kTiny) == all);
+}
+
+TEST_CASE("train: flags of fine-tuning's views are refused where nothing is fine-tuned") {
+  const ScratchFolder folder;
+  const fs::path run = folder / "run";
+  folder.write("clip.bvh", small_bvh(60));
+  const std::string clip = fmt::format("'{}'", (folder / "clip.bvh").string());
+  const auto refusal = [&](const std::string& options, int exit_code = 2) {
+    const CliResult result = train(clip, run, kTinyGreedy + " --quiet " + options);
+    CHECK(result.exit_code == exit_code);
+    CHECK(!fs::exists(run));
+    return result.standard_error;
+  };
+  const std::string why =
+      " is of the views that fine-tuning learns from, and nothing is fine-tuned; leave it out\n";
+  for (const char* stages : {"--stages greedy", "--fine-tuning-steps 0", "--preset generation"}) {
+    CAPTURE(stages);
+    const std::string without = stages;
+    CHECK(refusal(without + " --tracks detector") == "mcdbn-cl: error: --tracks detector" + why);
+    CHECK(refusal(without + " --augment-views 3") == "mcdbn-cl: error: --augment-views" + why);
+    CHECK(refusal(without + " --no-augment-mirror") == "mcdbn-cl: error: --augment-mirror" + why);
+  }
+  // A sweep of which one configuration is fine-tuned takes them; --force it never takes.
+  const auto sweep = [&](const char* steps) {
+    const fs::path file =
+        folder.write("sweep.toml", fmt::format("test = ['{}']\n[grid]\nfine-tuning.steps = {}\n",
+                                               (folder / "clip.bvh").string(), steps));
+    return fmt::format("--augment-views 3 --sweep '{}'", file.string());
+  };
+  CHECK(refusal(sweep("[0]")) == "mcdbn-cl: error: --augment-views" + why);
+  CHECK(refusal(sweep("[0, 3]") + " --platform no-such-name", 4).find("no-such-name") !=
+        std::string::npos);
+  CHECK(refusal(sweep("[0, 3]") + " --force").find("leave --force out") != std::string::npos);
 }
 
 TEST_CASE("the same seed trains the same model, from the recorded config too") {

@@ -40,7 +40,7 @@ TEST_CASE("a CPU that OpenBLAS does not know gets the kernels of one that it doe
   if (cores.ends_with("Core: Prescott\n")) CHECK(mcdbn::known_cpu_like_this().empty());
 }
 
-TEST_CASE("every command's help shows an example") {
+TEST_CASE("every command's help shows an example, and every command takes --quiet") {
   const std::string help = run_cli("--help").standard_output;
   const auto start = help.find("Subcommands:\n");
   REQUIRE(start != std::string::npos);
@@ -56,9 +56,19 @@ TEST_CASE("every command's help shows an example") {
     const CliResult result = run_cli(command + " --help");
     CHECK(result.exit_code == 0);
     CHECK(result.standard_output.find("\n  mcdbn-cl " + command + " ") != std::string::npos);
+    CHECK(result.standard_output.find("\n  --quiet ") != std::string::npos);
     ++commands;
   }
   CHECK(commands >= 3);
+}
+
+TEST_CASE("evaluate's help gives the defaults of the paper's protocol") {
+  // As one line: where the help breaks lines does not count.
+  std::istringstream words(run_cli("evaluate --help").standard_output);
+  std::string help;
+  for (std::string word; words >> word;) help += word + " ";
+  CHECK(help.find("(default: 1; 10 with --protocol paper)") != std::string::npos);
+  CHECK(help.find("trained to be sampled; else 0); 1 with --protocol paper") != std::string::npos);
 }
 
 TEST_CASE("wrong usage is exit code 2") {
@@ -105,7 +115,12 @@ TEST_CASE("no OpenCL platform is exit code 4 and the message names what to insta
   const CliResult result = run_cli("devices", kNoDrivers);
   check_one_line_error(result, 4);
   CHECK(result.standard_error.find("pocl-opencl-icd") != std::string::npos);
-  check_one_line_error(run_cli("devices --json", kNoDrivers), 4);
+  // Programs read an empty list.
+  const CliResult listed = run_cli("devices --json", kNoDrivers);
+  CHECK(listed.exit_code == 4);
+  CHECK(nlohmann::json::parse(listed.standard_output) ==
+        nlohmann::json{{"devices", nlohmann::json::array()}});
+  CHECK(listed.standard_error == result.standard_error);
 }
 
 TEST_CASE("a full disk behind stdout is a failure") {

@@ -6,7 +6,6 @@
 #include <malloc.h>
 
 #include <chrono>
-#include <limits>
 #include <thread>
 
 #include "camera/detector_track.hpp"
@@ -14,66 +13,20 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/motion/skeleton_roles.hpp"
-#include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"
-#include "motion_model/clip_scene.hpp"
 #include "motion_model/live_networks.hpp"
 #include "motion_model/live_output.hpp"
+#include "motion_model/live_scene.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
 
 namespace {
 
-Motion walk(int clip, int frames, double fps) {
-  SynthesisOptions options;
-  options.clip = clip;
-  options.seconds = (frames + 1) / fps;
-  options.fps = fps;
-  Motion motion = synthesize(options);
-  motion.channels.conservativeResize(frames, Eigen::NoChange);
-  return motion;
-}
-
-struct Scene {
-  Motion training = walk(1, 60, 30);
-  CameraPlacement view{35, 12, std::nullopt, 45, 1920, 1080};
-  Modalities modalities = modalities_of({training}, view);
-  Motion clip;
-  Camera camera;
-  Track2d track;
-
-  explicit Scene(double fps = 30, int frames = 50)
-      : clip(walk(2, frames, fps)),
-        camera(place_camera(clip, view)),
-        track(project_motion(clip, camera)) {}
-  ClipPlacement placement() const {
-    ClipPlacement placement{{camera, clip.skeleton}};
-    // How exact the track is, live and whole clip would learn at their own pace.
-    placement.fit->solutions = 1;
-    return placement;
-  }
-  /// A detector's, in place of the model's joints.
-  Track2d keypoints() const {
-    return project_keypoints(clip, skeleton_roles(clip.skeleton), joint_set("COCO_17").keypoints,
-                             camera);
-  }
-  Model model(Device& device) const {
-    return {quiet_network(device, modalities), modalities, {}, {}};
-  }
-};
-
-TrackFrame frame_of(const Track2d& track, Eigen::Index frame) {
-  return {track.x_px.row(frame), track.y_px.row(frame), track.confidence.row(frame)};
-}
-
-void hide(Track2d& track, Eigen::Index first, Eigen::Index count, Eigen::Index joint = -1) {
-  for (Eigen::Index t = first; t < first + count; ++t)
-    for (Eigen::Index j = 0; j < track.joint_count(); ++j) {
-      if (joint >= 0 && j != joint) continue;
-      track.x_px(t, j) = track.y_px(t, j) = std::numeric_limits<double>::quiet_NaN();
-      track.confidence(t, j) = 0;
-    }
+/// A detector's keypoints, in place of the model's joints.
+Track2d coco_keypoints_of(const LiveScene& scene) {
+  return project_keypoints(scene.clip, skeleton_roles(scene.clip.skeleton),
+                           joint_set("COCO_17").keypoints, scene.camera);
 }
 
 /// Bytes that are taken, once no thread takes or gives back any more.
@@ -84,21 +37,6 @@ double memory_at_rest() {
     before = now;
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
-}
-
-/// All that comes back, on the body as it is known in the end.
-Motion followed(LiveRegeneration& live, const Track2d& track) {
-  std::vector<LiveFrame> frames;
-  const auto add = [&](std::vector<LiveFrame> more) {
-    for (LiveFrame& frame : more) frames.push_back(std::move(frame));
-  };
-  for (int t = 0; t < track.frames(); ++t) add(live.push(frame_of(track, t)));
-  add(live.finish());
-  Motion motion{live.skeleton(), 1 / live.fps(),
-                MatrixD(std::ssize(frames), live.skeleton().channel_count())};
-  for (std::size_t t = 0; t < frames.size(); ++t)
-    motion.channels.row(static_cast<Eigen::Index>(t)) = frames[t].channels;
-  return motion;
 }
 
 /// Joints from the root, mm of a 1.7 m body. [frames x 3·joints]
@@ -132,7 +70,7 @@ TEST_CASE("live: every frame comes back once, in order, no later than the latenc
       for (const std::size_t look_ahead : {0U, 2U}) {
         CAPTURE(fps);
         CAPTURE(look_ahead);
-        const Scene scene(fps, 40);
+        const LiveScene scene(fps, 40);
         const Model model = scene.model(device);
         LiveRegeneration live(model, scene.track, scene.placement(), look_ahead);
         CHECK(live.latency_frames() == static_cast<int>(look_ahead) + 3);
@@ -155,7 +93,7 @@ TEST_CASE("live: every frame comes back once, in order, no later than the latenc
 TEST_CASE(
     "live: what comes back is near the whole clip's answer, no further from truth and track") {
   on_every_device([](Device& device) {
-    const Scene scene;
+    const LiveScene scene;
     const Model model = scene.model(device);
     LiveRegeneration live(model, scene.track, scene.placement());
     const Motion got = followed(live, scene.track);
@@ -193,9 +131,9 @@ TEST_CASE("live: a frame between two poses is between them") {
 
 TEST_CASE("live: a detector's keypoints as the whole clip has them, exchanged sides put right") {
   on_every_device([](Device& device) {
-    Scene scene;
+    LiveScene scene;
     const Model model = scene.model(device);
-    scene.track = scene.keypoints();
+    scene.track = coco_keypoints_of(scene);
     ClipPlacement placement = scene.placement();
     const auto got = [&] {
       LiveRegeneration live(model, scene.track, placement);
@@ -217,9 +155,9 @@ TEST_CASE("live: a detector's keypoints as the whole clip has them, exchanged si
 
 TEST_CASE("live, and the whole clip: keypoints are a detector's, whether that is given or not") {
   on_every_device([](Device& device) {
-    Scene scene;
+    LiveScene scene;
     const Model model = scene.model(device);
-    scene.track = scene.keypoints();
+    scene.track = coco_keypoints_of(scene);
     ClipPlacement placement = scene.placement();
     placement.fit = TrackFitSettings{};  // several solutions: they would find out
     placement.fit->detector = 0.05;      // that it is better than this
@@ -238,7 +176,7 @@ TEST_CASE("live, and the whole clip: keypoints are a detector's, whether that is
 
 TEST_CASE("live: missing joints follow from the others and by the frames around") {
   on_every_device([](Device& device) {
-    Scene scene;
+    LiveScene scene;
     const Model model = scene.model(device);
     hide(scene.track, 20, 8, scene.track.find("LeftHand"));
     hide(scene.track, 35, 2);
@@ -253,7 +191,7 @@ TEST_CASE("live: missing joints follow from the others and by the frames around"
 TEST_CASE(
     "live: a joint that is missing for long is shown to the network where the solution has it") {
   on_every_device([](Device& device) {
-    Scene scene;
+    LiveScene scene;
     scene.view.azimuth_deg += 120;  // from there the hand is not where its mean is
     scene.camera = place_camera(scene.clip, scene.view);
     scene.track = project_motion(scene.clip, scene.camera);
@@ -270,7 +208,7 @@ TEST_CASE(
       for (int t = first; t < first + frames; ++t) {
         scene.track.x_px(t, hand) = solution.x_px(t, solution.find("LeftHand")) + aside_px;
         scene.track.y_px(t, hand) = solution.y_px(t, solution.find("LeftHand"));
-        scene.track.confidence(t, hand) = 1e-6;  // for the network, and next to nothing to the fit
+        scene.track.confidence(t, hand) = 0.01;  // for the network, and next to nothing to the fit
       }
       return got();
     };
@@ -285,7 +223,7 @@ TEST_CASE(
 
 TEST_CASE("live: before anybody is seen it is the mean pose; who comes back is found anew") {
   on_every_device([](Device& device) {
-    Scene scene(30, 90);
+    LiveScene scene(30, 90);
     const Model model = scene.model(device);
     hide(scene.track, 0, 20);
     hide(scene.track, 40, 25);
@@ -313,7 +251,7 @@ TEST_CASE("live: which frames show nobody is known at every rate") {
   on_every_device([](Device& device) {
     for (const double fps : {60.0, 47.0, 20.0}) {
       CAPTURE(fps);
-      Scene scene(fps, 60);
+      LiveScene scene(fps, 60);
       const Model model = scene.model(device);
       hide(scene.track, 0, 12);
       hide(scene.track, 30, 10);
@@ -338,7 +276,7 @@ TEST_CASE("live: which frames show nobody is known at every rate") {
 
 TEST_CASE("live: the mean pose stands on the ground") {
   on_every_device([](Device& device) {
-    Scene scene;
+    LiveScene scene;
     const Model model = scene.model(device);
     hide(scene.track, 0, 50);
     ClipPlacement placement = scene.placement();
@@ -360,9 +298,9 @@ TEST_CASE("live: the mean pose stands on the ground") {
 
 TEST_CASE("live: two tracks at once are as each by itself") {
   on_every_device([](Device& device) {
-    const Scene one, other(47, 50);
+    const LiveScene one, other(47, 50);
     const Model model = one.model(device);
-    const auto alone = [&](const Scene& scene) {
+    const auto alone = [&](const LiveScene& scene) {
       LiveRegeneration live(model, scene.track, scene.placement());
       return followed(live, scene.track);
     };
@@ -386,7 +324,7 @@ TEST_CASE("live: two tracks at once are as each by itself") {
 
 TEST_CASE("live: memory does not grow with the frames") {
   on_every_device([](Device& device) {
-    Scene scene;
+    LiveScene scene;
     const Model model = scene.model(device);
     LiveRegeneration live(model, scene.track, scene.placement());
     const auto follow = [&](int frames) {
@@ -402,7 +340,7 @@ TEST_CASE("live: memory does not grow with the frames") {
 
 TEST_CASE("live: with an unknown camera the first frame stands at the origin") {
   on_every_device([](Device& device) {
-    const Scene scene;
+    const LiveScene scene;
     const Model model = scene.model(device);
     ClipPlacement placement = scene.placement();
     placement.camera.reset();
@@ -420,7 +358,7 @@ TEST_CASE("live: with an unknown camera the first frame stands at the origin") {
 
 TEST_CASE("live: what cannot be followed is reported") {
   on_every_device([](Device& device) {
-    const Scene scene;
+    const LiveScene scene;
     const Model model = scene.model(device);
     CHECK_THROWS_AS(LiveRegeneration(model, scene.track, scene.placement(), kLookAhead + 1),
                     ConfigError);

@@ -169,6 +169,34 @@ TEST_CASE(
   });
 }
 
+TEST_CASE("regenerate_clip: a pose that does not match what the camera shows is placed by size") {
+  Scene scene(30.0);
+  const Modalities& m = scene.modalities;
+  const MatrixF truth = m.encode_pose(scene.clip, scene.camera.camera_from_world);
+  const PoseAnswer single = [&](const MatrixF&) { return PosePrior(truth); };
+  const PoseAnswers all = [&](const MatrixF&) { return std::vector<PosePrior>{truth}; };
+  TrackFindings found;
+  const auto root_of = [&](const Track2d& track) {
+    const auto motions = regenerate_clip(m, track, scene.placement(), single, all, &found);
+    return path_of(motions.at(0), "Hips");
+  };
+  const MatrixD wanted = root_of(scene.track);
+  CHECK_FALSE(found.placed_by_size);
+  // The film upside down, the answer as before.
+  Track2d turned = scene.track;
+  turned.x_px = 2 * scene.camera.cx_px - scene.track.x_px.array();
+  turned.y_px = 2 * scene.camera.cy_px - scene.track.y_px.array();
+  const MatrixD root = root_of(turned);
+  CHECK(found.placed_by_size);
+  // Seen as large as before, the person is about as far away.
+  const auto depth = [&](const MatrixD& path) {
+    return ((path * scene.camera.camera_from_world.transpose()).col(2).array() +
+            scene.camera.translation.z())
+        .eval();
+  };
+  CHECK(largest(depth(root).matrix() - depth(wanted).matrix()) < body_height(scene.clip.skeleton));
+}
+
 TEST_CASE("gaps are filled in two rounds, each from the answer to the round before") {
   Scene scene(30.0);
   scene.track.confidence.col(scene.track.find("LHand")).segment(10, 20).setZero();

@@ -64,6 +64,16 @@ double off_px(const Motion& motion, const Camera& camera, const Track2d& track) 
                   (seen.y_px - track.y_px).cwiseAbs().maxCoeff());
 }
 
+/// Only those joints are seen.
+void show_only(Track2d& track, int first, int frames, const std::vector<std::string>& names) {
+  for (int joint = 0; joint < track.joint_count(); ++joint)
+    if (std::ranges::count(names, track.joint_names[static_cast<std::size_t>(joint)]) == 0) {
+      track.confidence.col(joint).segment(first, frames).setZero();
+      for (MatrixD* values : {&track.x_px, &track.y_px})
+        values->col(joint).segment(first, frames).setConstant(std::nan(""));
+    }
+}
+
 }  // namespace
 
 TEST_CASE("regenerate stretches: each is as if it were alone") {
@@ -105,6 +115,38 @@ TEST_CASE("regenerate stretches: they have the body and the camera of the longes
     CHECK(found.camera.translation == of_longest.camera.translation);
     CHECK(off_px(got[0], found.camera, track) < 100);  // the jump is 2160
   }
+}
+
+TEST_CASE("regenerate stretches: the longest does not count if it hardly shows a body") {
+  const Scene scene;
+  const ClipPlacement nothing_known;
+  Track2d track = scene.track;
+  const std::vector<std::string> arm{"LeftArm", "LeftForeArm", "LeftHand"};
+  for (const std::string& joint : arm) REQUIRE(track.find(joint) >= 0);
+  show_only(track, 20, kFirst - 20, arm);
+  TrackFindings found, of_second;
+  const auto got = scene.regenerated(track, nothing_known, &found);
+  REQUIRE(found.stretches.stretches == std::vector<FrameRange>{{0, kFirst}, {kFirst, 30}});
+  const auto alone = scene.regenerated(some_frames(track, kFirst, 30), nothing_known, &of_second);
+  CHECK(got.front().channels.bottomRows(30) == alone.front().channels);
+  for (std::size_t joint = 0; joint < got.front().skeleton.joints.size(); ++joint)
+    CHECK(got.front().skeleton.joints[joint].offset == alone.front().skeleton.joints[joint].offset);
+  CHECK(found.camera.translation == of_second.camera.translation);
+}
+
+TEST_CASE("regenerate stretches: a part of a leg elsewhere is left out, and refuses no clip") {
+  const Scene scene;
+  constexpr int kFrom = 60, kLeg = 15;
+  Track2d track = project_keypoints(scene.clip, skeleton_roles(scene.clip.skeleton),
+                                    joint_set("BODY_25").keypoints, scene.camera);
+  show_only(track, kFrom, kLeg, {"RKnee", "RAnkle", "RHeel"});
+  track.x_px.middleRows(kFrom, kLeg).array() -= 2 * track.width_px;
+  TrackFindings found;
+  const auto got = scene.regenerated(track, scene.known, &found);
+  CHECK(found.stretches.stretches == std::vector<FrameRange>{{0, kFrames}});
+  CHECK(found.stretches.strays == std::vector<FrameRange>{{kFrom, kLeg}});
+  leave_out(track, found.stretches.strays);
+  CHECK(scene.regenerated(track, scene.known).front().channels == got.front().channels);
 }
 
 TEST_CASE("regenerate stretches: a body that was found is as little known in all of them") {

@@ -33,6 +33,20 @@ TrainingConfig odd_config() {
 
 const std::vector<ListedClip> kClips{{"/clips/b.bvh", "Anna", "walk"}, {"relative/a.bvh"}};
 
+/// The program's current folder for one scope.
+class CurrentFolder {
+ public:
+  explicit CurrentFolder(const fs::path& path) : before_(fs::current_path()) {
+    fs::current_path(path);
+  }
+  ~CurrentFolder() { fs::current_path(before_); }
+  CurrentFolder(const CurrentFolder&) = delete;
+  CurrentFolder& operator=(const CurrentFolder&) = delete;
+
+ private:
+  fs::path before_;
+};
+
 }  // namespace
 
 TEST_CASE("a run folder keeps what a training was begun with") {
@@ -160,6 +174,16 @@ TEST_CASE("what is no run folder is refused, and so is what is no text") {
        {ListedClip{"/a\xFF.bvh"}, ListedClip{"/a.bvh", "\xFF"}, ListedClip{"/a.bvh", "", "\xFF"}})
     CHECK_THROWS_AS(RunFolder::begin(folder / "other", odd_config(), {clip}, false), InputError);
   CHECK(!fs::exists(folder / "other"));
+}
+
+TEST_CASE("a clip in a current folder whose name is no text is refused by its absolute name") {
+  const test::ScratchFolder folder;
+  const fs::path odd = folder / "folder \xFF";
+  fs::create_directory(odd);
+  const CurrentFolder current(odd);
+  CHECK_THROWS_WITH_AS(RunFolder::begin(folder / "run", odd_config(), {ListedClip{"a.bvh"}}, false),
+                       doctest::Contains("is not UTF-8 text"), InputError);
+  CHECK(!fs::exists(folder / "run"));
 }
 
 TEST_CASE(

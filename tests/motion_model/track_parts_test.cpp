@@ -123,6 +123,14 @@ TEST_CASE("track parts: where no person is seen a part is one with its neighbour
   CHECK(sizes(track) == std::vector<int>{602, 304, 304, 302});
   track.confidence.setZero();
   CHECK(sizes(track) == std::vector<int>{1'500});
+  // What a detector never sees does not make its frames empty.
+  Track2d upper = shown(1'500, 1);
+  for (const char* never : {"c", "d", "e"}) upper.joint_names.emplace_back(never);
+  for (MatrixD* values : {&upper.x_px, &upper.y_px, &upper.confidence}) {
+    values->conservativeResize(Eigen::NoChange, 5);
+    values->rightCols(3).setZero();
+  }
+  CHECK(sizes(upper) == std::vector<int>{302, 304, 304, 304, 302});
 }
 
 TEST_CASE("track parts: each is as if it were alone, and fades into the next") {

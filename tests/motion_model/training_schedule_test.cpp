@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "corpus/augmented_views.hpp"
+#include "corpus/held_out_person.hpp"
 #include "corpus/training_files.hpp"
 #include "learning/learnt_deviation.hpp"
 #include "learning/random_start.hpp"
@@ -141,6 +142,45 @@ TEST_CASE("fine-tuning goes on from what the greedy stages made of its start and
   });
 }
 
+TEST_CASE(
+    "a deviation that is to be learnt where limbs are hidden is refused before the training") {
+  const SmallTraining small;
+  TrainingConfig config = small.config;
+  config.order = 0;
+  config.gaussian.deviation_rate = 0.05;
+  const auto refusal = [&](Device& device, const TrainingConfig& with) -> std::string {
+    bool has_begun = false;
+    try {
+      small.train(device, with, [&](const EpochReport&) { has_begun = true; });
+    } catch (const ConfigError& error) {
+      CHECK_FALSE(has_begun);
+      return error.what();
+    }
+    CHECK(has_begun);
+    return "";
+  };
+  on_every_device([&](Device& device) {
+    for (const double missing : {0.3, 0.0}) {
+      config.augment.missing = missing;
+      config.augment.detector = 0.3 - missing;
+      const std::string text = refusal(device, config);
+      for (const char* name :
+           {"`gaussian.deviation-rate` (now 0.05)", "augment.missing", "augment.detector"})
+        CHECK(text.find(name) != std::string::npos);
+    }
+    config.augment.detector = 0;
+    CHECK(refusal(device, config).empty());
+    // Nor is there anything to refuse where no deviation is learnt.
+    config.augment.missing = 0.3;
+    TrainingConfig alone = config;
+    alone.fine_tuning.from_greedy = false;
+    CHECK(refusal(device, alone).empty());
+    TrainingConfig with_history = config;
+    with_history.order = 2;
+    CHECK(refusal(device, with_history).empty());
+  });
+}
+
 TEST_CASE("fresh views on the way are others and the same in every run") {
   SmallTraining small;
   on_every_device([&](Device& device) {
@@ -225,6 +265,25 @@ TEST_CASE("one person of several is held out by the whole run too, and the obser
     CHECK_THROWS_WITH(small.train(device, small.config, stop_at("mrbm")), "enough of mrbm");
     CHECK_THROWS_WITH(small.train(device, small.config, stop_at("fine-tuning")),
                       "enough of fine-tuning");
+  });
+}
+
+TEST_CASE("the person held out has no part in the greedy start either") {
+  SmallTraining small;
+  small.config.hold_out_among = 2;
+  const TrainingSet views = small.views(small.config);
+  const auto person = person_to_hold_out(views, 2);
+  REQUIRE(person);
+  const TrainingSet others = views_without(views, *person);
+  on_every_device([&](Device& device) {
+    const TrainedNetwork trained = small.train(device, small.config);
+    const Mcdbn start = small.start(device, small.config);
+    const auto from = [&](const TrainingSet& greedy_views) {
+      const Mcdbn greedy = train_greedy(device, ClipSource(greedy_views), small.config, {}, &start);
+      return fine_tune(device, greedy, views, small.config).network;
+    };
+    CHECK(same_network(trained.network, from(others)));
+    CHECK_FALSE(same_network(trained.network, from(views)));
   });
 }
 

@@ -43,6 +43,13 @@ class LiveRegeneration {
   LiveRegeneration(const LiveRegeneration&) = delete;
   LiveRegeneration& operator=(const LiveRegeneration&) = delete;
 
+  /// What comes back for frames before a person is found: the model's mean pose above the origin,
+  /// its feet on the ground. It does not depend on the track's joints, which may not be known yet.
+  /// @return one frame, on the skeleton that the motion will begin with
+  /// @throws ConfigError as the constructor does
+  static Motion before_anybody(const Model& model, const ClipPlacement& placement,
+                               std::optional<std::size_t> look_ahead = {});
+
   /// The next frame of the track. @return those that are finished now, at the track's rate
   /// @throws ShapeError if it has other joints
   std::vector<LiveFrame> push(const TrackFrame& frame);

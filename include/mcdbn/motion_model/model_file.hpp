@@ -47,8 +47,9 @@ void save_model(const std::filesystem::path& path, const Model& model,
                 StoredNumbers stored = StoredNumbers::single);
 /// @throws InputError
 Model load_model(Device& device, const std::filesystem::path& path);
-/// The file's own account of itself, for people: sizes, main settings, training clips, early
-/// stopping, what it started from. Needs no device. @throws InputError
+/// The file's own account of itself, for people: sizes, parameters that were learnt, main settings
+/// and how it was trained, training clips, early stopping, what it started from. Needs no device.
+/// @throws InputError
 nlohmann::json describe_model(const std::filesystem::path& path);
 
 }  // namespace mcdbn

@@ -35,18 +35,27 @@ class ClipSource : public SequenceSource {
 /// (make_augmented_views).
 class ViewSource : public SequenceSource {
  public:
+  /// One person is held out as config.hold_out_among specifies.
   /// @param data of those clips (make_training_set), must live on
-  ViewSource(ClipStore clips, const TrainingSet& data, TrainingConfig config)
-      : clips_(std::move(clips)), data_(data), config_(std::move(config)) {}
+  ViewSource(ClipStore clips, const TrainingSet& data, TrainingConfig config);
 
-  const TrainingSet& views() const;
-  SynchronizedClips sequences() const override { return ClipSource(views()).sequences(); }
+  /// Those to learn from.
+  SynchronizedClips sequences() const override { return ClipSource(made().to_learn).sequences(); }
+  /// Views of the person held out, if one is.
+  const std::optional<TrainingSet>& strangers() const { return made().strangers; }
 
  private:
+  struct Views {
+    TrainingSet to_learn;
+    std::optional<TrainingSet> strangers;
+  };
+  const Views& made() const;
+
   ClipStore clips_;
   const TrainingSet& data_;
   TrainingConfig config_;
-  mutable std::optional<TrainingSet> views_;
+  std::optional<std::size_t> held_out_;
+  mutable std::optional<Views> views_;
 };
 
 class ViewLoader;

@@ -1,0 +1,121 @@
+// New poses of a training with a person held out: nothing of theirs is learnt from, and what judges
+// shows them alone.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "corpus/humanoid_clips.hpp"
+#include "corpus/no_augmentation.hpp"
+#include "mcdbn/motion_model/training_schedule.hpp"
+
+namespace held_out_poses_test {
+
+using namespace mcdbn;
+using namespace mcdbn::test;
+
+namespace {
+
+using enum JointRole;
+
+/// The bends of three people's elbows, by which they are known. The last has the least data.
+constexpr double kOne_deg = 10, kOther_deg = 40, kStranger_deg = 80;
+
+LoadedClip clip_of(const char* person, double elbow_deg, int frames) {
+  LoadedClip clip = humanoid_clip(elbow_deg, 20, 0, frames);
+  clip.person = person;
+  clip.clip = {std::string("/") + person + ".bvh", person};
+  return clip;
+}
+
+struct Scene {
+  ClipStore clips =
+      std::vector<LoadedClip>{clip_of("one", kOne_deg, 90), clip_of("other", kOther_deg, 90),
+                              clip_of("stranger", kStranger_deg, 60)};
+  TrainingConfig config = settings();
+  TrainingSet data = make_training_set(clips, config);
+
+  static TrainingConfig settings() {
+    TrainingConfig config;
+    config.skeleton = SkeletonUse::humanoid;
+    config.augment = nothing();
+    config.augment.views = 8;
+    config.augment.limbs_exchanged = 1;
+    config.hold_out_among = 2;
+    config.fine_tuning.windows = 6;
+    return config;
+  }
+
+  /// Of both elbows in every tenth frame of standardized poses.
+  std::vector<double> bends_deg(std::span<const MatrixF> poses) const {
+    std::vector<double> bends;
+    for (const MatrixF& pose : poses) {
+      const MatrixD features = data.modalities.pose_scale.invert(pose);
+      for (Eigen::Index t = 0; t < features.rows(); t += 10)
+        for (const auto& [above, elbow] :
+             {std::pair{left_shoulder, left_elbow}, std::pair{right_shoulder, right_elbow}})
+          bends.push_back(
+              angle_deg(turn(features.row(t), above).transpose() * turn(features.row(t), elbow)));
+    }
+    return bends;
+  }
+
+ private:
+  /// camera_from_joint, of its first two columns.
+  Eigen::Matrix3d turn(const RowVectorD& features, JointRole role) const {
+    const std::vector<int>& joints = data.modalities.pose_features.joints();
+    const auto found = std::ranges::find(joints, humanoid_roles().joint(role));
+    REQUIRE(found != joints.end());
+    const auto first = PoseFeatures::kBlock * (found - joints.begin());
+    Eigen::Matrix3d turn;
+    turn.col(0) = features.segment<3>(first).transpose();
+    turn.col(1) = features.segment<3>(first + 3).transpose();
+    turn.col(2) = turn.col(0).cross(turn.col(1));
+    return turn;
+  }
+};
+
+void check_bends(const Scene& scene, const SequenceSource& source,
+                 const std::optional<TrainingSet>& strangers) {
+  const auto near = [](double deg, double wanted_deg) { return std::abs(deg - wanted_deg) < 0.5; };
+  int of_one = 0, of_other = 0;
+  for (const double deg : scene.bends_deg(source.sequences().modalities[kPose].clips)) {
+    CHECK((near(deg, kOne_deg) || near(deg, kOther_deg)));
+    of_one += near(deg, kOne_deg);
+    of_other += near(deg, kOther_deg);
+  }
+  CHECK(of_one > 0);
+  CHECK(of_other > 0);
+  REQUIRE(strangers);
+  REQUIRE(!strangers->poses.empty());
+  for (const double deg : scene.bends_deg(strangers->poses)) CHECK(near(deg, kStranger_deg));
+}
+
+}  // namespace
+
+TEST_CASE(
+    "views made beforehand have no limbs of the person held out, whose views have no others") {
+  const Scene scene;
+  const ViewSource views(scene.clips, scene.data, scene.config);
+  check_bends(scene, views, views.strangers());
+  CHECK(views.sequences().count() == 2 * 8);
+  CHECK(views.strangers()->poses.size() == 8);
+}
+
+TEST_CASE("fresh views have no limbs of the person held out, whose views have no others") {
+  Scene scene;
+  scene.config.fine_tuning.view_uses = 12;
+  const FreshViewSource views(scene.clips, scene.data, scene.config);
+  check_bends(scene, views, views.strangers());
+}
+
+TEST_CASE("views of which nobody is held out are of everybody") {
+  Scene scene;
+  scene.config.hold_out_among = 0;
+  const ViewSource views(scene.clips, scene.data, scene.config);
+  CHECK_FALSE(views.strangers());
+  CHECK(views.sequences().count() == 3 * 8);
+}
+
+}  // namespace held_out_poses_test
