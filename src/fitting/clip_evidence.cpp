@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/numbers.hpp"
 #include "base/upper_median.hpp"
 #include "fitting/camera_angles.hpp"
 #include "fitting/robust_residuals.hpp"
@@ -128,8 +129,11 @@ Eigen::VectorXd ClipEvidence::ground(const PosteriorPoint& point) const {
   return ground;
 }
 
-ExpectedLean ClipEvidence::balanced(const Eigen::Vector3d& upright, double deviation_rad) const {
+ExpectedLean ClipEvidence::balanced(const Eigen::Vector3d& upright,
+                                    const TrackFitSettings& settings) const {
   const Eigen::Vector3d up = upright.normalized();
+  const double speed = usual_speed_m_s() / settings.balance_speed_m_s;
+  const double deviation_rad = settings.balance_deg * kRadiansPerDegree * (1 + speed * speed);
   return {pitch_rad(up) - pitch_rad(clip.up), roll_from_to_rad(clip.up, up), deviation_rad,
           deviation_rad};
 }
@@ -181,6 +185,15 @@ double ClipEvidence::usual_residual(const PosteriorPoint& point, Eigen::Index fr
     }
   }
   return robust_deviation(std::move(residuals));
+}
+
+double ClipEvidence::usual_speed_m_s() const {
+  if (clip.frames() < 2) return 0;
+  const auto a_second =
+      std::clamp<Eigen::Index>(std::lround(1 / clip.frame_time_s), 1, clip.frames() - 1);
+  const Eigen::Index begins = clip.frames() - a_second;
+  return (clip.root.bottomRows(begins) - clip.root.topRows(begins)).rowwise().norm().mean() /
+         (static_cast<double>(a_second) * clip.frame_time_s);
 }
 
 double ClipEvidence::usual_depth_m() const {

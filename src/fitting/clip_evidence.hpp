@@ -25,8 +25,9 @@ class ClipEvidence {
   /// as before where none does. @return as PosteriorPoint::ground_m
   Eigen::VectorXd ground(const PosteriorPoint& point) const;
   /// How the camera stands if the body's middle is, on average, straight above the feet.
+  /// Who moves fast leans, and that is less certain.
   /// @param upright from feet to middle, camera axes, any length
-  ExpectedLean balanced(const Eigen::Vector3d& upright, double deviation_rad) const;
+  ExpectedLean balanced(const Eigen::Vector3d& upright, const TrackFitSettings& settings) const;
 
   /// The answer's features, turned. @return [frames x dimension] along the camera's axes
   MatrixD turned(MatrixD features, const PosteriorPoint& point) const;
@@ -41,6 +42,8 @@ class ClipEvidence {
   double usual_residual(const PosteriorPoint& point, Eigen::Index frames) const;
   /// The root's usual distance from the camera, m on a 1.7 m body.
   double usual_depth_m() const;
+  /// How far the root usually comes in a second, or in the whole clip.
+  double usual_speed_m_s() const;
 
  private:
   Skeleton skeleton_;

@@ -167,8 +167,8 @@ Fix locate_by_size(const std::vector<RootObservation>& seen) {
 /// @param by_size whether the pose matches the rays in less than half of those with enough joints
 /// @throws InputError if none can be located
 std::vector<Fix> located(const std::vector<std::vector<RootObservation>>& frames, bool& by_size) {
-  std::vector<Fix> fixes;
-  for (const auto& seen : frames) fixes.push_back(locate(seen));
+  std::vector<Fix> fixes(frames.size());
+  std::ranges::transform(frames, fixes.begin(), locate);
   const auto enough = std::ranges::count_if(
       frames, [](const auto& seen) { return std::ssize(seen) >= kFewestJoints; });
   by_size = 2 * std::ranges::count(fixes, true, &Fix::known) < enough;

@@ -151,8 +151,7 @@ ClipEvidence SlidingFit::evidence_of(const ClipRows& rows, const Motion& answer)
 /// @param evidence of an unknown camera, else it stays as it is
 void SlidingFit::expect_balance(ClipEvidence& evidence) const {
   if (evidence.clip.camera)
-    evidence.clip.camera->balanced =
-        evidence.balanced(upright(), settings_.balance_deg * kRadiansPerDegree);
+    evidence.clip.camera->balanced = evidence.balanced(upright(), settings_);
 }
 
 void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double track_noise_px) {

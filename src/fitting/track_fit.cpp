@@ -195,8 +195,7 @@ class ClipFit {
     evidence_->find_planted(motion());
     point_.ground_m = evidence_->ground(point_);
     if (clip.camera)
-      clip.camera->balanced = evidence_->balanced(upright_in_camera(motion(), camera_),
-                                                  settings.balance_deg * kRadiansPerDegree);
+      clip.camera->balanced = evidence_->balanced(upright_in_camera(motion(), camera_), settings);
   }
 
   /// Pose, root and, if it is unknown, body are what the point makes of the prior's mean. A single

@@ -107,7 +107,7 @@ void name_likeliest_set(SeenPeople& people, const std::vector<std::vector<SeenPe
   double pairs = 0;
   for (const SeenPerson* person : people_to_judge(frames)) {
     const std::vector<std::size_t> joints = seen_joints(*person);
-    const auto weight = static_cast<double>(joints.size() * (joints.size() - 1) / 2);
+    const double weight = 0.5 * static_cast<double>(joints.size() * (joints.size() - 1));
     pairs += weight;
     for (std::size_t set = 0; set < standing.size(); ++set)
       sums[set] += weight * likeness(*person, joints, standing[set]);

@@ -35,6 +35,7 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"pitch", [](S& s) { return at(s.pitch_deg); }, "10"},
       {"roll", [](S& s) { return at(s.roll_deg); }, "8"},
       {"balance", [](S& s) { return at(s.balance_deg); }, "5"},
+      {"balance-speed", [](S& s) { return at(s.balance_speed_m_s); }, "1.5"},
       {"focal", [](S& s) { return at(s.focal); }, "0.1"},
       {"roughly", [](S& s) { return at(s.roughly_s); }, "0.1"},
       {"solutions", [](S& s) { return at(s.solutions); }, "5"},
@@ -66,7 +67,8 @@ TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves s
                            "measured-lasting",
                            "measured-caution",
                            "limb-proportions",
-                           "part-proportions"})
+                           "part-proportions",
+                           "balance-speed"})
     for (const double value : {0.0, -1.0, kNan})
       check_refused<TrackFitSettings>(name, value, "above 0");
   check_refused<TrackFitSettings>("roughly", 0, "above 0");

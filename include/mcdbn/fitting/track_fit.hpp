@@ -97,6 +97,7 @@ struct TrackFitSettings {
   double pitch_deg = 10;
   double roll_deg = 8;
   double balance_deg = 5;
+  double balance_speed_m_s = 1.5;
   double focal = 0.1;
   double roughly_s = 0.1;
   std::size_t solutions = 5;
@@ -210,6 +211,10 @@ struct TrackFitSettings {
     visit(Setting{"balance", above(0), "degrees",
                   "deviation of the body's middle from straight above the feet, on average"},
           self.balance_deg);
+    // Who runs leans, and feet trail.
+    visit(Setting{"balance-speed", above(0), "m/s",
+                  "how fast a body moves where that is twice as uncertain"},
+          self.balance_speed_m_s);
     visit(
         Setting{
             "focal", above(0), "",
