@@ -76,6 +76,7 @@ HumanoidPoses PosePool::piece(std::size_t clip, double from, int frames) const {
   const int skipped = static_cast<int>((first - begin) / step);
   const int left = part.frames() - skipped;
   std::vector<int> rows;
+  rows.reserve(static_cast<std::size_t>(frames));
   for (int t = 0; t < frames; ++t) rows.push_back(skipped + there_and_back(t, left));
   part.channels = part.channels(rows, Eigen::all).eval();
   return HumanoidPoses(part);
