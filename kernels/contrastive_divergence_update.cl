@@ -47,7 +47,7 @@ INLINE void update_w(local float* x, local float* x_end, int panel, int rows, fl
       });
 }
 
-// A or B: ⟨history · change⟩ (eq 38 to 41); `ld` is V_LD for A, H_LD for B, `order` the frames it sees
+// A or B: ⟨history · change⟩ (eq 38 and 39); `ld` is V_LD for A, H_LD for B, `order` the frames it sees
 INLINE void update_directed(local float* x, int panel, const int order, const int ld, int rows,
                             float mean, global const float* frames, global const int* index,
                             int shift, global const float* change, int at, global float* parameters,

@@ -267,10 +267,9 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
                         const PosteriorDraws& draws) {
   check(prior, features, track);
   if (settings) check_settings(*settings);
-  KnownOfClip without_fit = known;
-  without_fit.detected = false;
   ClipFit clip(prior, features, track, known,
-               body_to_begin_with(settings ? known : without_fit, features));
+               settings ? body_to_begin_with(known, features)
+                        : known.skeleton.value_or(features.pose_features.skeleton()));
   clip.place_root();
   const bool draws_any = draws.count > 0;
   if (settings)

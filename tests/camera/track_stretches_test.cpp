@@ -3,13 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
 
+#include "camera/show_only.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
 
 namespace track_stretches_test {
 
 using namespace mcdbn;
+using namespace mcdbn::test;
 
 namespace {
 
@@ -46,16 +47,6 @@ Track2d standing(int frames) {
     track.y_px.col(joint).setConstant(200 + 12 * joint);
   }
   return track;
-}
-
-/// Only those joints are seen.
-void show_only(Track2d& track, int first, int frames, const std::vector<std::string>& names) {
-  for (int joint = 0; joint < track.joint_count(); ++joint)
-    if (std::ranges::count(names, track.joint_names[static_cast<std::size_t>(joint)]) == 0) {
-      track.confidence.col(joint).segment(first, frames).setZero();
-      for (MatrixD* values : {&track.x_px, &track.y_px})
-        values->col(joint).segment(first, frames).setConstant(std::nan(""));
-    }
 }
 
 }  // namespace

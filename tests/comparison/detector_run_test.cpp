@@ -7,6 +7,7 @@
 
 #include "comparison/clip_files.hpp"
 #include "comparison/comparison_run.hpp"
+#include "comparison/limb_keypoints.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/camera/side_swaps.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
@@ -21,18 +22,6 @@ using namespace mcdbn::test;
 namespace {
 
 constexpr double kFps = 30;
-
-/// The limbs' joints and the middle of the hips, as COCO has them.
-std::vector<Keypoint> limb_keypoints() {
-  std::vector<Keypoint> keypoints;
-  for (const JointRole role : limb_joints()) {
-    Keypoint keypoint;
-    keypoint.name = name_of(role);
-    keypoint.role = role;
-    keypoints.push_back(keypoint);
-  }
-  return keypoints;
-}
 
 Motion walk(int subject, int clip) {
   SynthesisOptions options;

@@ -9,6 +9,7 @@
 
 #include "comparison/clip_files.hpp"
 #include "comparison/comparison_run.hpp"
+#include "comparison/limb_keypoints.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"
@@ -201,17 +202,6 @@ Motion legs_swapped(const Motion& motion) {
   std::iota(order.begin(), order.end(), 0);
   std::rotate(order.end() - 8, order.end() - 4, order.end());
   return reordered(motion, order);
-}
-
-std::vector<Keypoint> limb_keypoints() {
-  std::vector<Keypoint> keypoints;
-  for (const JointRole role : limb_joints()) {
-    Keypoint keypoint;
-    keypoint.name = name_of(role);
-    keypoint.role = role;
-    keypoints.push_back(keypoint);
-  }
-  return keypoints;
 }
 
 /// NaN, where a keypoint is not seen, in the same places.

@@ -4,6 +4,7 @@
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
 #include "comparison/sweep.hpp"
+#include "comparison/tiny_training.hpp"
 #include "corpus/training_files.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -18,17 +19,6 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 namespace {
-
-/// A network whose training takes no time.
-TrainingConfig tiny() {
-  TrainingConfig config = TrainingConfig::greedy();
-  config.hidden = config.mrbm_hidden = 6;
-  config.layers = 1;
-  config.order = 2;
-  config.least_batches = 1;
-  config.gaussian.epochs = config.mrbm.epochs = 2;
-  return config;
-}
 
 /// A walk whose knees are called what shows no role.
 fs::path without_knees(const fs::path& walk, const fs::path& path) {
@@ -63,7 +53,8 @@ TEST_CASE(
                  broken = folder.write("broken.bvh", "HIERARCHY\n");
   on_every_device([&](Device& device) {
     const auto sweep = [&](const fs::path& test) {
-      Sweep(device, {files.files()[1], test}, {files.files()[0]}, always(tiny()), folder / "run");
+      Sweep(device, {files.files()[1], test}, {files.files()[0]}, always(tiny_training()),
+            folder / "run");
     };
     CHECK_THROWS_WITH_AS(sweep(copy), doctest::Contains((copy.string() + ": is to be").c_str()),
                          ConfigError);
@@ -78,7 +69,7 @@ TEST_CASE("sweep: a test clip that is no person's is found before the humanoid i
   const ScratchFolder folder;
   const fs::path stick = folder / "stick.bvh";
   write_bvh(stick, swinging(small_body(), 20));
-  TrainingConfig config = tiny();
+  TrainingConfig config = tiny_training();
   config.skeleton = SkeletonUse::humanoid;
   on_every_device([&](Device& device) {
     fs::remove_all(folder / "run");
@@ -101,7 +92,7 @@ TEST_CASE("sweep: test clips are read with the joint map and the first frame of 
   const fs::path training = without_knees(files.files()[0], folder / "training.bvh"),
                  test = with_calibration_pose(without_knees(files.files()[1], folder / "other.bvh"),
                                               folder / "test.bvh");
-  TrainingConfig config = tiny();
+  TrainingConfig config = tiny_training();
   config.joint_map = {{JointRole::left_knee, "spam"}, {JointRole::right_knee, "ham"}};
   const int frames = read_bvh(test).frames();
   on_every_device([&](Device& device) {
@@ -123,8 +114,8 @@ TEST_CASE("sweep: checkpoints are written as often as is asked for") {
   on_every_device([&](Device& device) {
     for (const double minutes : {0.0, 60.0}) {
       fs::remove_all(folder / "run");
-      Sweep sweep(device, {files.files()[1]}, {files.files()[0]}, always(tiny()), folder / "run",
-                  {}, {.minutes = minutes});
+      Sweep sweep(device, {files.files()[1]}, {files.files()[0]}, always(tiny_training()),
+                  folder / "run", {}, {.minutes = minutes});
       std::string first_stage;
       int reports = 0;
       sweep.run({}, [&](bool counts) -> EpochObserver {

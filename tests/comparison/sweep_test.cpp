@@ -6,6 +6,7 @@
 
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
+#include "comparison/tiny_training.hpp"
 #include "corpus/training_files.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -19,14 +20,8 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// A network whose training takes no time.
 TrainingConfig tiny(const SweepConfiguration& varied) {
-  TrainingConfig config = TrainingConfig::greedy();
-  config.hidden = config.mrbm_hidden = 6;
-  config.layers = 1;
-  config.order = 2;
-  config.least_batches = 1;
-  config.gaussian.epochs = config.mrbm.epochs = 2;
+  TrainingConfig config = tiny_training();
   assign_settings(config, varied);
   return config;
 }

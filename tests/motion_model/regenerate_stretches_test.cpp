@@ -3,9 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "camera/detector_track.hpp"
+#include "camera/show_only.hpp"
 #include "features/clip_modalities.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/motion/skeleton_roles.hpp"
@@ -62,16 +62,6 @@ double off_px(const Motion& motion, const Camera& camera, const Track2d& track) 
   const Track2d seen = project_motion(motion, camera);
   return std::max((seen.x_px - track.x_px).cwiseAbs().maxCoeff(),
                   (seen.y_px - track.y_px).cwiseAbs().maxCoeff());
-}
-
-/// Only those joints are seen.
-void show_only(Track2d& track, int first, int frames, const std::vector<std::string>& names) {
-  for (int joint = 0; joint < track.joint_count(); ++joint)
-    if (std::ranges::count(names, track.joint_names[static_cast<std::size_t>(joint)]) == 0) {
-      track.confidence.col(joint).segment(first, frames).setZero();
-      for (MatrixD* values : {&track.x_px, &track.y_px})
-        values->col(joint).segment(first, frames).setConstant(std::nan(""));
-    }
 }
 
 }  // namespace
