@@ -349,9 +349,16 @@ MarginalPrior WindowProblem::without_first(Eigen::Index frames) {
 /// legs, and where they are hidden, of what is seen.
 double WindowProblem::proportion_deviation(std::size_t length, bool legs_hidden) const {
   if (legs_hidden) return settings_.part_proportions;
-  const bool of_limb =
-      length < clip_.length_kinds.size() && clip_.length_kinds[length] != BoneKind::other;
-  return of_limb ? settings_.limb_proportions : settings_.proportions;
+  if (length >= clip_.length_kinds.size()) return settings_.proportions;
+  switch (clip_.length_kinds[length]) {
+    case BoneKind::leg:
+      return settings_.leg_proportions;
+    case BoneKind::arm:
+      return settings_.arm_proportions;
+    case BoneKind::other:
+      break;
+  }
+  return settings_.proportions;
 }
 
 void WindowProblem::add_lengths(Unknowns unknowns) {

@@ -16,7 +16,7 @@ using namespace mcdbn;
 namespace {
 
 constexpr Eigen::Index kFrames = 1000;
-constexpr double kDepth_m = 4, kLarger = 1.6, kGain = 1e-2;
+constexpr double kDepth_m = 4, kLarger = 2, kGain = 1e-2;
 const RayNoise kNoise{0.002, 0.004};
 
 /// Two bones beside each other that hang still from a root, seen larger than the prior takes them

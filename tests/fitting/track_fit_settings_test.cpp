@@ -25,8 +25,9 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"noise-lasts", [](S& s) { return at(s.noise_lasts_s); }, "0.35"},
       {"caution", [](S& s) { return at(s.caution); }, "2"},
       {"outlier", [](S& s) { return at(s.outlier); }, "4"},
-      {"proportions", [](S& s) { return at(s.proportions); }, "0.3"},
-      {"limb-proportions", [](S& s) { return at(s.limb_proportions); }, "0.15"},
+      {"proportions", [](S& s) { return at(s.proportions); }, "0.5"},
+      {"arm-proportions", [](S& s) { return at(s.arm_proportions); }, "0.15"},
+      {"leg-proportions", [](S& s) { return at(s.leg_proportions); }, "0.06"},
       {"part-proportions", [](S& s) { return at(s.part_proportions); }, "0.1"},
       {"people", [](S& s) { return at(s.people); }, "0.1"},
       {"footing", [](S& s) { return at(s.footing_m_s); }, "0.5"},
@@ -66,7 +67,8 @@ TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves s
                            "exact-noise",
                            "measured-lasting",
                            "measured-caution",
-                           "limb-proportions",
+                           "arm-proportions",
+                           "leg-proportions",
                            "part-proportions",
                            "balance-speed"})
     for (const double value : {0.0, -1.0, kNan})

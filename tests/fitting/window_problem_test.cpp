@@ -119,13 +119,15 @@ TEST_CASE("window problem: turns that follow the lean that the mean was seen by 
 TEST_CASE("window problem: how far a bone's length strays, by what it is of and what is seen") {
   TrackFitSettings settings;
   settings.proportions = 0.5;
-  settings.limb_proportions = 0.25;
+  settings.arm_proportions = 0.25;
+  settings.leg_proportions = 0.0625;
   settings.part_proportions = 0.125;
   /// ½ (0.1 / deviation)² of the first length, the only one that is not 0.
   const auto deviation = [&](const PosteriorClip& clip) {
     const auto energy = [&](double log_length, double expected_deviation) {
       TrackFitSettings same = settings;
-      same.proportions = same.limb_proportions = same.part_proportions = expected_deviation;
+      same.proportions = same.arm_proportions = same.leg_proportions = same.part_proportions =
+          expected_deviation;
       PosteriorPoint from = PosteriorPoint::zero(clip);
       from.log_lengths[0] = log_length;
       return WindowProblem(clip, kNoise, expected_deviation > 0 ? same : settings, from, 0, kFrames)
@@ -139,7 +141,7 @@ TEST_CASE("window problem: how far a bone's length strays, by what it is of and 
   clip.length_kinds = {BoneKind::other, BoneKind::other};
   DOCTEST_CHECK(deviation(clip) == doctest::Approx(0.5).epsilon(1e-3));
   clip.length_kinds = {BoneKind::leg, BoneKind::leg};  // the thigh is seen
-  DOCTEST_CHECK(deviation(clip) == doctest::Approx(0.25).epsilon(1e-3));
+  DOCTEST_CHECK(deviation(clip) == doctest::Approx(0.0625).epsilon(1e-3));
   clip.length_kinds = {BoneKind::arm, BoneKind::other};
   DOCTEST_CHECK(deviation(clip) == doctest::Approx(0.25).epsilon(1e-3));
   clip.feet.clear();

@@ -87,8 +87,9 @@ struct TrackFitSettings {
   double noise_lasts_s = 0.35;
   double caution = 2;
   double outlier = 4;
-  double proportions = 0.3;
-  double limb_proportions = 0.15;
+  double proportions = 0.5;
+  double arm_proportions = 0.15;
+  double leg_proportions = 0.06;
   double part_proportions = 0.1;
   double people = 0.1;
   double footing_m_s = 0.5;
@@ -164,9 +165,11 @@ struct TrackFitSettings {
             "deviation of the logarithm of a bone's length from the usual, where the person's own "
             "is not known: people, and where a detector sees the joints between them"},
         self.proportions);
-    visit(Setting{"limb-proportions", above(0), "",
-                  "the same of thighs, shanks, upper arms and forearms"},
-          self.limb_proportions);
+    visit(Setting{"arm-proportions", above(0), "", "the same of upper arms and forearms"},
+          self.arm_proportions);
+    // Legs tell how large the person is, and so how far away.
+    visit(Setting{"leg-proportions", above(0), "", "the same of thighs and shanks"},
+          self.leg_proportions);
     visit(Setting{"part-proportions", above(0), "",
                   "the same of all bones where no frame shows a leg: nothing else shows how large "
                   "the person is"},
