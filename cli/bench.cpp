@@ -89,10 +89,10 @@ std::vector<BenchStepMaker> wanted_steps(const std::vector<std::string>& layers)
   return makers;
 }
 
-/// Seconds of a mini-batch of the usual size of each kind of CRBM.
-double minibatches_s(Device& device, double seconds) {
+/// Seconds of all these steps.
+double steps_s(Device& device, const std::vector<BenchStepMaker>& makers, double seconds) {
   double sum_s = 0;
-  for (const BenchStepMaker& maker : crbm_minibatch_steps(LearningSettings{}.batch)) {
+  for (const BenchStepMaker& maker : makers) {
     const BenchStep step = maker.make(device);
     step.run();  // builds programs
     sum_s += median_time_s(device, step.run, seconds);
@@ -100,17 +100,26 @@ double minibatches_s(Device& device, double seconds) {
   return sum_s;
 }
 
+/// Sets and keeps what suits the device, by mini-batches of the usual sizes: of CRBMs, and of
+/// fine-tuning, which takes most of its time for products.
+void tune_by_steps(Device& device, double seconds) {
+  const auto time_of = [&](const std::vector<BenchStepMaker>& makers) {
+    return [&, makers](const Tuning&) { return steps_s(device, makers, seconds / kTunedPairs); };
+  };
+  const TuningNotice notice = [](const std::string& measured) { spdlog::info("{}", measured); };
+  const TunedWork work{.products_s = time_of({fine_tuning_steps().front()}),
+                       .minibatches_s = time_of(crbm_minibatch_steps(LearningSettings{}.batch))};
+  if (!tune(device, tuning_for_units(device, notice), work, seconds, notice))
+    spdlog::warn(
+        "the tuning serves this run alone: it cannot be kept in the user's cache folder "
+        "($XDG_CACHE_HOME/mcdbn-cl, or ~/.cache/mcdbn-cl)");
+}
+
 void run_bench(const CommandContext& context, const BenchOptions& options) {
   if (options.tune && options.seconds == 0)
     throw ConfigError("--tune with --seconds 0: single runs would decide; give it more seconds");
   Device device = Device::open({context.platform, context.device});
-  if (options.tune) {
-    const TuningNotice notice = [](const std::string& measured) { spdlog::info("{}", measured); };
-    tune(
-        device, tuning_for_units(device, notice),
-        [&](const Tuning&) { return minibatches_s(device, options.seconds / kTunedPairs); },
-        options.seconds, notice);
-  }
+  if (options.tune) tune_by_steps(device, options.seconds);
   const double peak_gflops = measure_peak_gflops(device);
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   if (!context.json)
@@ -162,9 +171,9 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
   command->add_flag(
       "--roofline", options->roofline,
       "Also compare each kernel's arithmetic and memory traffic with the device's limits");
-  mark_output(command->add_option("--trace", options->trace,
-                                  "Writes one run's launches of each step, for chrome://tracing or "
-                                  "Perfetto"),
+  mark_output(command->add_option(
+                  "--trace", options->trace,
+                  "Write the launches of one run of each step, for chrome://tracing or Perfetto"),
               context)
       ->type_name("FILE.json");
   command

@@ -111,7 +111,7 @@ void run_corpus(const CommandContext& context, const CorpusOptions& options) {
       options.joint_map.empty() ? JointMap() : read_joint_map(options.joint_map);
   std::vector<std::string> notices;
   const std::vector<SurveyedClip> clips =
-      survey(find_listed_clips(options.data), {}, joint_map, &notices);
+      survey(find_listed_clips(options.data), joint_map, &notices);
   for (const std::string& notice : notices) spdlog::warn("{}", notice);
   Amount usable;
   std::vector<ListedClip> listed;
@@ -128,7 +128,7 @@ void run_corpus(const CommandContext& context, const CorpusOptions& options) {
   if (listed.empty())
     throw InputError(
         fmt::format("{}: not written, as no clip can be brought onto the canonical humanoid: a "
-                    "list without clips is none that `train` takes",
+                    "list without clips is none that `mcdbn-cl train` takes",
                     options.list.string()));
   write_clip_list(options.list, listed);
   spdlog::info("{}: {}, {} left out", options.list.string(), counted(listed.size(), "clip"),

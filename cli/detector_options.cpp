@@ -34,7 +34,11 @@ DetectorViews detector_like(const std::string& name_or_file) {
         "{}: shows no person's hip, knee and ankle as a detector names them; its noise cannot be "
         "measured",
         name_or_file));
-  return {seen_keypoints(track), measured_noise(track, height_px), {}, {}};
+  try {
+    return {seen_keypoints(track), measured_noise(track, height_px), {}, {}};
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", name_or_file, error.what()));
+  }
 }
 
 std::vector<CLI::Option*> add_detector_camera_flags(CLI::App& command, DetectorCameras& cameras) {

@@ -40,7 +40,7 @@ struct EvaluateOptions {
   std::string tracks = kExact, like = "openpose";
   DetectorCameras cameras;
   OtherBody people;
-  std::vector<const CLI::Option*> of_detector;  ///< to check whether they were given
+  std::vector<const CLI::Option*> of_detector, of_exact;  ///< to check whether they were given
   bool camera_unknown = false, baselines_given = false;
   TestRunOptions run;
   SamplingOptions sampling;
@@ -63,12 +63,13 @@ void apply_protocol(EvaluateOptions& options) {
   sampling.temperature = sampling.temperature.value_or(kPaperTemperature);
 }
 
-/// @throws ConfigError naming an option that exact tracks would ignore
+/// @throws ConfigError naming an option that is of the other kind of tracks
 void check_tracks(const EvaluateOptions& options) {
-  if (options.tracks == kDetector) return;
-  for (const CLI::Option* option : options.of_detector)
+  const bool exact = options.tracks == kExact;
+  for (const CLI::Option* option : exact ? options.of_detector : options.of_exact)
     if (option->count() > 0)
-      throw ConfigError(fmt::format("{} is for --tracks detector", option->get_name()));
+      throw ConfigError(
+          fmt::format("{} is for --tracks {}", option->get_name(), exact ? kDetector : kExact));
 }
 
 /// The tracks that every method is to see.
@@ -150,6 +151,62 @@ void leave_out_baselines(const Model& model, EvaluateOptions& options) {
   spdlog::warn("no simpler methods beside the model: its training clips are not here");
 }
 
+/// What run_test takes: the model's camera, unless options change it, and its samples.
+TestRunOptions test_options_of(const Model& model, const EvaluateOptions& options,
+                               std::uint64_t seed) {
+  TestRunOptions run = options.run;
+  run.camera = model.modalities.camera;
+  if (options.azimuth_deg) run.camera.azimuth_deg = *options.azimuth_deg;
+  if (options.elevation_deg) run.camera.elevation_deg = *options.elevation_deg;
+  run.regeneration = options.sampling.regeneration(model.network, seed);
+  run.uncertainty_draws = {options.uncertainty_draws, seed};
+  add_training_views(model, run);
+  run.notices = [](const std::string& notice) { spdlog::warn("{}", with_flags(notice)); };
+  return run;
+}
+
+/// Runs the test and analyses its results.
+EvaluationReport evaluated_report(const CommandContext& context, const Model& model,
+                                  const EvaluateOptions& options) {
+  ProgressLine progress(context.quiet);
+  const auto show = [&](double from, double to) {
+    return [&, from, to](const std::string& what, double fraction) {
+      check_interruption();
+      progress.show(what, from + (to - from) * fraction);
+    };
+  };
+  TestRunOptions run = test_options_of(model, options, context.seed);
+  run.progress = show(0.0, kTestShare);
+  EvaluationReport report;
+  report.temperature = run.regeneration.temperature;
+  const std::vector<ClipResult> results = run_test(model, find_clips(options.test), run);
+  for (const ClipResult& result : results) {
+    report.joints.add(result.joints);
+    report.channels.add(result.channels);
+  }
+  report.clips = report_clips(model, results, options.actions == "by-folder");
+  report.actions = analyse_actions(report.clips, context.seed, show(kTestShare, 1.0));
+  report.protocol = options.protocol;
+  report.fit = options.fit;
+  report.tracks = options.tracks == kDetector ? options.like : options.tracks;
+  report.camera_known = options.run.camera_known;
+  report.damage = options.run.damage;
+  return report;
+}
+
+/// Writes the report's folder, if one was asked for, and prints the figures.
+void publish(const CommandContext& context, const EvaluationReport& report,
+             const std::filesystem::path& folder) {
+  if (!folder.empty()) {
+    write_report(folder, report);
+    spdlog::info("{}: open report.html in a browser", folder.string());
+  }
+  if (context.json)
+    print_json(summary_json(report));
+  else
+    print_table(report);
+}
+
 void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   apply_protocol(options);
   check_tracks(options);
@@ -160,47 +217,9 @@ void run_evaluate(const CommandContext& context, EvaluateOptions options) {
   const Model model = load_model(device, model_file);
   check_joint_map(model, options);
   leave_out_baselines(model, options);
-  EvaluationReport report;
-  {
-    ProgressLine progress(context.quiet);
-    const auto show = [&](double from, double to) {
-      return [&, from, to](const std::string& what, double fraction) {
-        check_interruption();
-        progress.show(what, from + (to - from) * fraction);
-      };
-    };
-    TestRunOptions run = options.run;
-    run.camera = model.modalities.camera;
-    if (options.azimuth_deg) run.camera.azimuth_deg = *options.azimuth_deg;
-    if (options.elevation_deg) run.camera.elevation_deg = *options.elevation_deg;
-    run.regeneration = options.sampling.regeneration(model.network, context.seed);
-    run.uncertainty_draws = {options.uncertainty_draws, context.seed};
-    report.temperature = run.regeneration.temperature;
-    add_training_views(model, run);
-    run.progress = show(0.0, kTestShare);
-    run.notices = [](const std::string& notice) { spdlog::warn("{}", with_flags(notice)); };
-    const std::vector<ClipResult> results = run_test(model, find_clips(options.test), run);
-    for (const ClipResult& result : results) {
-      report.joints.add(result.joints);
-      report.channels.add(result.channels);
-    }
-    report.clips = report_clips(model, results, options.actions == "by-folder");
-    report.actions = analyse_actions(report.clips, context.seed, show(kTestShare, 1.0));
-  }
+  EvaluationReport report = evaluated_report(context, model, options);
   report.model = model_file.filename().string();
-  report.protocol = options.protocol;
-  report.fit = options.fit;
-  report.tracks = options.tracks == kDetector ? options.like : options.tracks;
-  report.camera_known = options.run.camera_known;
-  report.damage = options.run.damage;
-  if (!options.report.empty()) {
-    write_report(options.report, report);
-    spdlog::info("{}: open report.html in a browser", options.report.string());
-  }
-  if (context.json)
-    print_json(summary_json(report));
-  else
-    print_table(report);
+  publish(context, report, options.report);
 }
 
 void add_test_options(CLI::App& command, EvaluateOptions& options) {
@@ -263,6 +282,8 @@ void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   add_view_flags(command, options.azimuth_deg, options.elevation_deg);
+  for (const char* flag : {"--camera-azimuth", "--camera-elevation"})
+    options.of_exact.push_back(command.get_option(flag));
 }
 
 void add_track_options(CLI::App& command, EvaluateOptions& options) {

@@ -14,6 +14,7 @@
 #include "commands.hpp"
 #include "epoch_progress.hpp"
 #include "learning/metrics_log.hpp"
+#include "learning/unit_values.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/learning/machine_fit.hpp"
 #include "mcdbn/machines/size_limits.hpp"
@@ -43,7 +44,6 @@ constexpr std::array kKinds{
 };
 
 constexpr const char* kMrbm = "mrbm";
-constexpr int kMostLayers = 64;  // as `layers` of MachineSettings
 
 std::vector<std::string> kind_names() {
   std::vector<std::string> names{kMrbm};
@@ -102,7 +102,8 @@ void check_flags(const FitOptions& options) {
 /// The data of one modality, checked, and scaled if that was asked for.
 ColumnScale prepare(std::vector<MatrixF>& data, const MatrixInput& input, VisibleKind kind,
                     bool standardize) {
-  for (std::size_t i = 0; i < data.size(); ++i) check_values(data[i], kind, input.files[i]);
+  for (std::size_t i = 0; i < data.size(); ++i)
+    check_unit_values(data[i], kind, input.files[i].string());
   if (!standardize || kind == VisibleKind::binary) return {};
   ColumnScale scale = ColumnScale::of(data);
   for (MatrixF& values : data) values = scale.apply(values);
@@ -155,7 +156,7 @@ void fit_and_save(const CommandContext& context, const FitOptions& options, Fit&
 
 void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
   std::vector<ModalityData> inputs = read_modalities(options.modalities, options.data.tensor);
-  if (inputs.size() < 2) throw ConfigError("--modality: two names or more are wanted");
+  if (inputs.size() < 2) throw ConfigError("--modality: give at least two");
   for (const std::string& name : options.gaussian)
     if (std::ranges::count(inputs, name, &ModalityData::name) == 0)
       throw ConfigError(fmt::format("--gaussian {}: there is no such --modality", name));
@@ -211,7 +212,7 @@ void run_fit(const CommandContext& context, const FitOptions& options) {
   for (const LayerSize& layer : layers) history += layer.order;
   std::vector<MatrixF> data = options.data.read();
   const ColumnScale scale = prepare(data, options.data, kind.visible, options.standardize);
-  check_lengths(data, history, options.data.files.front());
+  check_lengths(data, history, options.data.files);
   fit_and_save(context, options, [&](Device& device, const EpochObserver& observer) {
     const Sequences sequences = Sequences::from_host(device, data);
     spdlog::info("{}, {} of {} on {}", counted(data.size(), "file"),
@@ -246,7 +247,7 @@ void add_layer_options(CLI::App& command, FitOptions& options) {
                        const CLI::Validator& range, const char* unit) {
     return command.add_option(flag, values, help)
         ->delimiter(',')
-        ->expected(1, kMostLayers)
+        ->expected(1, static_cast<int>(size_limits::kLayers.most))
         ->check(range)
         ->type_name(unit)
         ->excludes(command.get_option("--layers"));
@@ -267,7 +268,7 @@ void add_fit_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<FitOptions>();
   CLI::App* command = app.add_subcommand("fit", "Fits a single machine to matrices of any data");
   add_matrix_input(*command, options->data, "data",
-                   "Matrices, one row a case or a frame; each file is a sequence of its own");
+                   "Matrices, a row for each case or frame; each file is a sequence of its own");
   add_modality_option(
       *command, options->modalities,
       "Matrices of an MRBM's modalities, each with its name; the files of a name are "
@@ -278,11 +279,10 @@ void add_fit_command(CLI::App& app, CommandContext& context) {
                        "Modalities of an MRBM whose units are Gaussian; the others are binary")
           ->type_name("NAME");
   command
-      ->add_option(
-          "--machine", options->machine,
-          "rbm, gaussian-rbm: no history; crbm (Gaussian), binary-crbm: with one; dbn, "
-          "gaussian-dbn, cdbn, binary-cdbn: stacks of them, named by the lowest layer; mrbm: "
-          "of several modalities")
+      ->add_option("--machine", options->machine,
+                   "rbm, gaussian-rbm: without history; crbm (Gaussian), binary-crbm: with "
+                   "history; dbn, gaussian-dbn, cdbn, binary-cdbn: stacks of them, named by the "
+                   "lowest layer; mrbm: of several modalities")
       ->required()
       ->check(CLI::IsMember(kind_names()));
   mark_output(

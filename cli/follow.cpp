@@ -221,10 +221,10 @@ void follow_track(const Model& model, const std::filesystem::path& input,
                   const ClipPlacement& placement, const FollowOptions& options) {
   const std::string name = input == "-" ? "standard input" : input.string();
   TrackLines lines(name, reading);
-  LineSource source(input);
-  Following following(model, name, output, placement, options, reading.fps.value_or(kUsualFps));
   // After a request to stop the frames in progress are still written.
   const InterruptionDeferred until_the_end;
+  LineSource source(input);
+  Following following(model, name, output, placement, options, reading.fps.value_or(kUsualFps));
   while (const std::optional<std::string> line = source.next()) {
     std::optional<TrackFrame> frame;
     bool broken = false;
@@ -242,6 +242,10 @@ void follow_track(const Model& model, const std::filesystem::path& input,
     for (const std::string& notice : lines.take_notices()) spdlog::warn("{}", with_flags(notice));
   }
   const std::size_t written = following.finish();
+  if (written == 0 && interruption_requested()) {
+    spdlog::info("{}: stopped before the first frame; nothing is written", name);
+    return;
+  }
   if (written == 0) throw InputError(fmt::format("{}: no frame that shows a person", name));
   spdlog::info("{}: {} frames", output.empty() ? "standard output" : output.string(), written);
   report_unseen(following, name, reading.person);

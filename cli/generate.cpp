@@ -105,16 +105,15 @@ void add_generate_command(CLI::App& app, CommandContext& context) {
           "Model of `train --preset generation` (default: the general one that comes with the "
           "program, which was not trained to run freely)");
   command
-      ->add_option(
-          "--seed-clip", options->seed_clips,
-          "BVH clip to continue from its last frames, with its person; several are continued "
-          "one after another")
+      ->add_option("--seed-clip", options->seed_clips,
+                   "BVH clip to continue from its last frames, with its person's proportions; "
+                   "several are continued one after another")
       ->required()
       ->type_name("FILE");
   command
-      ->add_option("--seed-every", options->seed_every_s,
-                   "Continue from moments throughout a clip, this far apart (default: from its end "
-                   "alone)")
+      ->add_option(
+          "--seed-every", options->seed_every_s,
+          "Continue from several moments of a clip, this far apart (default: from its end only)")
       ->check(in_range(within(kLeastSeconds, kMostSeconds)))
       ->type_name("SECONDS");
   mark_output(

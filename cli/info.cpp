@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -11,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/lower_extension.hpp"
 #include "base/shown.hpp"
 #include "clip_options.hpp"
 #include "commands.hpp"
@@ -35,13 +35,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-std::string extension_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char letter) { return std::tolower(letter); });
-  return extension;
-}
-
 json describe_clip(const fs::path& path) {
   const Motion motion = load_clip_with_notices(path, {.fps = 0.0, .keep_first_frame = true});
   const SkeletonRoles known = skeleton_roles(motion.skeleton);
@@ -52,7 +45,7 @@ json describe_clip(const fs::path& path) {
     joints.push_back(joint.name);
   }
   for (const JointRole role : known.missing()) missing.push_back(name_of(role));
-  return {{"kind", extension_of(path) == ".bvh" ? "BVH clip" : "ASF/AMC clip"},
+  return {{"kind", lower_extension(path) == ".bvh" ? "BVH clip" : "ASF/AMC clip"},
           {"joints", joints},
           {"roles", roles},
           {"roles_without_joint", missing},
@@ -106,7 +99,7 @@ std::optional<std::pair<Eigen::Index, Eigen::Index>> matrix_size(const fs::path&
 std::string other_use(const fs::path& path) {
   if (path.string().ends_with("metrics.jsonl"))
     return "it is the log of a training, JSON, a line an epoch";
-  if (extension_of(path) != ".npy" && track_format_of(path)) return {};
+  if (lower_extension(path) != ".npy" && track_format_of(path)) return {};
   if (const auto size = matrix_size(path))
     return fmt::format("it is a matrix of {} x {} numbers, for `mcdbn-cl fit`", size->first,
                        size->second);
@@ -123,8 +116,7 @@ TrackReading tracks_in(const fs::path& path, const TrackReadOptions& options) {
   }
 }
 
-json describe_track(const fs::path& path, TrackReadOptions options) {
-  if (options.person == TrackReadOptions{}.person) options.person = "all";
+json describe_track(const fs::path& path, const TrackReadOptions& options) {
   const TrackReading reading = tracks_in(path, options);
   const Track2d& track = reading.people.front();
   json joints = json::array(), roles = json::object(), people = json::array();
@@ -182,7 +174,7 @@ void check_folder(const fs::path& folder) {
                        [&](const fs::directory_entry& entry) { return test(entry.path()); });
   };
   if (holds(fs::directory_iterator(folder),
-            [](const fs::path& file) { return extension_of(file) == ".json"; }))
+            [](const fs::path& file) { return lower_extension(file) == ".json"; }))
     return;
   if (const fs::path model = folder / "model.safetensors"; fs::exists(model))
     throw InputError(fmt::format("{}: the folder of a training; its model is {}", folder.string(),
@@ -195,7 +187,7 @@ void check_folder(const fs::path& folder) {
 
 json describe(const fs::path& path, const TrackReadOptions& options) {
   if (!fs::exists(path)) throw InputError(fmt::format("{}: no such file", path.string()));
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   if (is_motion_file(path)) return describe_clip(path);
   if (extension == ".safetensors") {
     if (is_machine_file(path)) return describe_machine(path);
@@ -282,6 +274,7 @@ void add_info_command(CLI::App& app, CommandContext& context) {
                    "BVH, AMC, track (a file or a folder), calibration, model or machine (default: "
                    "the model that comes with the program)")
       ->type_name("FILE");
+  options->person = "all";
   add_track_options(*command, *options);
   add_json_option(*command, context);
   add_quiet_option(*command, context);

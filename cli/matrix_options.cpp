@@ -1,11 +1,14 @@
 #include "matrix_options.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
-#include <cmath>
+#include <algorithm>
 #include <iostream>
 #include <utility>
 
+#include "base/counted.hpp"
+#include "learning/unit_values.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/base/matrix_file.hpp"
 
@@ -87,39 +90,28 @@ MatrixF unscaled(const SavedMachine& saved, const MatrixF& values, std::size_t m
   return scale ? scale->undo(values) : values;
 }
 
-void check_values(const MatrixF& values, VisibleKind kind, const std::filesystem::path& file,
-                  bool may_be_unknown) {
-  for (Eigen::Index r = 0; r < values.rows(); ++r)
-    for (Eigen::Index c = 0; c < values.cols(); ++c) {
-      const float x = values(r, c);
-      if (may_be_unknown && std::isnan(x)) continue;
-      if (!std::isfinite(x))
-        throw InputError(fmt::format(
-            "{}: row {}, column {} is {}; {}", file.string(), r + 1, c + 1, x,
-            may_be_unknown ? "a number is needed, or nan" : "numbers are needed throughout"));
-      if (kind == VisibleKind::binary && (x < 0.0F || x > 1.0F))
-        throw InputError(fmt::format(
-            "{}: row {}, column {} is {}; binary units need values from 0 to 1 (a Gaussian "
-            "machine takes any)",
-            file.string(), r + 1, c + 1, x));
-    }
-}
-
 void check_lengths(const std::vector<MatrixF>& data, std::size_t order,
-                   const std::filesystem::path& first) {
-  for (const MatrixF& values : data)
-    if (values.rows() > static_cast<Eigen::Index>(order)) return;
-  throw InputError(fmt::format("{}: no file has more than {} rows, the history of the machine",
-                               first.string(), order));
+                   const std::vector<std::filesystem::path>& files) {
+  const auto is_short = [&](const MatrixF& values) {
+    return values.rows() <= static_cast<Eigen::Index>(order);
+  };
+  if (std::ranges::all_of(data, is_short))
+    throw InputError(fmt::format("{}: no file has more than {} rows, the history of the machine",
+                                 files.front().string(), order));
+  for (std::size_t i = 0; i < data.size(); ++i)
+    if (is_short(data[i]))
+      spdlog::warn("{}: {}; none has the machine's history of {} before it", files[i].string(),
+                   counted(data[i].rows(), "row"), counted(order, "row"));
 }
 
 std::vector<MatrixF> checked_and_scaled(const SavedMachine& saved, const Cdbn& stack,
                                         const MatrixInput& files) {
   const CrbmShape shape = stack.layers.front().shape();
   std::vector<MatrixF> data = files.read();
-  for (std::size_t i = 0; i < data.size(); ++i) check_values(data[i], shape.kind, files.files[i]);
+  for (std::size_t i = 0; i < data.size(); ++i)
+    check_unit_values(data[i], shape.kind, files.files[i].string());
   data = scaled(saved, std::move(data), shape.visible, files);
-  check_lengths(data, stack.total_order(), files.files.front());
+  check_lengths(data, stack.total_order(), files.files);
   return data;
 }
 

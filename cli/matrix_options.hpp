@@ -45,14 +45,10 @@ std::vector<MatrixF> scaled(const SavedMachine& saved, std::vector<MatrixF> data
                             std::size_t modality = 0);
 MatrixF unscaled(const SavedMachine& saved, const MatrixF& values, std::size_t modality = 0);
 
-/// Checks what a machine can take: numbers throughout, from 0 to 1 where its units are binary.
-/// @param may_be_unknown NaN is let through  @throws InputError naming the file, row and column
-void check_values(const MatrixF& values, VisibleKind kind, const std::filesystem::path& file,
-                  bool may_be_unknown = false);
-/// Checks that at least one sequence is longer than the history. @param first file, for errors
-/// @throws InputError
+/// Checks that at least one sequence is longer than the history, and warns of each that is not.
+/// @param files of the data, for messages  @throws InputError if none is
 void check_lengths(const std::vector<MatrixF>& data, std::size_t order,
-                   const std::filesystem::path& first);
+                   const std::vector<std::filesystem::path>& files);
 /// The files' data as a stack can take them, checked and scaled. @throws InputError
 std::vector<MatrixF> checked_and_scaled(const SavedMachine& saved, const Cdbn& stack,
                                         const MatrixInput& files);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "learning/unit_values.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn::cli {
@@ -73,7 +74,7 @@ MrbmUnits mrbm_units(Device& device, const SavedMachine& saved, const Mrbm& mrbm
   for (const ModalityData& input : inputs) {
     const std::size_t m = modality_of(mrbm, input.name, "--modality");
     for (std::size_t i = 0; i < input.data.size(); ++i)
-      check_values(input.data[i], mrbm.kind(m), input.files.files[i]);
+      check_unit_values(input.data[i], mrbm.kind(m), input.files.files[i].string());
     given[m] = stacked(scaled(saved, input.data, mrbm.visible(m), input.files, m), 0);
     rows = given[m].rows();
   }

@@ -15,4 +15,8 @@ std::string ending_of(const std::filesystem::path& output);
 /// @throws ConfigError naming them
 void check_ending(const std::filesystem::path& output, const std::vector<std::string>& endings);
 
+/// Refuses a --write-camera whose ending is that of no format that cameras are written in.
+/// @param output empty if the option was not given  @throws ConfigError naming the endings
+void check_camera_output(const std::filesystem::path& output);
+
 }  // namespace mcdbn::cli

@@ -12,6 +12,7 @@
 #include "detector_options.hpp"
 #include "mcdbn/camera/track.hpp"
 #include "mcdbn/formats/camera_file.hpp"
+#include "output_ending.hpp"
 #include "setting_flags.hpp"
 #include "track_options.hpp"
 
@@ -38,6 +39,7 @@ Track2d seen_track(const Motion& motion, const Camera& camera, const std::string
 }
 
 void run_project(const CommandContext& context, const ProjectOptions& options) {
+  check_camera_output(options.camera_output);
   const Motion motion = load_clip_with_notices(options.clip, options.preparation);
   const Camera camera = options.random_camera ? random_camera(motion, options.cameras, context.seed)
                                               : options.camera.camera_for(motion);
@@ -64,8 +66,7 @@ void add_project_command(CLI::App& app, CommandContext& context) {
       ->type_name("FILE");
   add_format_option(
       *command, options->format,
-      "Format of the track to write; detectors' formats hold a detector's joints (--like) "
-      "alone")
+      "Format of the track to write; detectors' formats hold only a detector's joints (--like)")
       ->capture_default_str();
   mark_output(command->add_option("--write-camera", options->camera_output,
                                   "Also write the camera that was used, as OpenCV YAML"),

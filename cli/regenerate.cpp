@@ -2,12 +2,12 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "camera/shown_body.hpp"
 #include "camera_options.hpp"
 #include "clip_options.hpp"
 #include "commands.hpp"
@@ -15,6 +15,7 @@
 #include "default_model.hpp"
 #include "fit_option.hpp"
 #include "follow.hpp"
+#include "formats/csv_text.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
@@ -24,7 +25,8 @@
 #include "mcdbn/formats/uncertainty_csv.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
-#include "output_ending.hpp"
+#include "motion_model/keypoint_columns.hpp"
+#include "regenerate_options.hpp"
 #include "regeneration_reports.hpp"
 #include "sample_path.hpp"
 #include "sampling_options.hpp"
@@ -32,88 +34,6 @@
 
 namespace mcdbn::cli {
 namespace {
-
-constexpr const char *kToPose = "pose", *kToTrack = "track", *kModel = "model";
-
-struct RegenerateOptions {
-  std::filesystem::path model, input, output, skeleton, joint_map, write_camera, uncertainty;
-  TrackReadOptions track;
-  SeenByOptions seen_by;
-  SamplingOptions sampling;
-  std::string to = kToPose, fit, method = kModel;
-  bool keep_first_frame = false;
-  FollowOptions following;
-};
-
-/// Options that mean nothing where a track is wanted, or where motion is. @throws ConfigError
-/// naming the first
-void check_direction(const RegenerateOptions& options) {
-  if (options.to != kToTrack) {
-    if (options.keep_first_frame) throw ConfigError("--keep-first-frame is for --to track");
-    return;
-  }
-  const AssumedView& view = options.seen_by.view;
-  const TrackReadOptions& track = options.track;
-  for (const auto& [given, flag] :
-       {std::pair{!options.skeleton.empty(), "--skeleton"},
-        std::pair{!options.joint_map.empty(), "--joint-map"},
-        std::pair{options.method != kModel, "--method"},
-        std::pair{!options.write_camera.empty(), "--write-camera"},
-        std::pair{!options.uncertainty.empty(), "--uncertainty"},
-        std::pair{!options.fit.empty(), "--fit"},
-        std::pair{view.pitch_deg.has_value(), "--camera-pitch"},
-        std::pair{view.roll_deg.has_value(), "--camera-roll"},
-        std::pair{view.field_of_view_deg.has_value(), "--camera-fov"},
-        std::pair{!track.format.empty(), "--format"},
-        std::pair{track.person != TrackReadOptions{}.person, "--person"},
-        std::pair{track.fps.has_value(), "--fps"},
-        std::pair{track.image_size.has_value(), "--image-size"}})
-    if (given)
-      throw ConfigError(fmt::format(
-          "{} is for --to pose: with --to track motion is read; the track has no skeleton and is "
-          "not fitted, its rate is the model's, and its camera the model's or a file's",
-          flag));
-}
-
-/// Refuses --uncertainty of several samples. @throws ConfigError
-void check_uncertainty(const RegenerateOptions& options) {
-  if (options.uncertainty.empty()) return;
-  if (options.sampling.samples.value_or(1) > 1)
-    throw ConfigError("--uncertainty is that of a single answer: leave out --samples");
-}
-
-/// Refuses options that --follow excludes or that need it; only it needs no --input and no -o.
-/// @throws ConfigError naming the first
-void check_follow(const RegenerateOptions& options) {
-  const FollowOptions& following = options.following;
-  if (!following.follow) {
-    if (options.input.empty() || options.output.empty())
-      throw ConfigError(fmt::format("{} is required", options.input.empty() ? "--input" : "-o"));
-    if (following.look_ahead || !following.frames.empty())
-      throw ConfigError("--look-ahead and --frames are for --follow");
-    return;
-  }
-  for (const auto& [given, flag] :
-       {std::pair{options.to == kToTrack, "--to track"},
-        std::pair{options.method != kModel, "--method"},
-        std::pair{!options.write_camera.empty(), "--write-camera"},
-        std::pair{!options.uncertainty.empty(), "--uncertainty"},
-        std::pair{options.sampling.samples.value_or(1) > 1, "--samples"},
-        std::pair{options.sampling.temperature.value_or(0) > 0, "--temperature"},
-        std::pair{options.sampling.gibbs_steps.value_or(0) > 0, "--gibbs-steps"},
-        std::pair{options.sampling.mrbm_gibbs_steps.value_or(0) > 0, "--mrbm-gibbs-steps"},
-        std::pair{!track_fit(options.fit), "--fit none"}})
-    if (given)
-      throw ConfigError(fmt::format("{} needs the whole track: leave it out, or --follow", flag));
-}
-
-/// Refuses an output that is named as another format than what is written. @throws ConfigError
-void check_output_ending(const RegenerateOptions& options) {
-  if (options.following.follow)
-    check_frames_output(options.output, options.following);
-  else
-    check_ending(options.output, {options.to == kToTrack ? ".csv" : ".bvh"});
-}
 
 /// What `work` returns. Errors of an input begin with the name.
 template <typename Work>
@@ -157,8 +77,8 @@ std::filesystem::path person_path(const std::filesystem::path& output, std::size
                                            output.extension().string()));
 }
 
-/// Checks the joint map, and that the model's motion can be put on a skeleton of other joints;
-/// warns of what is lost there.
+/// Checks the joint map, that the model's motion can be put on a skeleton of other joints, and that
+/// the uncertainty's CSV can name the joints; warns of motion that is lost.
 /// @throws InputError naming the file that is at fault
 void check_body(const Modalities& modalities, const RegenerateOptions& options,
                 const ClipPlacement& placement) {
@@ -166,6 +86,10 @@ void check_body(const Modalities& modalities, const RegenerateOptions& options,
   const Skeleton& wanted = placement.skeleton ? *placement.skeleton : own;
   const SkeletonRoles roles = with_name(
       options.joint_map.string(), [&] { return skeleton_roles(wanted, placement.joint_map); });
+  if (!options.uncertainty.empty())
+    with_name(options.uncertainty.string(), [&] {
+      for (const Joint& joint : wanted.joints) require_csv_name(joint.name);
+    });
   if (!is_other_skeleton(modalities, wanted)) return;
   const std::vector<JointRole> lost = with_name(options.skeleton.string(), [&] {
     return lost_roles(HumanoidRig({wanted, 1.0, placement.skeleton_channels}, roles).roles());
@@ -175,8 +99,8 @@ void check_body(const Modalities& modalities, const RegenerateOptions& options,
   names.reserve(lost.size());
   for (const JointRole role : lost) names.push_back(name_of(role));
   spdlog::warn(
-      "{}: no joint is known to be {}: what they do is lost; name them with --joint-map, info "
-      "shows which are known",
+      "{}: no joint has the roles {}; their motion is lost. Name them with --joint-map; "
+      "`mcdbn-cl info` shows the known roles",
       options.skeleton.string(), fmt::join(names, ", "));
 }
 
@@ -202,10 +126,39 @@ ClipPlacement placement_of(const Modalities& modalities, const RegenerateOptions
   return placement;
 }
 
-/// Whether feet on level ground show how the camera stands.
-bool finds_angles(const Modalities& modalities, const ClipPlacement& placement) {
+/// What shows how the camera stands; empty where that is not estimated.
+/// @param track with keypoints
+std::string shows_angles(const Modalities& modalities, const ClipPlacement& placement,
+                         const Track2d& track) {
   const AssumedView& given = placement.view;
-  return placement.fit && finds_view(modalities, placement) && !(given.pitch_deg && given.roll_deg);
+  if (!placement.fit || !finds_view(modalities, placement) || (given.pitch_deg && given.roll_deg))
+    return {};
+  return shows_feet(track) ? "feet on level ground" : "the posture: no foot is seen";
+}
+
+/// Of a camera without calibration: warns what is assumed, and where the film may be stored turned.
+void report_unknown_camera(const std::string& name, Track2d track, const Modalities& modalities,
+                           const ClipPlacement& placement, const Camera& assumed) {
+  track.keypoints = keypoints_of_columns(track);
+  if (!placement.view.roll_deg) report_turned(name, track);
+  report_assumed(assumed, shows_angles(modalities, placement, track));
+}
+
+/// Writes one of the track's people: each variation's motion, and what else was asked for.
+void write_person(const RegenerateOptions& options, std::size_t person, std::size_t people,
+                  const std::vector<Motion>& motions, const TrackFindings& findings) {
+  if (!options.write_camera.empty())
+    write_camera(person_path(options.write_camera, person, people), findings.camera);
+  const auto output = person_path(options.output, person, people);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const auto path = sample_path(output, i, motions.size());
+    write_bvh(path, motions[i]);
+    report_written(path, motions[i].frames(), motions[i].fps());
+  }
+  report_uncertainty(motions.front(), findings.uncertainty);
+  if (!options.uncertainty.empty())
+    write_uncertainty_csv(person_path(options.uncertainty, person, people), motions.front(),
+                          findings.uncertainty);
 }
 
 void regenerate_poses(const Model& model, const RegenerateOptions& options,
@@ -220,7 +173,7 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
   const std::unique_ptr<Baseline> simpler =
       options.method == kModel
           ? nullptr
-          : fitted_baseline(options.method, model, lessons_of(options.method, model));
+          : fitted_baseline(options.method, model, training_data_of(options.method, model));
   bool anybody = false;
   for (std::size_t person = 0; person < people.size(); ++person) {
     TrackFindings findings;
@@ -237,21 +190,10 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
     anybody = true;
     report_findings(name, people[person], read.frame_numbers, findings);
     if (!placement.camera) {
-      report_assumed(findings.camera, finds_angles(model.modalities, placement));
+      report_unknown_camera(name, people[person], model.modalities, placement, findings.camera);
       placement.camera = findings.camera;  // all others stand in the first one's world
     }
-    if (!options.write_camera.empty())
-      write_camera(person_path(options.write_camera, person, people.size()), findings.camera);
-    const auto output = person_path(options.output, person, people.size());
-    for (std::size_t i = 0; i < motions.size(); ++i) {
-      const auto path = sample_path(output, i, motions.size());
-      write_bvh(path, motions[i]);
-      report_written(path, motions[i].frames(), motions[i].fps());
-    }
-    report_uncertainty(motions.front(), findings.uncertainty);
-    if (!options.uncertainty.empty())
-      write_uncertainty_csv(person_path(options.uncertainty, person, people.size()),
-                            motions.front(), findings.uncertainty);
+    write_person(options, person, people.size(), motions, findings);
   }
   if (!anybody)
     throw InputError(
@@ -262,7 +204,7 @@ void follow(const Model& model, const RegenerateOptions& options,
             const std::optional<Camera>& camera, std::uint64_t seed) {
   TrackReadOptions reading = options.track;
   if (camera) reading.camera_image = {camera->width_px, camera->height_px};
-  if (model.network.sampling.always)
+  if (model.network.sampling.sampled)
     spdlog::info("frames are the model's mean answer: it draws samples for whole tracks only");
   follow_track(model, options.input.empty() ? "-" : options.input, options.output, reading,
                placement_of(model.modalities, options, camera, seed), options.following);
@@ -271,6 +213,11 @@ void follow(const Model& model, const RegenerateOptions& options,
 void regenerate_tracks(const Model& model, const RegenerateOptions& options,
                        const std::optional<Camera>& camera,
                        const RegenerationOptions& regeneration) {
+  with_name(options.output.string(), [&] {
+    require_csv_name(model.modalities.root_name());
+    for (const std::string& name : model.modalities.track_features.joint_names())
+      require_csv_name(name);
+  });
   const Motion clip = load_clip_with_notices(
       options.input, {.fps = model.modalities.fps, .keep_first_frame = options.keep_first_frame});
   const auto tracks = regenerate_track(model, clip, regeneration, camera);
@@ -282,10 +229,7 @@ void regenerate_tracks(const Model& model, const RegenerateOptions& options,
 }
 
 void run_regenerate(const CommandContext& context, const RegenerateOptions& options) {
-  check_direction(options);
-  check_uncertainty(options);
-  check_follow(options);
-  check_output_ending(options);
+  check_options(options);
   Device device = Device::open({context.platform, context.device});
   const Model model = load_model(device, model_or_default(options.model));
   const std::optional<Camera> camera = options.seen_by.camera();

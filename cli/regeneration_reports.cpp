@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "base/counted.hpp"
+#include "base/numbers.hpp"
+#include "camera/quarter_roll.hpp"
 #include "mcdbn/camera/level_view.hpp"
 #include "mcdbn/camera/track_stretches.hpp"
 
@@ -19,16 +22,29 @@ void report_written(const std::filesystem::path& path, int frames, double fps) {
   spdlog::info("{}: {} at {:.4g} fps", path.string(), counted(frames, "frame"), fps);
 }
 
-void report_assumed(const Camera& camera, bool found) {
+void report_turned(const std::string& name, const Track2d& track) {
+  const std::optional<int> roll_deg = quarter_roll_deg(track);
+  if (!roll_deg) return;
+  const bool upside_down = *roll_deg == 180;
+  spdlog::warn(
+      "{}: in most frames the body {}: set --camera-roll {} if the film is stored turned, or "
+      "--camera-roll 0 if the person {}",
+      name, upside_down ? "is upside down in the image" : "lies across the image", *roll_deg,
+      upside_down ? "stands on the hands" : "lies there");
+}
+
+void report_assumed(const Camera& camera, const std::string& found_from) {
   const Eigen::Vector3d up = camera.camera_from_world.col(1);
-  const auto deg = [](double angle) { return std::round(angle * 1800 / EIGEN_PI) / 10 + 0.0; };
+  const auto deg = [](double angle) {
+    return std::round(10 * angle / kRadiansPerDegree) / 10 + 0.0;
+  };
   spdlog::warn(
       "no --camera: assumed to look down by {:g} degrees and to be turned by {:g}{}, with a "
       "vertical field of view of {:.4g} degrees; set what is known with --camera-pitch, "
       "--camera-roll, --camera-fov",
       deg(std::asin(std::clamp(-up.z(), -1.0, 1.0))), deg(std::atan2(-up.x(), -up.y())),
-      found ? " (from feet on level ground)" : "",
-      2 * std::atan(0.5 * camera.height_px / camera.fy_px) * 180 / EIGEN_PI);
+      found_from.empty() ? "" : fmt::format(" (from {})", found_from),
+      2 * std::atan(0.5 * camera.height_px / camera.fy_px) / kRadiansPerDegree);
 }
 
 void report_findings(const std::string& name, const Track2d& track,
@@ -37,8 +53,8 @@ void report_findings(const std::string& name, const Track2d& track,
   const std::vector<FrameRange>& stretches = findings.stretches.stretches;
   if (stretches.size() > 1)
     spdlog::warn(
-        "{}: jumps to another place, as if to another person: frames {} are regenerated each by "
-        "themselves, with one body",
+        "{}: jumps to another place or size, as if to another person or after a cut: frames {} are "
+        "regenerated each by themselves, with one body",
         name, described(stretches, numbers));
   if (const auto& strays = findings.stretches.strays; !strays.empty())
     spdlog::warn("{}: another person in frames {}: left out", name, described(strays, numbers));
@@ -57,7 +73,7 @@ void report_findings(const std::string& name, const Track2d& track,
         "{}: {} seen joints are outside of the level view, {:.0f} degrees and more from its "
         "direction: the network does not see them; from a camera that looks down by more than 65 "
         "degrees the motion may be metres off",
-        name, filled.outside, std::acos(kLevelViewLeastCosine) * 180 / EIGEN_PI);
+        name, filled.outside, std::acos(kLevelViewLeastCosine) / kRadiansPerDegree);
   if (findings.placed_by_size)
     spdlog::warn(
         "{}: the network's poses do not match what the camera shows: the person is placed by size, "

@@ -10,9 +10,13 @@ namespace mcdbn::cli {
 
 void report_written(const std::filesystem::path& path, int frames, double fps);
 
+/// Warns where the body lies across the image or is upside down: the film may be stored turned.
+/// @param name of the track, for messages  @param track with keypoints
+void report_turned(const std::string& name, const Track2d& track);
+
 /// Warns what is assumed of a camera without calibration.
-/// @param found pitch or roll was estimated from the clip
-void report_assumed(const Camera& camera, bool found);
+/// @param found_from what showed its pitch or roll; empty: neither was estimated from the clip
+void report_assumed(const Camera& camera, const std::string& found_from);
 
 /// Warns what was missing in the track and what was wrong with it.
 /// @param name of the track, for messages  @param numbers of its frames, the file's own

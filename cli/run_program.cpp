@@ -155,7 +155,7 @@ int parse_and_run(CLI::App& app, CommandContext& context, int argc, char** argv)
 int run_program(int argc, char** argv, std::span<const AddCommand> commands) {
   try {
     occupy_standard_streams();
-    heed_signals(kInterrupted);
+    start_signal_thread(kInterrupted);
     set_up_messages();
     CLI::App app{kDescription, "mcdbn-cl"};
     app.set_version_flag("--version", "mcdbn-cl " MCDBN_VERSION);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "learning/unit_values.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/sampling.hpp"
 #include "modality_options.hpp"
@@ -43,7 +44,7 @@ MatrixF given_samples(Device& device, const Cdbn& stack, const SavedMachine& sav
   const CrbmShape shape = stack.layers.front().shape();
   std::vector<MatrixF> given = options.given.read();
   for (std::size_t i = 0; i < given.size(); ++i)
-    check_values(given[i], shape.kind, options.given.files[i], true);
+    check_unit_values(given[i], shape.kind, options.given.files[i].string(), true);
   given = scaled(saved, std::move(given), shape.visible, options.given);
   std::vector<MatrixF> copies;
   for (std::size_t i = 0; i < options.count; ++i)

@@ -1,5 +1,8 @@
 #include "sampling_options.hpp"
 
+#include <fmt/format.h>
+
+#include "mcdbn/base/errors.hpp"
 #include "setting_flags.hpp"
 
 namespace mcdbn::cli {
@@ -22,6 +25,14 @@ double usual_temperature(const RegenerationOptions& options, bool drawn) {
 
 }  // namespace
 
+const char* SamplingOptions::drawing_flag() const {
+  if (samples.value_or(1) > 1) return "--samples";
+  if (temperature.value_or(0) > 0) return "--temperature";
+  if (gibbs_steps.value_or(0) > 0) return "--gibbs-steps";
+  if (mrbm_gibbs_steps.value_or(0) > 0) return "--mrbm-gibbs-steps";
+  return nullptr;
+}
+
 RegenerationOptions SamplingOptions::regeneration(const Mcdbn& network, std::uint64_t seed) const {
   RegenerationOptions options;
   options.samples = samples.value_or(1);
@@ -35,18 +46,22 @@ RegenerationOptions SamplingOptions::regeneration(const Mcdbn& network, std::uin
   }
   const bool anew = gibbs_steps.value_or(0) > 0 || mrbm_gibbs_steps.value_or(0) > 0;
   options.temperature =
-      temperature.value_or(usual_temperature(options, anew || network.sampling.always));
+      temperature.value_or(usual_temperature(options, anew || network.sampling.sampled));
+  if (options.samples > 1 && !options.samples_decoder() && !options.samples_mrbm())
+    throw ConfigError(fmt::format(
+        "--samples {}: all would be the mean-field answer; give a --temperature above 0 and "
+        "--gibbs-steps or --mrbm-gibbs-steps above 0, or leave these options out",
+        options.samples));
   return options;
 }
 
 void add_sampling_options(CLI::App& command, SamplingOptions& options, const char* samples_help) {
   command.add_option("--samples", options.samples, samples_help)->check(in_range(within(1, kMost)));
   command
-      .add_option(
-          "--temperature", options.temperature,
-          "0: the mean-field answer; above, variations further and further from it "
-          "(default: 2 with several samples; 1 if they are drawn anew in every frame or the model "
-          "was trained to be sampled; else 0)")
+      .add_option("--temperature", options.temperature,
+                  "0: the mean-field answer; the higher, the further variations are from it "
+                  "(default: 2 with several samples; 1 if they are drawn anew in every frame or "
+                  "the model was trained to be sampled; else 0)")
       ->check(in_range(within(0, kHottest)));
   command
       .add_option(

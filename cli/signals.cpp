@@ -10,7 +10,7 @@
 namespace mcdbn::cli {
 namespace {
 
-sigset_t heeded_signals() {
+sigset_t stop_signals() {
   sigset_t signals;
   ::sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGTERM}) ::sigaddset(&signals, signal);
@@ -20,7 +20,7 @@ sigset_t heeded_signals() {
 /// For every thread that will be: OpenCL drivers built on LLVM set handlers of their own while they
 /// compile, and such a handler removes the files that are being written.
 void block_signals(int, char**, char**) {
-  const sigset_t signals = heeded_signals();
+  const sigset_t signals = stop_signals();
   ::sigprocmask(SIG_BLOCK, &signals, nullptr);
 }
 
@@ -31,9 +31,9 @@ void block_signals(int, char**, char**) {
 
 }  // namespace
 
-void heed_signals(int exit_code) {
+void start_signal_thread(int exit_code) {
   std::thread([exit_code] {
-    const sigset_t signals = heeded_signals();
+    const sigset_t signals = stop_signals();
     int signal = 0;
     while (::sigwait(&signals, &signal) == 0) {
       if (interruption_requested()) ::_exit(exit_code);

@@ -2,9 +2,9 @@
 
 namespace mcdbn::cli {
 
-/// From here on SIGINT and SIGTERM, which wait until then, ask the library to stop
-/// (request_interruption); a second one ends the program at once, with the exit code of an
-/// interruption. A thread of its own waits for them.
-void heed_signals(int exit_code);
+/// Starts a thread that waits for SIGINT and SIGTERM, which are blocked until then, and asks the
+/// library to stop (request_interruption). A second signal ends the program at once, with this exit
+/// code.
+void start_signal_thread(int exit_code);
 
 }  // namespace mcdbn::cli

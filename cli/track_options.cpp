@@ -30,8 +30,10 @@ void add_track_options(CLI::App& command, TrackReadOptions& options) {
   add_format_option(command, options.format, "Format of the track (default: by its content)")
       ->group(kTrackGroup);
   command
-      .add_option("--person", options.person,
-                  "Which person: largest, all, or a number, 1 the largest (default: largest)")
+      .add_option(
+          "--person", options.person,
+          fmt::format("Which person: largest, all, or a number, 1 the largest (default: {})",
+                      options.person))
       ->type_name("WHO")
       ->group(kTrackGroup);
   command

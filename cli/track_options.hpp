@@ -9,6 +9,7 @@
 namespace mcdbn::cli {
 
 /// --format, --person, --fps and --image-size, for every command that reads a track.
+/// @param options its person is the default that the help names
 void add_track_options(CLI::App& command, TrackReadOptions& options);
 
 /// --format, a name of track_formats(). @param help ends with their list

@@ -56,10 +56,10 @@ void resumable(RunFolder& run, const Train& train) {
   } catch (const Interrupted& error) {
     throw Interrupted(advice(error.what()));
   } catch (const DeviceError& error) {
-    if (run.take_back()) throw;
+    if (run.discard_if_untrained()) throw;
     throw DeviceError(advice(error.what()));
   } catch (...) {
-    run.take_back();
+    run.discard_if_untrained();
     throw;
   }
 }
@@ -83,7 +83,7 @@ void train_run(const CommandContext& context, Device& device, const TrainOptions
                        [](const std::string& text) { spdlog::warn("{}", with_flags(text)); }},
                       start ? &*start : nullptr);
   if (const auto& stopped = trained.model.early_stopping)
-    spdlog::info("{} kept out to stop early: stopped after {} of {} mini-batches",
+    spdlog::info("{} held out for early stopping: the model is that of mini-batch {} of {}",
                  fmt::join(stopped->held_out, ", "), stopped->steps, config.fine_tuning.steps);
   spdlog::info("{}: trained in {:.1f} s", run.model().string(), trained.training_s);
 }
@@ -109,7 +109,7 @@ void check_resume(const CLI::App& command) {
 void resume(const CommandContext& context, const TrainOptions& options) {
   RunFolder run = RunFolder::resume(options.resume);
   if (run.is_complete()) {
-    spdlog::info("{}: is trained to its end", run.model().string());
+    spdlog::info("{}: training is already complete", run.model().string());
     return;
   }
   Device device = Device::open({context.platform, context.device});
@@ -134,8 +134,9 @@ bool fine_tunes(const TrainingConfig& config) {
   return config.fine_tuning.steps > 0;
 }
 
-/// Before anything is trained. @throws ConfigError of the first that cannot be
-void check_settings(const TrainingOptions& settings, const SweepFile& file) {
+/// Checks the settings of all configurations before anything is trained.
+/// @throws ConfigError for the first that are out of range
+void check_sweep(const TrainingOptions& settings, const SweepFile& file) {
   bool any_fine_tunes = false;
   for (const SweepConfiguration& configuration : file.configurations) {
     const TrainingConfig config = settings.resolve(configuration);
@@ -212,17 +213,17 @@ void run_train(const CommandContext& context, const TrainOptions& options,
     throw ConfigError("--sweep compares trainings from nothing; leave --from out");
   if (options.force && !options.sweep.empty())
     throw ConfigError(
-        "--sweep trains anew what was not scored with these settings and clips, and nothing else; "
-        "leave --force out, or remove its sweep.jsonl");
+        "--force does not apply to --sweep, which trains only configurations without a score; to "
+        "score again, remove sweep.jsonl");
   if (options.print_settings) return print_settings(context, options);
   if (options.data.empty() || options.run.empty())
-    throw ConfigError("clips to train on and --output RUN are wanted, or --resume RUN");
+    throw ConfigError("give clips to train on and --output RUN, or --resume RUN");
   TrainingConfig config = options.settings.resolve();
   if (options.sweep.empty()) options.settings.check_used(fine_tunes(config));
   const auto clips = find_listed_clips(options.data);
   std::optional<SweepFile> sweep;
   if (!options.sweep.empty()) sweep = read_sweep_file(options.sweep);
-  if (sweep) check_settings(options.settings, *sweep);
+  if (sweep) check_sweep(options.settings, *sweep);
   Device device = Device::open({context.platform, context.device});
   if (sweep) return train_sweep(context, device, options, clips, *sweep);
   const std::filesystem::path from = start_of(options);
@@ -249,8 +250,8 @@ void add_train_command(CLI::App& app, CommandContext& context) {
   command
       ->add_option(
           "--sweep", options->sweep,
-          "TOML file of configurations to train and compare; RUN holds one folder for each, "
-          "and sweep.jsonl. Run again, it leaves out what was scored with these clips")
+          "TOML file of configurations to train and compare; RUN holds one folder for each, and "
+          "sweep.jsonl. Run again, it skips configurations that have a score on these clips")
       ->type_name("FILE");
   command
       ->add_option("--from", options->from,
@@ -260,7 +261,7 @@ void add_train_command(CLI::App& app, CommandContext& context) {
       ->type_name("FILE|default");
   options->settings.add_to(*command);
   command->add_flag("--print-settings", options->print_settings,
-                    "Print the value of every setting, as a file for --config, and do no more");
+                    "Print the value of every setting, as a file for --config, and exit");
   command
       ->add_option(
           "--resume", options->resume,

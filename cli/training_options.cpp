@@ -37,9 +37,9 @@ void TrainingOptions::add_to(CLI::App& command) {
       .add_option(
           "--preset", preset_,
           "default; paper: the paper's own settings, which diverge; paper-stable: the same at "
-          "rates that do not; generation: the greedy stages alone, so that motion of `generate` "
-          "does not come to rest; general: many people, actions and skeletons for a detector's "
-          "tracks, as the model that comes with the program is trained")
+          "rates that do not; generation: the greedy stages alone, for `generate`, whose motion "
+          "would come to rest otherwise; general: for many people, actions and skeletons and for "
+          "detectors' tracks, as the model that comes with the program is trained")
       ->check(CLI::IsMember(kPresets))
       ->capture_default_str();
   command
@@ -47,7 +47,7 @@ void TrainingOptions::add_to(CLI::App& command) {
           "--stages", stages_,
           "greedy: layer by layer, as in the paper, by default with two layers of order 5 and 300 "
           "units; fine-tuning: the whole network by back-propagation, from random weights; both: "
-          "some greedy epochs, then fine-tuning (default, but for the other presets)")
+          "some greedy epochs, then fine-tuning (default, unless a preset says otherwise)")
       ->check(CLI::IsMember({"greedy", "fine-tuning", "joint", "both"}));
   command
       .add_option("--tracks", tracks_,
@@ -58,9 +58,9 @@ void TrainingOptions::add_to(CLI::App& command) {
       ->capture_default_str();
   command
       .add_option("--skeleton", skeleton_,
-                  "own: the clips' own, which has to be the same; canonical: a humanoid onto which "
-                  "every clip is brought, so that skeletons may differ (default: own where they "
-                  "share it, else canonical)")
+                  "own: the clips' own, which all of them must share; canonical: a humanoid onto "
+                  "which every clip is brought, so that skeletons may differ (default: own where "
+                  "the clips share it, else canonical)")
       ->check(CLI::IsMember({"own", "canonical"}));
   command
       .add_option_function<std::filesystem::path>(
@@ -131,6 +131,7 @@ void TrainingOptions::check_used(bool fine_tunes) const {
         flag));
   };
   if (tracks_ == "detector") refuse("--tracks detector");
+  if (preset_ == "general") refuse("--preset general");
   for (const GivenSetting& given : flags_)
     if (given.name.starts_with("augment.")) refuse(given.who);
 }

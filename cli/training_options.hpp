@@ -20,7 +20,8 @@ class TrainingOptions {
   /// @throws ConfigError
   TrainingConfig resolve(const std::vector<GivenSetting>& last = {},
                          const std::vector<GivenSetting>& start = {}) const;
-  /// @throws ConfigError naming a flag that is of fine-tuning's views, if nothing is fine-tuned
+  /// @throws ConfigError naming a flag or a preset that is of fine-tuning's views, if nothing is
+  ///         fine-tuned
   void check_used(bool fine_tunes) const;
 
  private:

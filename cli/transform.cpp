@@ -69,13 +69,13 @@ void add_transform_command(CLI::App& app, CommandContext& context) {
       app.add_subcommand("transform", "Gives a single machine's hidden probabilities of data");
   add_machine_option(*command, options->model);
   add_matrix_input(*command, options->data, "data", "Matrices, each a sequence of its own");
-  CLI::Option* inverse =
-      command->add_flag("--inverse", options->inverse,
-                        "Up and down again: the mean-field reconstruction of the data");
+  CLI::Option* inverse = command->add_flag(
+      "--inverse", options->inverse,
+      "Write the mean-field reconstruction of the data, in place of the hidden probabilities");
   add_setting_flag(*command, "--steps",
                    {"steps", within(1, 1000), "steps",
-                    "Up and down so often, at the top of a stack (default: once), or mean-field "
-                    "steps of --infer (default: 10)"},
+                    "Passes up and down of --inverse, at the top of a stack (default: 1), or "
+                    "mean-field steps of --infer (default: 10)"},
                    options->steps);
   command
       ->add_option("--infer", options->infer,

@@ -20,24 +20,24 @@
 #define CENTERED 0
 #endif
 
-// `drive` is a + (layer above) · Wᵀ, sequence i's frame t in row i · drive_frames + t − drive_first; it may
-// be `state` itself, which becomes the visible means. CENTERED=1: binary units are about zero.
+// `input_from_above` is a + (layer above) · Wᵀ, sequence i's frame t in row i · input_frames + t − input_first;
+// it may be `state` itself, which becomes the visible means. CENTERED=1: binary units are about zero.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_means(
-    global float* state, global const float* drive, int drive_frames, int drive_first,
+    global float* state, global const float* input_from_above, int input_frames, int input_first,
     int sequences, int frames, int first, int last, global const float* weights_a) {
   local float ring[ORDER * ROWS * V_LD];
   const int row0 = get_group_id(0) * ROWS;
-  int start[ROWS], drive_start[ROWS];
+  int start[ROWS], input_start[ROWS];
   for (int r = 0; r < ROWS; ++r) {
     start[r] = min(row0 + r, sequences - 1) * frames;
-    drive_start[r] = min(row0 + r, sequences - 1) * drive_frames - drive_first;
+    input_start[r] = min(row0 + r, sequences - 1) * input_frames - input_first;
   }
   for (int frame = first - ORDER; frame < first; ++frame)
     remember_frame(ring, state, start, frame);
   floatN sum[ROWS][COLUMNS];
   for (int frame = first; frame < last; ++frame) {
     FOR_TILES(V_LD, {
-      load_frame(sum, count, drive, drive_start, frame, column);
+      load_frame(sum, count, input_from_above, input_start, frame, column);
       add_history(sum, count, ring, frame, ORDER_A, weights_a, V_LD, column);
 #if CENTERED
       apply_centered_sigmoid(sum, count, column, VISIBLE);

@@ -39,7 +39,6 @@
 #ifndef MASKED
 #define MASKED 0
 #endif
-#define VISIBLE_PHASE 0x1000
 
 // v ← the frames `back` before those of the block's rows
 INLINE void take_frames(local float* v, global const float* frames, const int at[ROWS], int back) {
@@ -211,12 +210,6 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gibbs_chain(
     SYNC();
   }
 
-  for (int r = get_local_id(0); r < ROWS && row0 + r < rows; r += GROUP) {
-    floatN squares = (floatN)(0.0f);
-    for (int column = 0; column < V_LD; column += VEC) {
-      const floatN change = loadN(r * V_LD + column, visible_change);
-      squares = fma(change, change, squares);
-    }
-    loss[row0 + r] = sum_lanes(squares);
-  }
+  for (int r = get_local_id(0); r < ROWS && row0 + r < rows; r += GROUP)
+    loss[row0 + r] = row_squares(visible_data + r * V_LD, v + r * V_LD, V_LD);
 }

@@ -2,7 +2,7 @@
 // over the outputs of contrastive_divergence.cl. A work-group makes one panel of one parameter
 // (weight_tile.clh) and updates it in place; of W it writes the transposed copy too. First come groups each
 // work-item of which takes a vector of a or of b, the next one adds up the losses; then panels of W, A and
-// B, the longest last: who takes work in order is done when the others are.
+// B. The longest panels come last, so that work-groups finish at about the same time.
 //
 // global: (groups · GROUP), local: (GROUP). Compile-time: crbm_shape.clh, OPTIMIZER, tile.clh's ROWS
 // (divides 16), COLUMNS and GROUP, PANEL_TILES. `gradients` is needed where `rows` are more than CHUNK,

@@ -34,17 +34,6 @@
 #ifndef PERSISTENT
 #define PERSISTENT 0
 #endif
-#define VISIBLE_PHASE 0x1000
-
-// Σ (x − y)² of one row of `ld` floats; padding is zero in both.
-INLINE float row_squares(global const float* x, local const float* y, const int ld) {
-  floatN sum = (floatN)(0.0f);
-  for (int column = 0; column < ld; column += VEC) {
-    const floatN change = loadN(column, x) - loadN(column, y);
-    sum = fma(change, change, sum);
-  }
-  return sum_lanes(sum);
-}
 
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void joint_chain(
     global const int* layout, int rows, int stride, global const float* parameters,

@@ -6,7 +6,7 @@
 //   weights.w · mean |foot's step − target's|²               of feet, the root's travel included, and
 //                                                            only where the target's foot is planted
 //
-// A window is `frames` rows, of which those from `lead` on count. Rows of `prediction`, `target` and
+// A window is `frames` rows, of which those from `judged_from` on count. Rows of `prediction`, `target` and
 // `error` are LD wide; `differences` holds 3 · BONES floats a row, place − target's place in metres.
 // Compile-time: DIMENSION, LD, BONES; FEET, VELOCITY (the first of the root velocity's raw features).
 //   bones      int4 each: parent (−1: the root), block, whether a foot is at its end, the block's
@@ -18,6 +18,8 @@
 //
 // Variants that `scripts/lint kernels` compiles:
 //   DIMENSION=1,97 LD=112 BONES=1,20 FEET=1,4 VELOCITY=0,85
+
+#include "common.clh"
 
 #ifndef DIMENSION
 #define DIMENSION 96
@@ -34,8 +36,6 @@
 #ifndef VELOCITY
 #define VELOCITY 85
 #endif
-
-#define INLINE static inline __attribute__((always_inline))
 
 // An axis that is shorter does not become a unit vector: its derivative would grow without bound, and a
 // network that is in doubt about an axis answers a short one. Longer ones are as features are decoded.
@@ -81,11 +81,11 @@ INLINE float3 turned(Turn turn, float4 lever) {
 }
 
 kernel void position_differences(global const float* prediction, global const float* target,
-                              global float* differences, int difference_ld, int frames, int lead,
+                              global float* differences, int difference_ld, int frames, int judged_from,
                               global const int4* bones, global const float4* levers,
                               global const int* columns, global const float2* scale) {
   const int row = get_global_id(0);
-  if (row % frames < lead) return;
+  if (row % frames < judged_from) return;
   prediction += row * LD;
   target += row * LD;
   differences += row * difference_ld;
@@ -127,10 +127,10 @@ INLINE void add_turn_error(global float* error, int block, Turn turn, float3 err
 
 // The derivative of the loss by one bone's place.
 INLINE float3 place_error(global const float* differences, int ld, int bone, int frame, int frames,
-                          int lead, float per_place, float per_step) {
+                          int judged_from, float per_place, float per_step) {
   const float3 here = vload3(bone, differences);
   float3 error = per_place * here;
-  if (frame > lead) error += per_step * (here - vload3(bone, differences - ld));
+  if (frame > judged_from) error += per_step * (here - vload3(bone, differences - ld));
   if (frame + 1 < frames) error += per_step * (here - vload3(bone, differences + ld));
   return error;
 }
@@ -170,7 +170,7 @@ INLINE float3 planted_difference(global const float* prediction, global const fl
 // losses: a row each, four numbers: the row's share of the four means (unweighted).
 kernel void pose_errors(global const float* prediction, global const float* target,
                         global const float* differences, int difference_ld, int count, int frames,
-                        int lead, float4 weights, float frame_s, float planted_m,
+                        int judged_from, float4 weights, float frame_s, float planted_m,
                         global const int4* bones, global const float4* levers,
                         global const int* columns, global const float2* scale, global float* error,
                         global float* losses, int losses_ld) {
@@ -180,11 +180,11 @@ kernel void pose_errors(global const float* prediction, global const float* targ
   error += row * LD;
   differences += row * difference_ld;
   losses += row * losses_ld;
-  const float rows = (float)(count * (frames - lead));
+  const float rows = (float)(count * (frames - judged_from));
   const float of_features = 1.0f / (rows * DIMENSION), of_places = 1.0f / (rows * 3 * BONES),
-              of_steps = 1.0f / ((float)(count * (frames - lead - 1)) * 3 * BONES),
-              of_contacts = 1.0f / ((float)(count * (frames - lead - 1)) * 3 * FEET);
-  const bool counts = frame >= lead;
+              of_steps = 1.0f / ((float)(count * (frames - judged_from - 1)) * 3 * BONES),
+              of_contacts = 1.0f / ((float)(count * (frames - judged_from - 1)) * 3 * FEET);
+  const bool counts = frame >= judged_from;
   float features = 0.0f, places = 0.0f, steps = 0.0f, contacts = 0.0f;
   for (int i = 0; i < LD; ++i) {
     const float difference = counts ? prediction[i] - target[i] : 0.0f;
@@ -197,17 +197,17 @@ kernel void pose_errors(global const float* prediction, global const float* targ
     for (int i = 0; i < BONES; ++i) {
       const float3 here = vload3(i, differences);
       places += dot(here, here);
-      if (frame > lead) {
+      if (frame > judged_from) {
         const float3 moved = here - vload3(i, differences - difference_ld);
         steps += dot(moved, moved);
       }
-      carried[i] = place_error(differences, difference_ld, i, frame, frames, lead,
+      carried[i] = place_error(differences, difference_ld, i, frame, frames, judged_from,
                                2.0f * weights.y * of_places, 2.0f * weights.z * of_steps);
     }
     float3 root_error = 0.0f;
     for (int i = 0; i < BONES; ++i) {
       if (!bones[i].z) continue;
-      if (frame > lead) {
+      if (frame > judged_from) {
         const float3 here =
             planted_difference(prediction, target, differences, difference_ld, i, frame_s,
                                planted_m, bones, levers, columns, scale);

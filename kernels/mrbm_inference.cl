@@ -1,14 +1,14 @@
 // The chain of an MRBM of two binary modalities with one clamped (Algorithm 5's inference) in one
 // launch: `steps` times the shared hidden units given both modalities (eq 21, 32), then the absent
-// one given them (eq 22, 23, 33). Rows are independent, so one work-group runs all of it for its ROWS rows. The absent
-// modality starts from zeros, so that the first hidden pass sees the present one alone, counted
-// twice with `doubled`. Sums are those of gemm.cl, bias last: the same bits as product by product.
+// one given them (eq 22, 23, 33). Rows are independent, so one work-group runs all of it for its ROWS rows.
+// The absent modality starts from zeros, so that the first hidden pass sees the present one alone.
+// Sums are those of gemm.cl, bias last: the same bits as product by product.
 //
 // global: (blocks · GROUP), local: (GROUP). Compile-time: mrbm_shape.clh, which has `layout` too, and
 // tile.clh's ROWS, COLUMNS, GROUP. Modality p is present, q absent. Row r of `present` is row
 // index[first + r] + shift if `indexed`, else r, of rows that are present_ld floats apart; row r of
-// `absent` likewise, without index. `drive` is scratch, [blocks · ROWS x H_LD]: b and the present
-// modality's products.
+// `absent` likewise, without index. `present_input` is scratch, [blocks · ROWS x H_LD]: b and the
+// present modality's products.
 //
 // With a temperature other than 0 units are drawn as SAMPLE specifies, 1 or 3 (tile.clh), phase
 // 2 · step for the hidden ones and 2 · step + 1 for the absent ones; the last step's absent ones stay
@@ -25,7 +25,6 @@
 #undef SAMPLE
 #define SAMPLE 1
 #endif
-#define CHAIN_PHASES 0x4000u  // kChainPhases of mrbm_chain.hpp
 #include "mean_field.clh"
 
 // Probabilities of this tile become what lies between them and their draws.
@@ -41,8 +40,8 @@ INLINE void draw_tile(local float* x, const int ld, const int count, int column,
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
     global const float* present, int present_offset, int present_ld, global const int* index,
     int indexed, int first, int shift, int rows, global const int* layout, int p, int q,
-    global const float* parameters, global const float* transposed, global float* drive,
-    global float* absent, int absent_offset, int absent_ld, int steps, int doubled,
+    global const float* parameters, global const float* transposed, global float* present_input,
+    global float* absent, int absent_offset, int absent_ld, int steps,
     float temperature, uint4 random, uint steps_apart) {
   local float x[ROWS * X_LD];  // the present modality, then the absent one
   local float h[ROWS * H_LD];
@@ -59,18 +58,16 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void clamped_chain(
     for (int column = get_local_id(0) * VEC; column < P_LD; column += GROUP * VEC)
       storeN(loadN(at + column, present), r * X_LD + column, x);
   }
-  drive += row0 * H_LD;
+  present_input += row0 * H_LD;
   absent += absent_offset + row0 * absent_ld;
   floatN sum[ROWS][COLUMNS];
   SYNC();
 
-  ADD_TO_DRIVE(P, w_p, b, 0);
+  ADD_PRESENT_INPUT(P, w_p, b, 0);
   for (int step = 0; step < steps; ++step) {
     const bool last = step + 1 == steps;
-    // What is in x: the present modality at first, whose products the drive has.
-    const int units = step > 0 ? Q : doubled ? P : 0;
-    global const float* weights = step > 0 ? w_q : w_p;
-    SHARED_UNITS(units, weights, drive, {
+    // At first x still has the present modality, whose products are in present_input.
+    SHARED_UNITS(step > 0 ? Q : 0, w_q, present_input, {
       draw_tile(h, H_LD, count, column, row0, temperature, random, steps_apart, 2 * step);
     });
     SYNC();

@@ -9,8 +9,9 @@
 // Stacks are made of blocks of `stride` rows, block t after block t − 1, for one modality after
 // another; rows past `rows` have errors of zero. Of a modality: codes [1 block], the mini-batch; values
 // and value_errors [STEPS blocks]. Of direction d: hidden, hidden_errors [STEPS blocks at d · STEPS],
-// drive, drive_errors [1 block at d], loss[d · batch + first + row] = −log p(target | prediction)
-// of the row but for a constant: Σ cross-entropy, or of Gaussian units half the squared errors.
+// present_input, present_input_errors [1 block at d], loss[d · batch + first + row] =
+// −log p(target | prediction) of the row but for a constant: Σ cross-entropy, or of Gaussian units half the
+// squared errors.
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 STEPS=1,10 GROUP=1,64 SAMPLE=
@@ -61,7 +62,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
     global const int* layout, int rows, int stride, int first, int batch,
     global const float* parameters, global const float* transposed, global const float* codes,
     global float* values, global float* value_errors, global float* hidden,
-    global float* hidden_errors, global float* drive, global float* drive_errors,
+    global float* hidden_errors, global float* present_input, global float* present_input_errors,
     global float* loss) {
   local float x[ROWS * X_LD];
   local float h[ROWS * H_LD];
@@ -78,8 +79,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
   value_errors += STEPS * stride * UNITS_BEFORE(q) + row0 * Q_LD;
   hidden += (q * STEPS * stride + row0) * H_LD;
   hidden_errors += (q * STEPS * stride + row0) * H_LD;
-  drive += (q * stride + row0) * H_LD;
-  drive_errors += (q * stride + row0) * H_LD;
+  present_input += (q * stride + row0) * H_LD;
+  present_input_errors += (q * stride + row0) * H_LD;
   loss += q * batch + first + row0;
 
   const int value_block = stride * Q_LD, hidden_block = stride * H_LD;
@@ -97,13 +98,13 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
       for (int column = get_local_id(0) * VEC; column < P_LD; column += GROUP * VEC)
         storeN(loadN(min(r, present_rows - 1) * P_LD + column, code), r * X_LD + column, x);
     SYNC();
-    global const float* before = i == 0 ? parameters + B_AT : drive;
+    global const float* before = i == 0 ? parameters + B_AT : present_input;
     const int before_ld = i == 0 ? 0 : H_LD;
-    ADD_TO_DRIVE(P, w_p, before, before_ld);
+    ADD_PRESENT_INPUT(P, w_p, before, before_ld);
     SYNC();
   }
   for (int t = 0; t < STEPS; ++t) {
-    SHARED_UNITS(t > 0 ? Q : 0, w_q, drive,
+    SHARED_UNITS(t > 0 ? Q : 0, w_q, present_input,
                  { store_tile(sum, count, hidden + t * hidden_block, H_LD, column); });
     SYNC();
     ABSENT_UNITS(Q, wt_q, a_q, gaussian, {
@@ -136,8 +137,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction(
       through_sigmoid(sum, count, hidden + t * hidden_block, H_LD, column);
       store_tile(sum, count, hidden_errors + t * hidden_block, H_LD, column);
       keep_tile(sum, count, h, H_LD, column);
-      if (t < STEPS - 1) add_tile(sum, count, drive_errors, H_LD, column);
-      store_tile(sum, count, drive_errors, H_LD, column);
+      if (t < STEPS - 1) add_tile(sum, count, present_input_errors, H_LD, column);
+      store_tile(sum, count, present_input_errors, H_LD, column);
     });
     SYNC();
     if (t == 0) break;

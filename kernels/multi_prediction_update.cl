@@ -8,10 +8,10 @@
 //
 // multi_prediction_products: global (panels · GROUP, pieces + 1), local (GROUP, 1). The pieces of
 //   PIECE_STEPS steps count through the products of a W: value_errorsᵀ·hidden, valuesᵀ·hidden_errors of
-//   the step after, and codesᵀ·drive_errors of each other direction. partial[piece] is [partial_rows x
-//   H_LD], the rows of every W one after another, padded; behind the pieces stand the gradients of every a
-//   and of b, padded, which the last row of groups adds up. Where it `resumes`, all go on from the part
-//   before. Pieces are whole steps: their sums are the same whatever the blocks of rows.
+//   the step after, and codesᵀ·present_input_errors of each other direction. partial[piece] is
+//   [partial_rows x H_LD], the rows of every W one after another, padded; behind the pieces stand the
+//   gradients of every a and of b, padded, which the last row of groups adds up. Where it `resumes`, all go
+//   on from the part before. Pieces are whole steps: their sums are the same whatever the blocks of rows.
 // multi_prediction_update: global (tiles + 1). loss_sums[m] is of the direction in which m is absent.
 // Compile-time: mrbm_shape.clh, PIECE_STEPS, OPTIMIZER, tile.clh's ROWS (divides 16), COLUMNS and GROUP,
 // PANEL_TILES.
@@ -42,7 +42,7 @@ INLINE void add_column_sum(global float* sums, global const float* x, int rows, 
 
 // The gradients of every a and of b, a vector at a time.
 INLINE void add_up_biases(global const int* layout, int stride, bool resumes,
-                          global const float* value_errors, global const float* drive_errors,
+                          global const float* value_errors, global const float* present_input_errors,
                           global float* sums) {
   for (int vector = get_global_id(0);; vector += get_global_size(0)) {
     int column = vector * VEC, m = 0;
@@ -50,7 +50,7 @@ INLINE void add_up_biases(global const int* layout, int stride, bool resumes,
     if (m == MODALITIES && column >= H_LD) return;
     global const float* errors = m < MODALITIES
                                      ? value_errors + STEPS * stride * UNITS_BEFORE(m) + column
-                                     : drive_errors + column;
+                                     : present_input_errors + column;
     add_column_sum(sums + vector * VEC, errors, (m < MODALITIES ? STEPS : MODALITIES) * stride,
                    m < MODALITIES ? PADDED(UNITS(m)) : H_LD, resumes);
   }
@@ -59,7 +59,7 @@ INLINE void add_up_biases(global const int* layout, int stride, bool resumes,
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction_products(
     global const int* layout, int stride, int resumes, global const float* codes,
     global const float* values, global const float* value_errors, global const float* hidden,
-    global const float* hidden_errors, global const float* drive_errors, global float* partial,
+    global const float* hidden_errors, global const float* present_input_errors, global float* partial,
     int partial_rows) {
   local float packed[PANEL_FLOATS];
   // The long pieces last: who takes groups in order, half of what is left at a time, as PoCL's threads
@@ -67,7 +67,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction_
   const int pieces = get_num_groups(1) - 1;
   int piece = pieces - (int)get_group_id(1), steps = STEPS;
   if (piece == pieces) {
-    add_up_biases(layout, stride, resumes, value_errors, drive_errors,
+    add_up_biases(layout, stride, resumes, value_errors, present_input_errors,
                   partial + pieces * partial_rows * H_LD);
     return;
   }
@@ -91,7 +91,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multi_prediction_
       piece = 0;
       steps = 1;
       x = codes + stride * UNITS_BEFORE(m);
-      y = drive_errors + (i < m ? i : i + 1) * block;
+      y = present_input_errors + (i < m ? i : i + 1) * block;
     }
   }
   const int from = piece * PIECE_STEPS * stride;

@@ -21,6 +21,22 @@ kernel void squared_error_rows(global const float* x, int x_offset, int x_ld,
   partial[row] = sum;
 }
 
+// partial[r] = sum_c (factor[c] · (x[r, c] − y[r, c]))²; global: (rows)
+kernel void scaled_squared_error_rows(global const float* x, int x_offset, int x_ld,
+                                      global const float* y, int y_offset, int y_ld, int columns,
+                                      global const float* factor, global float* partial) {
+  const int row = get_global_id(0);
+  x += x_offset + row * x_ld;
+  y += y_offset + row * y_ld;
+  float sum = 0.0f;
+  UNROLLED
+  for (int c = 0; c < columns; ++c) {
+    const float difference = factor[c] * (x[c] - y[c]);
+    sum = fma(difference, difference, sum);
+  }
+  partial[row] = sum;
+}
+
 // partial[r] = − sum_c x·log y + (1 − x)·log(1 − y), y kept away from 0 and 1; global: (rows)
 kernel void cross_entropy_rows(global const float* x, int x_offset, int x_ld,
                                global const float* y, int y_offset, int y_ld, int columns,

@@ -2,8 +2,9 @@
 """The mean of several models' parameters: average_models.py OUT MODEL MODEL…
 
 Models that `train --from` made from one start, and that start. Each forgot or overfitted something else, and
-between them lie parameters that do better than any (docs/corpus.md). All but the numbers is the last model's;
-the metadata name the models, with their SHA-256, in `mean_of`.
+between them lie parameters that do better than any (docs/corpus.md). The training clips are those of all models;
+where a person was held out (`early_stopping`) is not kept, as that was of one model. All else but the numbers is
+the last model's. The metadata name the models, with their SHA-256, in `mean_of`.
 """
 
 import hashlib
@@ -15,13 +16,24 @@ import sys
 from model_file import read_model, write_model
 
 LETTERS = {"F16": "e", "F32": "f", "F64": "d"}  # of struct
-MAY_DIFFER = ("config", "sampling", "started_from", "training_clips")
+MAY_DIFFER = ("config", "early_stopping", "sampling", "started_from", "training_clips")
+
+
+def about(header: dict) -> dict:
+    return json.loads(header["__metadata__"]["mcdbn"])
 
 
 def network(header: dict) -> dict:
     """What the models must have in common: features, scaling, camera, sizes."""
-    about = json.loads(header["__metadata__"]["mcdbn"])
-    return {name: value for name, value in about.items() if name not in MAY_DIFFER}
+    return {name: value for name, value in about(header).items() if name not in MAY_DIFFER}
+
+
+def about_mean(headers: list[dict]) -> dict:
+    """What is said of the mean: the last model's, with the training clips of all, each once."""
+    clips = {clip["fingerprint"]: clip for header in headers for clip in about(header).get("training_clips", [])}
+    mean = {**about(headers[-1]), "training_clips": list(clips.values())}
+    mean.pop("early_stopping", None)
+    return mean
 
 
 def numbers(tensor: dict, content: bytes) -> tuple[float, ...]:
@@ -61,7 +73,9 @@ def main() -> None:
     models = [read_model(path) for path in paths]
     header = models[-1][0]
     means = averaged(models)
-    header["__metadata__"]["mean_of"] = json.dumps([named(pathlib.Path(path)) for path in paths])
+    header["__metadata__"].update(
+        mcdbn=json.dumps(about_mean([model[0] for model in models])),
+        mean_of=json.dumps([named(pathlib.Path(path)) for path in paths]))
     write_model(out, header, means)
 
 

@@ -17,6 +17,11 @@ def program(text: str) -> pathlib.Path:
     return pathlib.Path(found).resolve()
 
 
+def is_bvh(path: pathlib.Path) -> bool:
+    """As the program looks for clips in a folder: in any case, without the ._NAME.bvh of macOS."""
+    return path.suffix.lower() == ".bvh" and not path.name.startswith("._")
+
+
 def files_of(path: pathlib.Path) -> list[pathlib.Path]:
     """The file, or all below the folder; with a list of clips (.toml), the clips too."""
     if path.is_dir():
@@ -42,8 +47,13 @@ def fingerprint(*paths: pathlib.Path | str) -> str:
 
 
 def with_contents(options: list[str]) -> list[str]:
-    """Options of the program, a file's fingerprint behind its name."""
-    return [f"{word} {fingerprint(word)}" if pathlib.Path(word).is_file() else word for word in options]
+    """Options of the program, a file's fingerprint behind its name, also behind that in --option=FILE."""
+    def with_content(word: str) -> str:
+        for name in (word, word.partition("=")[2]):
+            if pathlib.Path(name).is_file():
+                return f"{word} {fingerprint(name)}"
+        return word
+    return [with_content(word) for word in options]
 
 
 def drop_cut_off_line(path: pathlib.Path) -> None:

@@ -3,6 +3,8 @@
 activity, saturation and the weights' norms of every stage.
 
     scripts/plot_metrics.py RUN [-o metrics.png]
+
+Of a training that still runs it draws the epochs so far (RUN/unfinished).
 """
 
 import argparse
@@ -33,6 +35,14 @@ def read_metrics(path):
             continue
         stages.setdefault(entry["stage"], []).append(entry)
     return stages
+
+
+def metrics_of(run):
+    """The file of the training that runs, else of the one that is done: `train --force` trains beside it."""
+    if not run.is_dir():
+        return run
+    running = run / "unfinished/metrics.jsonl"
+    return running if running.is_file() else run / "metrics.jsonl"
 
 
 def draw(stages, title, output):
@@ -81,7 +91,7 @@ def main():
     parser.add_argument("run", type=pathlib.Path, help="run folder, or its metrics.jsonl")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="default: RUN/metrics.png")
     options = parser.parse_args()
-    path = options.run / "metrics.jsonl" if options.run.is_dir() else options.run
+    path = metrics_of(options.run)
     if not path.is_file():
         print(f"{path}: no such file; name a folder that mcdbn-cl train wrote", file=sys.stderr)
         return 3
@@ -89,8 +99,9 @@ def main():
     if not stages:
         print(f"{path}: holds no epoch yet", file=sys.stderr)
         return 3
-    output = options.output or path.with_name("metrics.png")
-    panels = draw(stages, str(path.parent.name or path), output)
+    folder = options.run if options.run.is_dir() else path.parent
+    output = options.output or folder / "metrics.png"
+    panels = draw(stages, str(folder.name or path), output)
     print(f"{output}: {panels} panels, {len(stages)} stages", file=sys.stderr)
     return 0
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "base/interruption.hpp"
+#include "base/lower_extension.hpp"
 #include "base/npy.hpp"
 #include "base/safetensors.hpp"
 #include "base/shown.hpp"
@@ -26,13 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kSpace = " \t\r";
-
-std::string extension_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char letter) { return std::tolower(letter); });
-  return extension;
-}
 
 [[noreturn]] void fail_on_extension(const fs::path& path) {
   throw InputError(fmt::format("{}: unknown kind of file; give a .npy, a .csv or a .safetensors",
@@ -71,7 +64,6 @@ class CsvReader {
       --empty_;  // the last line of the file is none
       add_unknown_rows();
     }
-    if (rows_ == 0) throw InputError(name_ + ": no numbers");
     return Eigen::Map<const MatrixF>(values_.data(), rows_, columns_);
   }
 
@@ -161,7 +153,7 @@ MatrixF matrix_of(const Safetensors& content, const std::string& file, const std
 enum class Kind { npy, csv, safetensors };
 
 std::optional<Kind> matrix_kind(const fs::path& path) {
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   if (extension == ".npy") return Kind::npy;
   if (extension == ".csv") return Kind::csv;
   if (extension == ".safetensors") return Kind::safetensors;
@@ -177,6 +169,14 @@ MatrixF read_npy(const fs::path& path) {
   }
 }
 
+MatrixF matrix_in(const fs::path& path, const std::string& tensor) {
+  const auto kind = matrix_kind(path);
+  if (kind == Kind::npy) return read_npy(path);
+  if (kind == Kind::csv) return CsvReader(path.string()).read(read_text_file(path));
+  if (kind == Kind::safetensors) return matrix_of(read_safetensors(path), path.string(), tensor);
+  fail_on_extension(path);
+}
+
 }  // namespace
 
 bool is_matrix_file(const fs::path& path) {
@@ -184,11 +184,9 @@ bool is_matrix_file(const fs::path& path) {
 }
 
 MatrixF read_matrix(const fs::path& path, const std::string& tensor) {
-  const auto kind = matrix_kind(path);
-  if (kind == Kind::npy) return read_npy(path);
-  if (kind == Kind::csv) return CsvReader(path.string()).read(read_text_file(path));
-  if (kind == Kind::safetensors) return matrix_of(read_safetensors(path), path.string(), tensor);
-  fail_on_extension(path);
+  MatrixF values = matrix_in(path, tensor);
+  if (values.size() == 0) throw InputError(fmt::format("{}: no numbers", path.string()));
+  return values;
 }
 
 void write_csv(std::ostream& stream, const MatrixF& values) {

@@ -38,6 +38,15 @@ fs::path followed(const fs::path& path) {
   return links_from(path).back();
 }
 
+/// Whether it ends in a slash.
+bool names_folder(const fs::path& path) {
+  return !path.empty() && path.filename().empty();
+}
+
+fs::path without_slash(const fs::path& path) {
+  return names_folder(path) ? path.parent_path() : path;
+}
+
 bool is_in_proc(const fs::path& path) {
   const fs::path folder = path.parent_path().empty() ? "." : path.parent_path();
   struct statfs system {};
@@ -66,7 +75,7 @@ fs::path place_of(const fs::path& path) {
 /// A file cannot take the place of a folder, not even of an empty one.
 void refuse_folder(const fs::path& path) {
   std::error_code error;
-  if (fs::is_directory(path, error))
+  if (fs::is_directory(path, error) || names_folder(path))
     throw InputError(fmt::format("{}: is a folder; name a file", path.string()));
 }
 
@@ -135,8 +144,7 @@ void check_replaceable(const fs::path& path) {
 }
 
 OutputFile::OutputFile(const fs::path& path)
-    : path_(followed(path.filename().empty() ? path.parent_path() : path)),
-      temporary_(temporary_beside(path_)) {
+    : named_(path), path_(followed(without_slash(path))), temporary_(temporary_beside(path_)) {
   // As it was named: a link of the system's own, /dev/stdout, leads to no name.
   check_replaceable(path);
 }
@@ -147,7 +155,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::put_in_place() {
-  if (!fs::is_directory(temporary_)) refuse_folder(path_);
+  if (!fs::is_directory(temporary_)) refuse_folder(named_);
   if (OutputBatch* batch = OutputBatch::current) {
     if (!batch->places_.insert(place_of(path_)).second) fail_twice(path_);
     batch->waiting_.push_back({temporary_, path_});
@@ -183,8 +191,11 @@ void check_output(const fs::path& path, OutputKind kind) {
   if (path.empty()) throw InputError("an output without a name; name a file");
   if (path == "-")
     throw InputError("-: standard output is not written to; a file of that name is ./-");
-  const fs::path parent = followed(path).parent_path(), folder = parent.empty() ? "." : parent;
+  const fs::path place = followed(without_slash(path)), parent = place.parent_path(),
+                 folder = parent.empty() ? "." : parent;
   std::error_code error;
+  if (names_folder(path) && fs::exists(place, error) && !fs::is_directory(place, error))
+    throw InputError(fmt::format("{}: is no folder; give another name", path.string()));
   if (!fs::is_directory(folder, error))
     throw InputError(fmt::format("{}: cannot be written: there is no folder {}", path.string(),
                                  folder.string()));
@@ -192,8 +203,7 @@ void check_output(const fs::path& path, OutputKind kind) {
     throw InputError(fmt::format("{}: cannot be written: its folder: {}", path.string(),
                                  std::generic_category().message(errno)));
   OutputBatch* batch = OutputBatch::current;
-  if (batch != nullptr && !batch->checked_.insert(place_of(followed(path))).second)
-    fail_twice(path);
+  if (batch != nullptr && !batch->checked_.insert(place_of(place)).second) fail_twice(path);
 }
 
 fs::path make_temporary_folder() {
@@ -204,7 +214,7 @@ fs::path make_temporary_folder() {
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
-  const fs::path place = followed(folder.filename().empty() ? folder.parent_path() : folder);
+  const fs::path place = followed(without_slash(folder));
   if (OutputBatch* batch = OutputBatch::current) {
     std::vector<fs::path> missing;  // the deepest first
     for (fs::path at = place; !at.empty() && !fs::exists(fs::symlink_status(at, error));

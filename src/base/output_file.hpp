@@ -31,11 +31,11 @@ class OutputFile {
   const std::filesystem::path& temporary() const { return temporary_; }
   /// At once, or with all others of the OutputBatch if there is one.
   /// @throws InputError, also if another of the batch has the same place, or a file would take that
-  /// of a folder
+  /// of a folder or was named as one, with a slash at its end
   void put_in_place();
 
  private:
-  std::filesystem::path path_, temporary_;
+  std::filesystem::path named_, path_, temporary_;
 };
 
 /// While it lives, the outputs that this thread writes wait beside their places, and
@@ -101,8 +101,9 @@ std::string_view kind_of(std::filesystem::file_type type);
 
 /// Checks what can be checked of an output before the work is done.
 /// @throws InputError as OutputFile does, for a name that no file can have or that was looked at
-/// before in this OutputBatch, for a folder where only a file can be written, and where the folder
-/// that it goes to does not exist or cannot be written to
+/// before in this OutputBatch, for a folder, also one that is only named so, by a slash at its end,
+/// where only a file can be written, and where the folder that it goes to does not exist or cannot
+/// be written to
 void check_output(const std::filesystem::path& path, OutputKind kind = OutputKind::file);
 
 /// A new folder among temporary files, of a random name: at a name known beforehand another user

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/random_phases.hpp"
+#include "random_phases.clh"
+
 namespace mcdbn {
 namespace {
 
@@ -15,6 +18,10 @@ std::uint32_t multiply_high(std::uint32_t a, std::uint32_t b) {
 #include "philox.clh"
 
 PHILOX_DEFINE(philox_rounds, std::uint32_t, multiply_high, )
+
+static_assert(VISIBLE_PHASE == random_phases::kVisibleUnits);
+static_assert(CHAIN_PHASES == random_phases::kPhasesOfChain);
+static_assert(SECOND_UNIFORM == random_phases::kSecondUniform);
 
 }  // namespace
 
@@ -38,7 +45,7 @@ float random_uniform(const RandomKey& key, std::uint32_t row, std::uint32_t colu
 
 double random_normal(const RandomKey& key, std::uint32_t row, std::uint32_t column) {
   RandomKey second = key;
-  second.phase |= 0x8000U;
+  second.phase |= random_phases::kSecondUniform;
   const double first_uniform = random_uniform(key, row, column);
   const double second_uniform = random_uniform(second, row, column);
   return std::sqrt(-2.0 * std::log(first_uniform)) *

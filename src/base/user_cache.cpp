@@ -60,21 +60,21 @@ std::optional<std::string> read_cache_entry(const std::string& kind, const std::
   return value;
 }
 
-void write_cache_entry(const std::string& kind, const std::string& key, const std::string& value) {
+bool write_cache_entry(const std::string& kind, const std::string& key, const std::string& value) {
   const auto path = entry_path(kind, key);
-  if (!path) return;
-  std::error_code ignored;
+  if (!path) return false;
+  std::error_code error, ignored;
   fs::create_directories(path->parent_path(), ignored);
   const fs::path temporary = path->string() + fmt::format(".{}", ::getpid());
-  {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream << header(key, value) << value;
-    if (!stream) {
-      fs::remove(temporary, ignored);
-      return;
-    }
+  std::ofstream stream(temporary, std::ios::binary);
+  stream << header(key, value) << value;
+  stream.close();  // a full disk may show only here
+  if (stream) {
+    fs::rename(temporary, *path, error);
+    if (!error) return true;
   }
-  fs::rename(temporary, *path, ignored);
+  fs::remove(temporary, ignored);
+  return false;
 }
 
 }  // namespace mcdbn

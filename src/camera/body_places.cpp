@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <utility>
 #include <vector>
 
 namespace mcdbn {
@@ -14,8 +15,12 @@ struct Place {
   bool sided;
   std::optional<JointRole> role;
   double left, up, forward;  ///< from the joint's centre, shares of body height
-  std::optional<JointRole> halfway = std::nullopt;  ///< between this left joint and the right one
+  std::optional<std::pair<JointRole, JointRole>> halfway = std::nullopt;  ///< between these joints
 };
+
+constexpr std::pair kHips{JointRole::left_hip, JointRole::right_hip},
+    kShoulders{JointRole::left_shoulder, JointRole::right_shoulder},
+    kTrunk{JointRole::pelvis, JointRole::neck};
 
 // Heights of body parts as shares of stature: Drillis and Contini (1966), as in Winter,
 // Biomechanics and Motor Control of Human Movement, fig. 4.1: eye 0.936, chin 0.870, shoulder
@@ -43,10 +48,11 @@ constexpr std::array kPlaces{
     // Halpe's neck, annotated between the collar bones.
     Place{"neck", false, JointRole::neck, 0, -0.020, 0},
     // OpenPose's neck: computed from the shoulders.
-    Place{"mid_shoulder", false, JointRole::neck, 0, -0.030, 0, JointRole::left_shoulder},
-    Place{"thorax", false, JointRole::neck, 0, -0.030, 0, JointRole::left_shoulder},
-    Place{"spine", false, JointRole::spine, 0, 0, 0},
-    Place{"mid_hip", false, JointRole::pelvis, 0, 0, 0, JointRole::left_hip},
+    Place{"mid_shoulder", false, JointRole::neck, 0, -0.030, 0, kShoulders},
+    Place{"thorax", false, JointRole::neck, 0, -0.030, 0, kShoulders},
+    // Human3.6M's, halfway up the trunk: which joint is there differs between skeletons.
+    Place{"spine", false, std::nullopt, 0, 0, 0, kTrunk},
+    Place{"mid_hip", false, JointRole::pelvis, 0, 0, 0, kHips},
     Place{"shoulder", true, JointRole::left_shoulder, 0, 0, 0},
     Place{"elbow", true, JointRole::left_elbow, 0, 0, 0},
     Place{"wrist", true, JointRole::left_wrist, 0, 0, 0},
@@ -60,6 +66,7 @@ constexpr std::array kPlaces{
     // The ankle stands a quarter of the foot's length before the heel; the toe joint at 0.73 of it.
     Place{"heel", true, JointRole::left_ankle, 0, -0.028, -0.038},
     Place{"toe", true, JointRole::left_toe, 0, 0, 0},
+    Place{"foot", true, JointRole::left_toe, 0, 0, 0},  // where another place is the ankle's
     Place{"big_toe", true, JointRole::left_toe, -0.012, -0.005, 0.035},
     Place{"small_toe", true, JointRole::left_toe, 0.020, -0.005, 0.015},
     Place{"foot_index", true, JointRole::left_toe, -0.008, -0.005, 0.035},
@@ -94,7 +101,6 @@ constexpr std::array kSynonyms{
     Synonym{"indexknuckle", "index"},
     Synonym{"pinkyfinger", "pinky"},
     Synonym{"littlefinger", "pinky"},
-    Synonym{"foot", "toe"},
     Synonym{"toes", "toe"},
     Synonym{"toebase", "toe"},
 };
@@ -160,7 +166,7 @@ std::optional<Keypoint> body_place(std::string_view name) {
   keypoint.name = plain_name(*place, left ? Side::left : right ? Side::right : Side::middle);
   keypoint.role = place->role;
   keypoint.offset = {place->left, place->up, place->forward};
-  if (place->halfway) keypoint.halfway = {*place->halfway, other_side(*place->halfway)};
+  keypoint.halfway = place->halfway;
   if (right) {
     keypoint.offset.x() = -keypoint.offset.x();
     if (place->role) keypoint.role = other_side(*place->role);

@@ -110,8 +110,17 @@ std::vector<Keypoint> keypoints_of(std::span<const std::string> names) {
        {JointRole::left_shoulder, JointRole::left_elbow, JointRole::left_wrist, JointRole::left_hip,
         JointRole::left_knee, JointRole::left_ankle})
     pairs += roles.contains(left) && roles.contains(other_side(left)) ? 1 : 0;
-  if (pairs < 2)
+  if (pairs < 2) {
     for (Keypoint& keypoint : keypoints) keypoint = Keypoint{keypoint.name, {}, {0, 0, 0}, {}};
+    return keypoints;
+  }
+  for (Keypoint& keypoint : keypoints) {
+    const std::string place = place_name_of(keypoint.name);
+    if (!place.ends_with("_foot")) continue;
+    const JointRole ankle =
+        place.starts_with("left") ? JointRole::left_ankle : JointRole::right_ankle;
+    if (!roles.contains(ankle)) keypoint.role = ankle;
+  }
   return keypoints;
 }
 

@@ -4,8 +4,8 @@
 
 namespace mcdbn {
 
-std::vector<SideSwap> limb_spells(const Track2d& track, const SideSwapSettings& settings) {
-  const auto longest_gap = static_cast<int>(settings.longest_gap_s * track.fps);
+std::vector<SideSwap> limb_spells(const Track2d& track) {
+  const auto longest_gap = static_cast<int>(kLongestFollowedGap_s * track.fps);
   std::vector<SideSwap> all;
   for (const LimbPair limbs : {LimbPair::legs, LimbPair::arms}) {
     const LimbPairs pairs =

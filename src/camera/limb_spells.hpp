@@ -7,10 +7,10 @@
 namespace mcdbn {
 
 /// The spells of frames in which the arms, or the legs, are seen, between gaps longer than joints
-/// are followed (SideSwapSettings::longest_gap_s): after such a gap find_side_swaps cannot detect
+/// are followed (kLongestFollowedGap_s): after such a gap find_side_swaps cannot detect
 /// whether the detector's sides are the same as before.
 /// @return as swaps of all their places, in the order of frames, legs first; none of limbs without
 /// such a gap
-std::vector<SideSwap> limb_spells(const Track2d& track, const SideSwapSettings& settings = {});
+std::vector<SideSwap> limb_spells(const Track2d& track);
 
 }  // namespace mcdbn

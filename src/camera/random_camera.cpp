@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numbers>
 
+#include "base/numbers.hpp"
 #include "base/random_sequence.hpp"
 #include "base/random_streams.hpp"
 #include "motion/body_size.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 /// Turned about its own axis; what was in the middle of the image stays there.
 void roll(Camera& camera, double angle_deg) {
-  const double angle = angle_deg * std::numbers::pi / 180.0;
+  const double angle = angle_deg * kRadiansPerDegree;
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   camera.camera_from_world = turn * camera.camera_from_world;

@@ -17,24 +17,26 @@ struct DetectorCameras {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"elevation-from", within(-89, 89), "degrees", "lowest camera"},
+    visit(Setting{"elevation-from", within(-89, 89), "degrees", "elevation of the lowest camera"},
           self.elevation_from_deg);
-    visit(Setting{"elevation-to", within(-89, 89), "degrees", "highest camera"},
+    visit(Setting{"elevation-to", within(-89, 89), "degrees", "elevation of the highest camera"},
           self.elevation_to_deg);
     visit(Setting{"roll", within(0, 180), "degrees",
-                  "standard deviation of the turn about the view's axis: held by hand, or a tripod "
-                  "that is not level"},
+                  "standard deviation of the camera's turn about its viewing axis: held by hand, "
+                  "or a tripod that is not level"},
           self.roll_deg);
     visit(Setting{"fov-from", CameraPlacement::kFieldOfView_deg, "degrees",
-                  "narrowest vertical view"},
+                  "smallest vertical field of view"},
           self.fov_from_deg);
-    visit(Setting{"fov-to", CameraPlacement::kFieldOfView_deg, "degrees", "widest vertical view"},
+    visit(Setting{"fov-to", CameraPlacement::kFieldOfView_deg, "degrees",
+                  "largest vertical field of view"},
           self.fov_to_deg);
     visit(Setting{"distance-from", above(0, 1000), "m",
-                  "nearest to the middle of the clip, of a 1.7 m body; further away where the clip "
-                  "would not fit in view"},
+                  "smallest distance from the middle of the clip, for a body of 1.7 m; larger "
+                  "where the clip would not fit in view"},
           self.distance_from_m);
-    visit(Setting{"distance-to", above(0, 1000), "m", "furthest"}, self.distance_to_m);
+    visit(Setting{"distance-to", above(0, 1000), "m", "largest distance, likewise"},
+          self.distance_to_m);
   }
 };
 

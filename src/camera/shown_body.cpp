@@ -51,4 +51,14 @@ std::vector<bool> frames_of_a_body(const Track2d& track) {
   return bodies;
 }
 
+bool shows_feet(const Track2d& track) {
+  for (std::size_t column = 0; column < track.keypoints.size(); ++column) {
+    const auto& role = track.keypoints[column].role;
+    if ((role == left_ankle || role == right_ankle || role == left_toe || role == right_toe) &&
+        (track.confidence.col(static_cast<Eigen::Index>(column)).array() > 0).any())
+      return true;
+  }
+  return false;
+}
+
 }  // namespace mcdbn

@@ -11,4 +11,8 @@ namespace mcdbn {
 /// once: heel and toes of one foot, or one arm, are no body.
 std::vector<bool> frames_of_a_body(const Track2d& track);
 
+/// Whether an ankle or toes are seen in any frame.
+/// @param track with keypoints
+bool shows_feet(const Track2d& track);
+
 }  // namespace mcdbn

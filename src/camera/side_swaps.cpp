@@ -20,6 +20,22 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// When a detector is taken to have exchanged left and right. Chosen on training people (CMU's walks
+// and actions, Bandai's; 200 views at 30 Hz). Of legs swapped for up to a second 99, 99 and 97 % of
+// the frames are found where the track is exact, off by 0.2 % and by 0.5 % of body height, and 99,
+// 99 and 98 % of those found are right; of frames without swaps at most 0.06 % are taken for
+// swapped. Of what OpenPose's own swaps, short and of crossing legs, add to the limbs' error 95 %
+// goes.
+
+/// How much less the joints of a limb pair have to jump, all together, for a swap to begin or end,
+/// in body heights.
+constexpr double kSwitchCost = 0.25;
+/// A joint's distance from where its velocity puts it counts up to so many body heights.
+constexpr double kMostResidual = 0.1;
+/// What a swap costs while it lasts, in body heights: the sides that a clip has for longer are
+/// right.
+constexpr double kSwappedCost_per_s = 0.15;
+
 using Swapped = std::vector<int>;  ///< 1 where swapped, one a frame
 
 /// The same place on both sides, frame by frame; not finite where it is unknown.
@@ -46,9 +62,8 @@ std::vector<Eigen::Vector2d> places(const Track2d& track, int column, double hei
   return result;
 }
 
-std::vector<PlacePair> pairs_of(const Track2d& track, LimbPair limbs, double height_px,
-                                const SideSwapSettings& settings) {
-  const auto longest_gap = static_cast<int>(settings.longest_gap_s * track.fps);
+std::vector<PlacePair> pairs_of(const Track2d& track, LimbPair limbs, double height_px) {
+  const auto longest_gap = static_cast<int>(kLongestFollowedGap_s * track.fps);
   std::vector<PlacePair> pairs;
   const auto columns =
       (limbs == LimbPair::legs ? leg_pairs(track.keypoints) : arm_pairs(track.keypoints)).columns;
@@ -89,8 +104,7 @@ double body_height_px(const Track2d& track) {
 
 /// The distance of both places of a pair from motion at constant velocity, given which of the three
 /// frames up to `t` are swapped; 0 where one of them is unknown.
-double residual(const PlacePair& pair, std::size_t t, const std::array<int, 3>& swapped,
-                double most) {
+double residual(const PlacePair& pair, std::size_t t, const std::array<int, 3>& swapped) {
   double sum = 0;
   for (const int side : {0, 1}) {
     const auto place = [&](std::size_t back) {
@@ -98,7 +112,7 @@ double residual(const PlacePair& pair, std::size_t t, const std::array<int, 3>& 
     };
     const double off = (place(0) - 2 * place(1) + place(2)).norm();
     if (!std::isfinite(off)) return 0;
-    sum += std::min(off, most);
+    sum += std::min(off, kMostResidual);
   }
   return sum;
 }
@@ -106,24 +120,23 @@ double residual(const PlacePair& pair, std::size_t t, const std::array<int, 3>& 
 /// The same of all pairs. Where a swap begins or ends a pair may stay on its sides: a detector may
 /// exchange the ankles alone.
 double residual(const std::vector<PlacePair>& pairs, std::size_t t,
-                const std::array<int, 3>& swapped, double most) {
+                const std::array<int, 3>& swapped) {
   const bool switches = swapped[0] != swapped[1] || swapped[1] != swapped[2];
   double sum = 0;
   for (const PlacePair& pair : pairs) {
-    const double staying = residual(pair, t, {0, 0, 0}, most);
-    sum += switches ? std::min(staying, residual(pair, t, swapped, most)) : staying;
+    const double staying = residual(pair, t, {0, 0, 0});
+    sum += switches ? std::min(staying, residual(pair, t, swapped)) : staying;
   }
   return sum;
 }
 
 /// The likeliest sequence. A state is what two frames in a row are: 2 · (the one before) + this.
-Swapped likeliest(const std::vector<PlacePair>& pairs, double fps,
-                  const SideSwapSettings& settings) {
+Swapped likeliest(const std::vector<PlacePair>& pairs, double fps) {
   const std::size_t frames = pairs.front().seen.size();
   if (frames < 3) return Swapped(frames, 0);
-  const double per_frame = settings.swapped_cost_per_s / fps;
+  const double per_frame = kSwappedCost_per_s / fps;
   const auto cost_of = [&](int before, int now) {
-    return (before != now ? settings.switch_cost : 0) + per_frame * now;
+    return (before != now ? kSwitchCost : 0) + per_frame * now;
   };
   std::array<double, 4> cost{};
   for (int state = 0; state < 4; ++state)
@@ -135,8 +148,7 @@ Swapped likeliest(const std::vector<PlacePair>& pairs, double fps,
       const int before = state >> 1, now = state & 1;
       next[state] = kInfinity;
       for (const int first : {0, 1}) {
-        const double total = cost[2 * first + before] +
-                             residual(pairs, t, {first, before, now}, settings.most_residual) +
+        const double total = cost[2 * first + before] + residual(pairs, t, {first, before, now}) +
                              cost_of(before, now);
         if (total >= next[state]) continue;
         next[state] = total;
@@ -156,23 +168,22 @@ Swapped likeliest(const std::vector<PlacePair>& pairs, double fps,
 }
 
 /// Whether exchanging the pair in these frames makes it jump less at their ends.
-bool belongs(const PlacePair& pair, const SideSwap& swap, double most) {
+bool belongs(const PlacePair& pair, const SideSwap& swap) {
   const auto is_swapped = [&](int t) { return t >= swap.first_frame && t <= swap.last_frame; };
   double exchanged = 0, left_alone = 0;
   for (const int end : {swap.first_frame, swap.last_frame + 1}) {
     for (int t = std::max(2, end); t < std::min<int>(end + 2, static_cast<int>(pair.seen.size()));
          ++t) {
       const auto frame = static_cast<std::size_t>(t);
-      exchanged +=
-          residual(pair, frame, {is_swapped(t - 2), is_swapped(t - 1), is_swapped(t)}, most);
-      left_alone += residual(pair, frame, {0, 0, 0}, most);
+      exchanged += residual(pair, frame, {is_swapped(t - 2), is_swapped(t - 1), is_swapped(t)});
+      left_alone += residual(pair, frame, {0, 0, 0});
     }
   }
   return exchanged <= left_alone;
 }
 
 void add_swaps(const std::vector<PlacePair>& pairs, LimbPair limbs, const Swapped& swapped,
-               double most, std::vector<SideSwap>& swaps) {
+               std::vector<SideSwap>& swaps) {
   const auto frames = static_cast<int>(swapped.size());
   for (int t = 0; t < frames; ++t) {
     if (swapped[t] == 0) continue;
@@ -180,7 +191,7 @@ void add_swaps(const std::vector<PlacePair>& pairs, LimbPair limbs, const Swappe
     while (swap.last_frame + 1 < frames && swapped[swap.last_frame + 1] != 0) ++swap.last_frame;
     t = swap.last_frame;
     for (const PlacePair& pair : pairs) {
-      if (!belongs(pair, swap, most)) continue;
+      if (!belongs(pair, swap)) continue;
       swap.left.push_back(pair.left);
       swap.right.push_back(pair.right);
     }
@@ -190,15 +201,14 @@ void add_swaps(const std::vector<PlacePair>& pairs, LimbPair limbs, const Swappe
 
 }  // namespace
 
-std::vector<SideSwap> find_side_swaps(const Track2d& track, const SideSwapSettings& settings) {
-  check_settings(settings);
+std::vector<SideSwap> find_side_swaps(const Track2d& track) {
   std::vector<SideSwap> swaps;
   const double height_px = body_height_px(track);
   if (track.keypoints.empty() || !(height_px > 0)) return swaps;
   for (const LimbPair limbs : {LimbPair::legs, LimbPair::arms}) {
-    const std::vector<PlacePair> pairs = pairs_of(track, limbs, height_px, settings);
+    const std::vector<PlacePair> pairs = pairs_of(track, limbs, height_px);
     if (pairs.empty()) continue;
-    add_swaps(pairs, limbs, likeliest(pairs, track.fps, settings), settings.most_residual, swaps);
+    add_swaps(pairs, limbs, likeliest(pairs, track.fps), swaps);
   }
   return swaps;
 }

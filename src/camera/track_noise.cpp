@@ -6,6 +6,8 @@
 
 #include "base/random_sequence.hpp"
 #include "base/random_streams.hpp"
+#include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion/skeleton_roles.hpp"
 
 namespace mcdbn {
 namespace {
@@ -49,14 +51,27 @@ void add_with_all_below(const Branches& branches, int joint, std::vector<int>& j
   for (const int child : branches.children[joint]) add_with_all_below(branches, child, joints);
 }
 
-/// The track's columns of the joint and all below it.
-std::vector<int> columns_from(const Track2d& track, const Skeleton& skeleton,
-                              const Branches& branches, int joint) {
+/// The skeleton's joint that each column of the track shows: by its role where the columns are a
+/// detector's keypoints, else by its name. -1: none.
+std::vector<int> joints_of_columns(const Track2d& track, const Skeleton& skeleton) {
+  std::vector<int> joints;
+  if (track.keypoints.empty()) {
+    for (const std::string& name : track.joint_names) joints.push_back(skeleton.find(name));
+    return joints;
+  }
+  const SkeletonRoles roles = skeleton_roles(skeleton);
+  for (const Keypoint& keypoint : track.keypoints)
+    joints.push_back(keypoint.role ? roles.joint(*keypoint.role) : -1);
+  return joints;
+}
+
+/// The columns that show the joint or one below it. @param shown as joints_of_columns gives them
+std::vector<int> columns_from(const std::vector<int>& shown, const Branches& branches, int joint) {
   std::vector<int> joints, columns;
   add_with_all_below(branches, joint, joints);
   for (const int below : joints)
-    if (const int column = track.find(skeleton.joints[below].name); column >= 0)
-      columns.push_back(column);
+    for (std::size_t column = 0; column < shown.size(); ++column)
+      if (shown[column] == below) columns.push_back(static_cast<int>(column));
   return columns;
 }
 
@@ -93,9 +108,10 @@ std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, doub
   const int shoulder = limbs[RandomSequence(seed, random_streams::kHiddenArm).below(2)];
   const auto frames = std::min<Eigen::Index>(track.frames(), std::lround(seconds * track.fps));
   const Eigen::Index first = (track.frames() - frames) / 2;
+  const std::vector<int> shown = joints_of_columns(track, skeleton);
   std::vector<std::string> names;
   for (const int child : branches.children[shoulder])
-    for (const int column : columns_from(track, skeleton, branches, child)) {
+    for (const int column : columns_from(shown, branches, child)) {
       names.push_back(track.joint_names[static_cast<std::size_t>(column)]);
       for (Eigen::Index frame = first; frame < first + frames; ++frame) hide(track, frame, column);
     }
@@ -105,9 +121,10 @@ std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, doub
 void hide_limbs(Track2d& track, const Skeleton& skeleton, std::uint64_t seed) {
   constexpr double kEvery_s = 2.0, kShortest_s = 0.3, kLongest_s = 1.5;
   const Branches branches(skeleton);
+  const std::vector<int> shown = joints_of_columns(track, skeleton);
   std::vector<std::vector<int>> limbs;  // as columns of the track
   for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
-    std::vector<int> columns = columns_from(track, skeleton, branches, joint);
+    std::vector<int> columns = columns_from(shown, branches, joint);
     if (!columns.empty() && 3 * static_cast<int>(columns.size()) <= track.joint_count())
       limbs.push_back(std::move(columns));
   }
@@ -132,7 +149,8 @@ void damage_track(Track2d& track, const Skeleton& skeleton, const TrackDamage& d
   const std::uint64_t own = mixed_seed({seed, 0x74726163});
   add_pixel_noise(track, damage.noise_px, own);
   drop_joints(track, damage.missing_share, own);
-  hide_arm(track, skeleton, damage.hidden_s, own);
+  if (hide_arm(track, skeleton, damage.hidden_s, own).empty() && damage.hidden_s > 0)
+    throw InputError("the track shows no arm that could be hidden (`track.hide`)");
 }
 
 }  // namespace mcdbn

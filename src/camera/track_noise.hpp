@@ -22,13 +22,13 @@ struct TrackDamage {
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     visit(Setting{"noise-px", kNoise_px, "px",
-                  "deviation of Gaussian noise on every joint's x and y"},
+                  "standard deviation of Gaussian noise on every joint's x and y"},
           self.noise_px);
     visit(Setting{"missing", kMissingShare, "",
                   "share of the joints of each frame that go missing, each on its own"},
           self.missing_share);
     visit(Setting{"hide", kHidden_s, "seconds",
-                  "an arm is hidden for so long, in the middle of the clip"},
+                  "how long an arm is hidden, in the middle of the clip"},
           self.hidden_s);
   }
 };
@@ -45,10 +45,13 @@ void add_pixel_noise(Track2d& track, double deviation_px, std::uint64_t seed);
 void drop_joints(Track2d& track, double share, std::uint64_t seed);
 
 /// Hides an arm for `seconds` in the middle of the track: from the shoulder's child down, so that
-/// the shoulder stays. Joint names are not used: arms are the two longest chains of bones that
-/// hang from the chest, the joint with the longest chains of all below the first at which the body
-/// branches. The seed decides which of the two.
-/// @return the joints that were hidden; none if the body does not branch
+/// the shoulder stays. Arms are the two longest chains of bones that hang from the chest, the joint
+/// with the longest chains of all below the first at which the body branches. The seed decides
+/// which of the two.
+/// @param track of the skeleton's own joints, or of a detector's keypoints, which are hidden with
+///        the joints of their roles
+/// @return the columns that were hidden, by name; none if the body does not branch or the track
+///         shows no arm
 /// @throws ConfigError likewise
 std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, double seconds,
                                   std::uint64_t seed);
@@ -59,7 +62,7 @@ std::vector<std::string> hide_arm(Track2d& track, const Skeleton& skeleton, doub
 void hide_limbs(Track2d& track, const Skeleton& skeleton, std::uint64_t seed);
 
 /// All three, each from its own stream of the seed.
-/// @throws ConfigError as they do
+/// @throws ConfigError as they do; InputError if an arm is to be hidden and the track shows none
 void damage_track(Track2d& track, const Skeleton& skeleton, const TrackDamage& damage,
                   std::uint64_t seed);
 

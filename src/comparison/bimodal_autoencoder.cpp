@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "base/random_phases.hpp"
 #include "base/random_streams.hpp"
 #include "comparison/bimodal_network.hpp"
 #include "comparison/clip_pairs.hpp"
@@ -13,10 +14,6 @@
 namespace mcdbn {
 namespace {
 
-enum AutoencoderPhase : std::uint16_t {
-  kAutoencoderShuffle = 0x7000,
-  kAutoencoderWeights = 0x7100
-};
 constexpr std::uint16_t kAutoencoderStream = random_streams::kAutoencoder;
 
 using Shape = BimodalNetwork::Shape;
@@ -63,7 +60,7 @@ std::vector<DenseLayer> pretrained_layers(Device& device, const Shape& shape,
 }
 
 std::vector<DenseLayer> random_layers(const Shape& shape, std::uint64_t seed) {
-  RandomKey key{seed, 0, kAutoencoderStream, kAutoencoderWeights};
+  RandomKey key{seed, 0, kAutoencoderStream, random_phases::kFirstWeights};
   const auto layer = [&](std::size_t inputs, std::size_t outputs) {
     ++key.step;
     return random_dense_layer(inputs, inputs, outputs, key);
@@ -144,7 +141,7 @@ void BimodalAutoencoder::fit(const std::vector<MatrixF>& tracks,
   MinibatchSchedule schedule(*device_, rows, settings_.batch, settings_.least_batches);
   AutoencoderTrainer trainer(*network_, settings_, schedule.batch(), data);
   train_epochs(trainer, schedule, settings_,
-               {settings_.seed, 0, kAutoencoderStream, kAutoencoderShuffle});
+               {settings_.seed, 0, kAutoencoderStream, random_phases::kShuffle});
   device_->queue().finish();  // what the trainer holds lives no longer
   track_dimension_ = tracks.front().cols();
 }

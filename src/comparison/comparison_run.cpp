@@ -98,7 +98,11 @@ EncodedClip test_clip(const std::filesystem::path& file, const Model& model,
     exchange_sides(view.track, find_side_swaps(view.track));
     clip = encoded_view(file, model.modalities, std::move(view));
   }
-  damage_track(clip.track, clip.motion.skeleton, options.damage, seed);
+  try {
+    damage_track(clip.track, clip.motion.skeleton, options.damage, seed);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+  }
   if (!options.detector)
     clip.track_features = model.modalities.encode_track(smooth_track(clip.track), clip.camera);
   return clip;
@@ -265,13 +269,14 @@ void regenerate_tracks(const Model& model, std::vector<ClipResult>& results) {
 
 void run_baselines(const Model& model, const TestRunOptions& options, const Progress& progress,
                    std::vector<ClipResult>& results) {
-  BaselineLessons lessons = clip_lessons(model, options.keep_first_frame, options.joint_map);
-  lessons.view_tracks = options.view_tracks;
-  lessons.view_poses = options.view_poses;
+  BaselineTrainingData data =
+      clip_training_data(model, options.keep_first_frame, options.joint_map);
+  data.view_tracks = options.view_tracks;
+  data.view_poses = options.view_poses;
   for (std::size_t i = 0; i < options.baselines.size(); ++i) {
     const std::string& name = options.baselines[i];
     progress.show("baseline " + name, Progress::kBaselines, i, options.baselines.size());
-    const auto baseline = fitted_baseline(name, model, lessons);
+    const auto baseline = fitted_baseline(name, model, data);
     for (ClipResult& result : results) {
       const auto predict = [&](const MatrixF& track) { return baseline->predict(track); };
       const SeenClip seen = seen_by(model, options, result.truth, predict);
@@ -322,7 +327,7 @@ ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
   std::iota(columns.begin(), columns.end(), 0);
   score.foot_slide = foot_slide(of_joints(world_positions_mm(truth.motion), own, feet),
                                 of_joints(world, answered, feet), columns, truth.motion.fps());
-  score.bone_length_spread_mm = bone_length_spread_mm(world, answered);
+  score.bone_length_spread_mm = bone_length_spread_mm(world, answered, answered.find(root_name));
   return score;
 }
 

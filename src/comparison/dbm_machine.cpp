@@ -50,7 +50,7 @@ DbmMachine::Units::Units(Device& device, const Shape& shape, std::size_t rows)
     visible[m] = Matrix(device, rows, shape.visible[m]);
     hidden[m] = Matrix(device, rows, shape.hidden[m]);
     hidden_draws[m] = Matrix::like(hidden[m]);
-    drive[m] = Matrix::like(hidden[m]);
+    input_from_below[m] = Matrix::like(hidden[m]);
   }
 }
 
@@ -85,16 +85,16 @@ void DbmMachine::refresh_transposed() {
   }
 }
 
-void DbmMachine::drive_hidden(std::size_t m, Units& units, float scale) const {
+void DbmMachine::set_input_from_below(std::size_t m, Units& units, float scale) const {
   GemmOptions options;
   options.alpha = scale;
   options.bias = &pathways_[m].b;
-  gemm(units.visible[m], pathways_[m].W, units.drive[m], options);
+  gemm(units.visible[m], pathways_[m].W, units.input_from_below[m], options);
 }
 
 void DbmMachine::infer_hidden(std::size_t m, Units& units, const RandomKey* draws) const {
   GemmOptions options;
-  options.bias = &units.drive[m];
+  options.bias = &units.input_from_below[m];
   options.activation = Activation::sigmoid;
   const Rows sample = units.hidden_draws[m];
   if (draws) draw(options, Sampling::bernoulli, *draws, sample);
@@ -107,7 +107,7 @@ void DbmMachine::infer_hidden_from_below(std::size_t m, Units& units,
   options.activation = Activation::sigmoid;
   const Rows sample = units.hidden_draws[m];
   if (draws) draw(options, Sampling::bernoulli, *draws, sample);
-  units.hidden[m].copy_from(units.drive[m]);
+  units.hidden[m].copy_from(units.input_from_below[m]);
   apply_epilogue(units.hidden[m], options);
 }
 
@@ -144,14 +144,14 @@ void DbmMachine::mean_field(Units& units, std::size_t absent, std::size_t steps)
   if (absent != kNoneAbsent)
     units.visible[absent] = Matrix::filled_with_row(pathways_[absent].a, units.joint.rows());
   for (std::size_t m = 0; m < 2; ++m) {
-    drive_hidden(m, units);
+    set_input_from_below(m, units);
     infer_hidden_from_below(m, units);
   }
   for (std::size_t step = 0; step < steps; ++step) {
     infer_joint(units.hidden, units);
     if (absent != kNoneAbsent) {
       infer_visible(absent, units.hidden[absent], units);
-      drive_hidden(absent, units);
+      set_input_from_below(absent, units);
     }
     for (std::size_t m = 0; m < 2; ++m) infer_hidden(m, units);
   }
@@ -161,7 +161,7 @@ void DbmMachine::mean_field(Units& units, std::size_t absent, std::size_t steps)
 
 void DbmMachine::gibbs_sweep(Units& chains, RandomKey draws) const {
   for (std::size_t m = 0; m < 2; ++m, ++draws.phase) {
-    drive_hidden(m, chains);
+    set_input_from_below(m, chains);
     infer_hidden(m, chains, &draws);
   }
   for (std::size_t m = 0; m < 2; ++m, ++draws.phase)

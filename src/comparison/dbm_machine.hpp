@@ -34,7 +34,7 @@ class DbmMachine {
     std::array<Matrix, 2> visible, hidden;
     Matrix joint;
     std::array<Matrix, 2> hidden_draws;
-    std::array<Matrix, 2> drive;  ///< scale · v·W + b, the visible units' part of the hidden ones'
+    std::array<Matrix, 2> input_from_below;  ///< of the hidden units: scale · v·W + b
   };
 
   /// W_track, a_track, …, c. Weights from N(0, 0.01²), biases zero.
@@ -46,12 +46,13 @@ class DbmMachine {
   /// After weights changed.
   void refresh_transposed();
 
-  /// drive = scale · v·W + b. Greedy stages double what comes from below, as there is nothing above
-  /// yet.
-  void drive_hidden(std::size_t m, Units& units, float scale = 1.0F) const;
-  /// p(h_m = 1 | v_m, z) with drive(); to hidden. With a key, draws to hidden_draws too.
+  /// input_from_below = scale · v·W + b. Greedy stages double what comes from below, as there is
+  /// nothing above yet.
+  void set_input_from_below(std::size_t m, Units& units, float scale = 1.0F) const;
+  /// p(h_m = 1 | v_m, z) with the input from below; to hidden. With a key, draws to hidden_draws
+  /// too.
   void infer_hidden(std::size_t m, Units& units, const RandomKey* draws = nullptr) const;
-  /// The same without z: σ(drive).
+  /// The same without z: σ(input_from_below).
   void infer_hidden_from_below(std::size_t m, Units& units, const RandomKey* draws = nullptr) const;
   /// p(z = 1 | h) of these hidden units; to joint. With a key the draws take its place.
   void infer_joint(const std::array<Matrix, 2>& hidden, Units& units,
@@ -67,7 +68,7 @@ class DbmMachine {
   void mean_field(Units& units, std::size_t absent, std::size_t steps) const;
   static constexpr std::size_t kNoneAbsent = 2;
 
-  /// One sweep of the chains: h given v and z, then v and z given h. Uses four phases from
+  /// One sweep of the chains: h given v and z, then v and z given h. Uses five phases from
   /// draws.phase on.
   void gibbs_sweep(Units& chains, RandomKey draws) const;
 

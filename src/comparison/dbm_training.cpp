@@ -2,14 +2,14 @@
 
 #include <numeric>
 
+#include "base/random_phases.hpp"
 #include "base/random_streams.hpp"
 #include "device/pointwise.hpp"
+#include "learning/rate_schedule.hpp"
 
 namespace mcdbn {
 namespace {
 
-/// Beyond those of Gibbs sweeps.
-constexpr std::uint16_t kShufflePhase = 0x7000;
 constexpr std::uint16_t kPhasesPerSweep = 5;
 
 std::vector<std::int32_t> all_rows(const MatrixF& values) {
@@ -46,7 +46,7 @@ void DbmTraining::run() {
   });
   start_chains();
   run_stage(settings_.epochs, [&](std::size_t first, float progress, const RandomKey& draws) {
-    learn_all(first, static_cast<float>(settings_.rate) * (1.0F - 0.98F * progress), draws);
+    learn_all(first, static_cast<float>(settings_.rate) * linear_fall(progress), draws);
   });
   machine_.device().queue().finish();  // what this holds lives no longer
 }
@@ -56,7 +56,7 @@ void DbmTraining::run_stage(std::size_t epochs, const Learn& learn) {
   for (std::size_t i = 0; i < epochs * batches; ++i, ++random_.step) {
     if (i % batches == 0) {
       RandomKey shuffle = random_;
-      shuffle.phase = kShufflePhase;
+      shuffle.phase = random_phases::kShuffle;
       schedule_.shuffle(shuffle);
     }
     learn(schedule_.first_of(i % batches),
@@ -81,10 +81,10 @@ void DbmTraining::learn_pathway(std::size_t m, std::size_t first, float rate,
                                 const RandomKey& draws) {
   const float mean = 1.0F / static_cast<float>(schedule_.batch());
   clamp(m, first);
-  machine_.drive_hidden(m, data_, 2.0F);
+  machine_.set_input_from_below(m, data_, 2.0F);
   machine_.infer_hidden_from_below(m, data_, &draws);
   machine_.infer_visible(m, data_.hidden_draws[m], chains_);
-  machine_.drive_hidden(m, chains_, 2.0F);
+  machine_.set_input_from_below(m, chains_, 2.0F);
   machine_.infer_hidden_from_below(m, chains_);
   const Parameters gradient = gradients();
   machine_.add_energy_gradient(data_, mean, 0.0F, gradient);
@@ -98,7 +98,7 @@ void DbmTraining::learn_joint_layer(std::size_t first, float rate, const RandomK
   const float mean = 1.0F / static_cast<float>(schedule_.batch());
   for (std::size_t m = 0; m < 2; ++m) {
     clamp(m, first);
-    machine_.drive_hidden(m, data_, 2.0F);
+    machine_.set_input_from_below(m, data_, 2.0F);
     machine_.infer_hidden_from_below(m, data_);
   }
   machine_.infer_joint(data_.hidden, chains_, &draws);
@@ -122,7 +122,7 @@ void DbmTraining::learn_all(std::size_t first, float rate, const RandomKey& draw
     machine_.gibbs_sweep(chains_, sweep);
   // Of the chains' hidden units probabilities carry more information than draws.
   for (std::size_t m = 0; m < 2; ++m) {
-    machine_.drive_hidden(m, chains_);
+    machine_.set_input_from_below(m, chains_);
     machine_.infer_hidden(m, chains_);
   }
   const Parameters gradient = gradients();

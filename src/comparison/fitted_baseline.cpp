@@ -33,33 +33,34 @@ void require_training_clips(const Model& model, std::string_view otherwise) {
                       clip.path, otherwise));
 }
 
-BaselineLessons clip_lessons(const Model& model, bool keep_first_frame, const JointMap& joint_map) {
-  BaselineLessons lessons;
+BaselineTrainingData clip_training_data(const Model& model, bool keep_first_frame,
+                                        const JointMap& joint_map) {
+  BaselineTrainingData data;
   for (EncodedClip& clip : encode_training_clips(model, keep_first_frame, joint_map)) {
-    lessons.tracks.push_back(std::move(clip.track_features));
-    lessons.poses.push_back(std::move(clip.pose_features));
+    data.tracks.push_back(std::move(clip.track_features));
+    data.poses.push_back(std::move(clip.pose_features));
   }
-  return lessons;
+  return data;
 }
 
-BaselineLessons lessons_of(const std::string& name, const Model& model) {
+BaselineTrainingData training_data_of(const std::string& name, const Model& model) {
   TestRunOptions run;
   run.baselines = {name};
   add_training_views(model, run);
-  BaselineLessons lessons = clip_lessons(model, run.keep_first_frame);
-  lessons.view_tracks = std::move(run.view_tracks);
-  lessons.view_poses = std::move(run.view_poses);
-  return lessons;
+  BaselineTrainingData data = clip_training_data(model, run.keep_first_frame);
+  data.view_tracks = std::move(run.view_tracks);
+  data.view_poses = std::move(run.view_poses);
+  return data;
 }
 
 std::unique_ptr<Baseline> fitted_baseline(const std::string& name, const Model& model,
-                                          const BaselineLessons& lessons) {
-  const bool has_views = !lessons.view_tracks.empty();
+                                          const BaselineTrainingData& data) {
+  const bool has_views = !data.view_tracks.empty();
   auto baseline = make_baseline(name, model.network.mrbm.device(), has_views);
   if (has_views && baseline->learns_from_views())
-    baseline->fit(lessons.view_tracks, lessons.view_poses);
+    baseline->fit(data.view_tracks, data.view_poses);
   else
-    baseline->fit(lessons.tracks, lessons.poses);
+    baseline->fit(data.tracks, data.poses);
   return baseline;
 }
 

@@ -1,5 +1,6 @@
 #include "comparison/multimodal_dbm.hpp"
 
+#include "base/random_phases.hpp"
 #include "base/random_streams.hpp"
 #include "comparison/clip_pairs.hpp"
 #include "comparison/dbm_training.hpp"
@@ -7,11 +8,6 @@
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
-namespace {
-
-constexpr std::uint16_t kWeightPhase = 0x7100;
-
-}  // namespace
 
 MultimodalDbm::MultimodalDbm(Device& device, const MultimodalDbmSettings& settings)
     : device_(&device), settings_(settings) {
@@ -27,12 +23,13 @@ void MultimodalDbm::fit(const std::vector<MatrixF>& tracks, const std::vector<Ma
       {static_cast<std::size_t>(data[0].cols()), static_cast<std::size_t>(data[1].cols())},
       {settings_.track_hidden, settings_.pose_hidden},
       settings_.joint};
-  machine_ = std::make_unique<DbmMachine>(
-      *device_, shape,
-      RandomKey{settings_.seed, 0, random_streams::kBoltzmannMachine, kWeightPhase});
+  machine_ =
+      std::make_unique<DbmMachine>(*device_, shape,
+                                   RandomKey{settings_.seed, 0, random_streams::kBoltzmannMachine,
+                                             random_phases::kFirstWeights});
   DbmTraining(*machine_, settings_, data).run();
   if (!machine_->parameters().all().to_host().allFinite())
-    throw Error("multimodal_dbm: training diverged; a lower `rate` may help");
+    throw Error("multimodal_dbm: training diverged; a lower rate may help");
   track_dimension_ = tracks.front().cols();
 }
 

@@ -2,24 +2,19 @@
 
 #include <numeric>
 
+#include "base/random_phases.hpp"
 #include "device/losses.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/minibatch.hpp"
 
 namespace mcdbn {
-namespace {
-
-/// Beyond those of Gibbs steps.
-enum RbmPhase : std::uint16_t { kRbmShuffle = 0x7000, kRbmWeights = 0x7100 };
-
-}  // namespace
 
 PretrainedRbm pretrained_rbm(Device& device, const MatrixF& data, const CrbmShape& shape,
                              const PretrainingSettings& settings, RandomKey key) {
   CdSettings cd;
   cd.gibbs_steps = 1;
   cd.rate = settings.rate;
-  key.phase = kRbmWeights;
+  key.phase = random_phases::kFirstWeights;
   Crbm rbm(device, CrbmParameters::random(shape, cd.initial_deviation, key));
 
   std::vector<std::int32_t> rows(static_cast<std::size_t>(data.rows()));
@@ -33,7 +28,7 @@ PretrainedRbm pretrained_rbm(Device& device, const MatrixF& data, const CrbmShap
   step.random.phase = 0;
   for (; step.epoch <= settings.epochs; ++step.epoch) {
     key.step = static_cast<std::uint32_t>(step.epoch);
-    key.phase = kRbmShuffle;
+    key.phase = random_phases::kShuffle;
     schedule.shuffle(key);
     for (std::size_t i = 0; i < schedule.batch_count(); ++i, ++step.random.step) {
       const Rows visible =

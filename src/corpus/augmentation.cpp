@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/numbers.hpp"
 #include "base/random_sequence.hpp"
 #include "camera/detector_track.hpp"
 #include "camera/keypoint_map.hpp"
@@ -41,9 +42,14 @@ double within(const RandomKey& key, Draw draw, std::uint32_t column, double most
   return most * (2.0 * uniform(key, draw, column) - 1.0);
 }
 
+/// Of what is drawn one number after another: the views of each stream have their own.
+std::uint64_t seed_of(const RandomKey& key) {
+  return mixed_seed({key.seed, key.step, key.stream});
+}
+
 /// Every joint below the root that turns at all is turned by a fixed small rotation of its own.
 void change_carriage(Motion& motion, double deviation_deg, const RandomKey& key) {
-  const double deviation = deviation_deg * EIGEN_PI / 180.0;
+  const double deviation = deviation_deg * kRadiansPerDegree;
   for (int j = 1; j < motion.skeleton.joint_count(); ++j) {
     const Joint& joint = motion.skeleton.joints[j];
     const int first = motion.skeleton.first_channel(j);
@@ -101,7 +107,7 @@ double depth_of(const Motion& motion, const Camera& camera) {
 
 /// The view's motion as a detector sees it from anywhere.
 void see_by_detector(AugmentedView& view, const RandomKey& key) {
-  const std::uint64_t seed = mixed_seed({key.seed, key.step, 0x64657465});
+  const std::uint64_t seed = mixed_seed({key.seed, key.step, key.stream, 0x64657465});
   view.camera = random_camera(view.motion, {}, seed);
   const auto which = static_cast<std::size_t>(uniform(key, kDetector, 1) *
                                               static_cast<double>(detectors().size()));
@@ -120,7 +126,7 @@ void see_by_detector(AugmentedView& view, const RandomKey& key) {
 /// that it is to give turn by the same about a level axis; the track, the heights and the truth in
 /// the image stay.
 void misjudge_gravity(AugmentedView& view, double deviation_deg, const RandomKey& key) {
-  const double angle = deviation_deg * EIGEN_PI / 180 * random_normal(key, kGravity, 0),
+  const double angle = deviation_deg * kRadiansPerDegree * random_normal(key, kGravity, 0),
                about = 2 * EIGEN_PI * uniform(key, kGravity, 1);
   const Eigen::Matrix3d error =
       Eigen::AngleAxisd(angle, Eigen::Vector3d(std::cos(about), 0, std::sin(about)))
@@ -168,10 +174,9 @@ AugmentedView seen_view(const Motion& raw, double fps, const CameraPlacement& pl
   // A camera right before a joint shows figures of any size.
   const double noise_px =
       2.0 * uniform(key, kNoise) * settings.noise_px * size_px(view.track) / kUsualSize_px;
-  add_pixel_noise(view.track, std::min(noise_px, TrackDamage::kNoise_px.most),
-                  mixed_seed({key.seed, key.step}));
+  add_pixel_noise(view.track, std::min(noise_px, TrackDamage::kNoise_px.most), seed_of(key));
   if (!hide_no_limb && uniform(key, kMissing) < settings.missing)
-    hide_limbs(view.track, view.motion.skeleton, mixed_seed({key.seed, key.step}));
+    hide_limbs(view.track, view.motion.skeleton, seed_of(key));
   return view;
 }
 

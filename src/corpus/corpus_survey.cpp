@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "base/interruption.hpp"
+#include "base/numbers.hpp"
 #include "base/upper_median.hpp"
 #include "corpus/joint_map_use.hpp"
 #include "corpus/people.hpp"
@@ -22,6 +22,15 @@ namespace {
 
 using enum JointRole;
 using Kind = ClipProblem::Kind;
+
+// What is taken for odd. Lengths are those of a body 1.7 m tall.
+constexpr double kLeastRate_fps = 20, kLeastLength_s = 1;
+/// A joint that is in one frame away from where it is before and after it, faster than any limb is
+/// (a kicked foot lands at some 300 m/s²).
+constexpr double kSpike_m = 0.03, kSpike_m_s2 = 1000;
+constexpr double kJump_m_s = 25;  // a thrown ball's hand comes near it
+constexpr double kBelowGround_m = 0.08;
+constexpr double kLying_deg = 60;  // of the trunk from +y, on average
 
 /// Frames as people count them, from 1; the first few.
 std::string frames_text(const std::vector<Eigen::Index>& frames) {
@@ -49,14 +58,13 @@ double most_by_joint(const RowVectorD& places) {
   return most;
 }
 
-void add_spikes_and_jumps(const MatrixD& places, double fps, const SurveyLimits& limits,
-                          std::vector<ClipProblem>& problems) {
+void add_spikes_and_jumps(const MatrixD& places, double fps, std::vector<ClipProblem>& problems) {
   std::vector<Eigen::Index> spikes, jumps;
   const auto is_spike = [&](Eigen::Index t) {
     if (t < 1 || t + 1 >= places.rows()) return false;
     const double off_m =
         most_by_joint(places.row(t) - 0.5 * (places.row(t - 1) + places.row(t + 1)));
-    return off_m > limits.spike_m && 2 * off_m * fps * fps > limits.spike_m_s2;
+    return off_m > kSpike_m && 2 * off_m * fps * fps > kSpike_m_s2;
   };
   // The frames beside a spike are off the line, too, by half of it.
   for (Eigen::Index t = 1; t < places.rows(); ++t) {
@@ -65,18 +73,18 @@ void add_spikes_and_jumps(const MatrixD& places, double fps, const SurveyLimits&
                          most_by_joint(places.row(t + 1) - places.row(t - 1)) < 0.5 * step_m;
     if (returns && is_spike(t))
       spikes.push_back(t);
-    else if (step_m * fps > limits.jump_m_s && (spikes.empty() || spikes.back() != t - 1))
+    else if (step_m * fps > kJump_m_s && (spikes.empty() || spikes.back() != t - 1))
       jumps.push_back(t);
   }
   if (!spikes.empty())
     problems.push_back({Kind::spikes, "a joint leaps away and back in " + frames_text(spikes)});
   if (!jumps.empty())
-    problems.push_back({Kind::jumps, fmt::format("faster than {:g} m/s to {}", limits.jump_m_s,
-                                                 frames_text(jumps))});
+    problems.push_back(
+        {Kind::jumps, fmt::format("faster than {:g} m/s to {}", kJump_m_s, frames_text(jumps))});
 }
 
 /// The ground is where the lowest foot is at its lowest in a usual second.
-void add_ground(const Motion& motion, const SkeletonRoles& roles, const SurveyLimits& limits,
+void add_ground(const Motion& motion, const SkeletonRoles& roles,
                 std::vector<ClipProblem>& problems) {
   const MatrixD all = joint_positions(motion) / file_units_per_metre(motion.skeleton);
   const auto second = std::max<Eigen::Index>(1, std::lround(motion.fps()));
@@ -89,21 +97,20 @@ void add_ground(const Motion& motion, const SkeletonRoles& roles, const SurveyLi
       lows.push_back(heights.segment(t, std::min(second, heights.size() - t)).minCoeff());
     lowest_m = std::min(lowest_m, heights.minCoeff() - upper_median(std::move(lows)));
   }
-  if (lowest_m < -limits.below_ground_m)
+  if (lowest_m < -kBelowGround_m)
     problems.push_back(
         {Kind::ground,
          fmt::format("a foot goes {:.0f} cm under where it usually stands", -100 * lowest_m)});
 }
 
-void add_up(const Motion& motion, const SkeletonRoles& roles, const SurveyLimits& limits,
-            std::vector<ClipProblem>& problems) {
+void add_up(const Motion& motion, const SkeletonRoles& roles, std::vector<ClipProblem>& problems) {
   const MatrixD all = joint_positions(motion);
   const int top = roles.joint(roles.has(head) ? head : neck), bottom = roles.joint(pelvis);
   Eigen::RowVector3d sum(0, 0, 0);
   for (Eigen::Index t = 0; t < all.rows(); ++t)
     sum += (all.row(t).segment<3>(3 * top) - all.row(t).segment<3>(3 * bottom)).normalized();
-  const double deg = std::atan2(std::hypot(sum.x(), sum.z()), sum.y()) * 180 / std::numbers::pi;
-  if (deg > limits.lying_deg)
+  const double deg = std::atan2(std::hypot(sum.x(), sum.z()), sum.y()) / kRadiansPerDegree;
+  if (deg > kLying_deg)
     problems.push_back(
         {Kind::up, fmt::format("the trunk is {:.0f} degrees from +y: the person lies, or another "
                                "axis is up",
@@ -133,17 +140,16 @@ struct Seen {
   JointMapUse map_use;
 };
 
-void describe(Motion motion, const SurveyLimits& limits, const JointMap& joint_map, Seen& seen,
-              SurveyedClip& result) {
+void describe(Motion motion, const JointMap& joint_map, Seen& seen, SurveyedClip& result) {
   result.frames = motion.frames();
   result.fps = motion.fps();
   result.skeleton = seen.skeletons.number_of(motion.skeleton);
   seen.map_use.add(motion.skeleton);
   if (result.clip.person.empty())
     result.clip.person = fmt::format("body {}", seen.people.number_of(motion.skeleton) + 1);
-  if (result.seconds() < limits.least_s)
+  if (result.seconds() < kLeastLength_s)
     result.problems.push_back({Kind::length, fmt::format("{:.2g} s long", result.seconds())});
-  if (result.fps < limits.least_fps)
+  if (result.fps < kLeastRate_fps)
     result.problems.push_back({Kind::rate, fmt::format("{:.3g} frames a second", result.fps)});
   if (has_leading_calibration_pose(motion)) {
     // By fmt, as GCC 12 takes a plain text that long for a copy beyond its end (-Warray-bounds).
@@ -155,7 +161,7 @@ void describe(Motion motion, const SurveyLimits& limits, const JointMap& joint_m
   try {
     const HumanoidRig rig = rig_of_person(motion, joint_map);
     result.error = retarget_error(rig, motion);
-    for (ClipProblem& problem : motion_problems(motion, rig.roles(), limits))
+    for (ClipProblem& problem : motion_problems(motion, rig.roles()))
       result.problems.push_back(std::move(problem));
   } catch (const InputError& error) {
     result.problems.push_back({Kind::no_person, error.what()});
@@ -188,17 +194,16 @@ std::string_view name_of(Kind kind) {
   return "";
 }
 
-std::vector<ClipProblem> motion_problems(const Motion& motion, const SkeletonRoles& roles,
-                                         const SurveyLimits& limits) {
+std::vector<ClipProblem> motion_problems(const Motion& motion, const SkeletonRoles& roles) {
   std::vector<ClipProblem> problems;
-  add_spikes_and_jumps(places_m(motion, roles), motion.fps(), limits, problems);
-  add_ground(motion, roles, limits, problems);
-  add_up(motion, roles, limits, problems);
+  add_spikes_and_jumps(places_m(motion, roles), motion.fps(), problems);
+  add_ground(motion, roles, problems);
+  add_up(motion, roles, problems);
   return problems;
 }
 
-std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips, const SurveyLimits& limits,
-                                 const JointMap& joint_map, std::vector<std::string>* notices) {
+std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips, const JointMap& joint_map,
+                                 std::vector<std::string>* notices) {
   std::vector<SurveyedClip> surveyed;
   Seen seen{.skeletons = {}, .people = {}, .map_use = JointMapUse(joint_map)};
   for (const ListedClip& clip : clips) {
@@ -209,7 +214,7 @@ std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips, const Sur
     try {
       Motion motion = read_motion(clip.file);
       if (motion.frames() == 0) throw InputError("has no frame");
-      describe(std::move(motion), limits, joint_map, seen, result);
+      describe(std::move(motion), joint_map, seen, result);
     } catch (const InputError& error) {
       result.problems.push_back({Kind::unreadable, error.what()});
     }

@@ -30,26 +30,14 @@ struct SurveyedClip {
   double seconds() const { return frames > 0 ? frames / fps : 0; }
 };
 
-/// What is taken for odd. Lengths are those of a body 1.7 m tall.
-struct SurveyLimits {
-  double least_fps = 20, least_s = 1;
-  /// A joint that is in one frame away from where it is before and after it, faster than any limb
-  /// is (a kicked foot lands at some 300 m/s²).
-  double spike_m = 0.03, spike_m_s2 = 1000;
-  double jump_m_s = 25;  ///< a thrown ball's hand comes near it
-  double below_ground_m = 0.08;
-  double lying_deg = 60;  ///< of the trunk from +y, on average
-};
-
 /// Reads every clip; what cannot be read is a problem of that clip.
 /// @param joint_map roles of clips' joints, given by hand
 /// @param notices if given, collects the joint map's names that no clip has
 std::vector<SurveyedClip> survey(const std::vector<ListedClip>& clips,
-                                 const SurveyLimits& limits = {}, const JointMap& joint_map = {},
+                                 const JointMap& joint_map = {},
                                  std::vector<std::string>* notices = nullptr);
 
 /// The problems of a motion that is read, of a person whose joints have roles.
-std::vector<ClipProblem> motion_problems(const Motion& motion, const SkeletonRoles& roles,
-                                         const SurveyLimits& limits);
+std::vector<ClipProblem> motion_problems(const Motion& motion, const SkeletonRoles& roles);
 
 }  // namespace mcdbn

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "base/made_ahead.hpp"
@@ -43,17 +42,22 @@ FreshViews::FreshViews(ClipStore clips, Modalities modalities, const CorpusSetti
   const auto counts = [&](std::size_t clip) {
     return choice_.people.holds(groups_.people()[clip]);
   };
-  std::map<std::size_t, double> frames_of;
-  for (std::size_t i = 0; i < clips_.count(); ++i)
-    if (counts(i)) frames_of[groups_.groups()[i]] += clips_.record(i).seconds() * settings_.fps;
-  if (frames_of.empty()) throw InputError("no clips are left to learn from");
+  bool has_clips = false;
+  for (std::size_t i = 0; i < clips_.count(); ++i) {
+    const std::size_t group = groups_.groups()[i];
+    group_frames_.resize(std::max(group_frames_.size(), group + 1));
+    if (!counts(i)) continue;
+    group_frames_[group] += clips_.record(i).seconds() * settings_.fps;
+    has_clips = true;
+  }
+  if (!has_clips) throw InputError("no clips are left to learn from");
   double end = 0;
   for (std::size_t i = 0; i < clips_.count(); ++i) {
     // A long clip has as many pieces as fit; windows are drawn from views as their frames.
     const double frames = clips_.record(i).seconds() * settings_.fps;
     if (counts(i))
       end += std::max(1.0, frames / choice_.frames) *
-             std::pow(frames_of.at(groups_.groups()[i]), choice_.groups_power - 1);
+             std::pow(group_frames_[groups_.groups()[i]], choice_.groups_power - 1);
     ends_.push_back(end);
   }
 }

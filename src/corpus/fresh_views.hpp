@@ -28,7 +28,7 @@ void add_view(EncodedView view, const ClipStore& clips, const ClipGroups& groups
 struct PieceChoice {
   /// Frames of a piece at the model's rate, before its tempo is another; all of a shorter clip.
   int frames = kPieceFrames;
-  /// People and actions come as their frames to this power (FineTuningSettings::people_power).
+  /// People and actions (ClipGroups) come as their frames to this power.
   double groups_power = 1;
   PeopleChoice people = {};
 };
@@ -44,6 +44,11 @@ class FreshViews {
 
   /// Several threads may call it at once.
   EncodedView make(std::size_t number) const;
+  /// Of a view's clip, as ClipGroups numbers it.
+  std::size_t group_of(const EncodedView& view) const { return groups_.groups()[view.clip]; }
+  /// Frames of each group at the model's rate in the clips that views are made of, by its number.
+  const std::vector<double>& group_frames() const { return group_frames_; }
+  double groups_power() const { return choice_.groups_power; }
   /// Views `first` to `first` + `count` − 1, made by several threads. Each has its `tracks_seen`.
   TrainingSet make_set(std::size_t first, std::size_t count) const;
 
@@ -55,6 +60,7 @@ class FreshViews {
   std::shared_ptr<const PosePool> pool_;
   std::uint64_t seed_;
   PieceChoice choice_;
+  std::vector<double> group_frames_;
   std::vector<double> ends_;  ///< of each clip's share in the draw, added up
 };
 

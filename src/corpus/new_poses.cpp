@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/numbers.hpp"
 #include "base/random_sequence.hpp"
 #include "base/random_streams.hpp"
 #include "motion/rotation_vector.hpp"
@@ -130,7 +131,7 @@ void turn_limbs(HumanoidPoses& poses, const PosePool& pool, double deviation_deg
     const WanderingVector wandering(random);
     if (role == pelvis) continue;
     // The turns of a trunk's joints add up.
-    const double deviation = deviation_deg * kPi / 180 * (role <= head ? 0.5 : 1.0);
+    const double deviation = deviation_deg * kRadiansPerDegree * (role <= head ? 0.5 : 1.0);
     for (int t = 0; t < poses.frames(); ++t) {
       const Matrix3d was = poses.local(t, role);
       poses.local(t, role) =
@@ -158,7 +159,7 @@ void put_arms_anywhere(HumanoidPoses& poses, std::uint64_t seed) {
 void lean(HumanoidPoses& poses, double deviation_deg, std::uint64_t seed) {
   RandomSequence random(seed, random_streams::kNewPoses);
   const Wandering x(random), z(random);
-  const double deviation = deviation_deg * kPi / 180;
+  const double deviation = deviation_deg * kRadiansPerDegree;
   for (int t = 0; t < poses.frames(); ++t) {
     const Matrix3d left = poses.world(t, left_hip), right = poses.world(t, right_hip);
     const double time_s = t * poses.frame_time_s();
@@ -192,7 +193,7 @@ Motion with_new_poses(const Motion& motion, const AugmentationSettings& settings
   const Eigen::VectorXd stood = poses.lowest_foot();
   bool changed = false;
   const auto in_share = [&](Part part, double share, const auto& change) {
-    const std::uint64_t seed = mixed_seed({key.seed, key.step, part});
+    const std::uint64_t seed = mixed_seed({key.seed, key.step, key.stream, part});
     if (!(RandomSequence(seed).uniform() < share)) return;
     changed = true;
     change(seed);

@@ -5,6 +5,8 @@
 #include <optional>
 #include <regex>
 
+#include "motion/body_root.hpp"
+
 namespace mcdbn {
 namespace {
 
@@ -22,7 +24,8 @@ std::optional<std::string> known_by_name(const std::filesystem::path& file, cons
 std::size_t PeopleCount::number_of(const Skeleton& skeleton, const std::string& given) {
   Person person{given, {}};
   if (given.empty())
-    for (const Joint& joint : skeleton.joints) person.bones.push_back(joint.offset.norm());
+    for (int j = body_root(skeleton) + 1; j < skeleton.joint_count(); ++j)
+      person.bones.push_back(skeleton.joints[static_cast<std::size_t>(j)].offset.norm());
   const auto same = [&](const Person& other) {
     return other.given == given &&
            std::equal(person.bones.begin(), person.bones.end(), other.bones.begin(),

@@ -13,7 +13,8 @@ namespace mcdbn {
 // that a model was trained on, as only the names of those are known.
 
 /// Numbers people in the order in which they come, distinguished by the person given or else by the
-/// bones of their skeletons: files of one capture session share them.
+/// bones of their skeletons: files of one capture session share them. Where the body stands in the
+/// rest pose (the OFFSETs up to body_root) is no bone.
 class PeopleCount {
  public:
   std::size_t number_of(const Skeleton& skeleton, const std::string& given = {});

@@ -212,7 +212,7 @@ ClipStore read_clips(const std::vector<ListedClip>& files, const CorpusSettings&
 
 /// What a cache depends on beside what is in the files.
 std::string cache_key(const std::vector<ListedClip>& files, const CorpusSettings& settings) {
-  nlohmann::json key = {{"version", 2},
+  nlohmann::json key = {{"version", 3},
                         {"keep_first_frame", settings.keep_first_frame},
                         {"skeleton", static_cast<int>(settings.skeleton)},
                         {"new_poses", settings.augment.new_poses()},

@@ -11,8 +11,10 @@ namespace mcdbn {
 class LossAccumulator {
  public:
   LossAccumulator(Device& device, std::size_t slots, std::size_t largest_batch);
-  /// slot += scale · Σ (x − y)²  @throws ShapeError
-  void add_squared_error(std::size_t slot, const Rows& x, const Rows& y, float scale);
+  /// slot += scale · Σ (factor · (x − y))²
+  /// @param factor [1 x columns] of each column; none: 1, to the same bits  @throws ShapeError
+  void add_squared_error(std::size_t slot, const Rows& x, const Rows& y, float scale,
+                         const Matrix* factor = nullptr);
   /// slot += scale · Σ cross-entropy of prediction y against target x (both within 0 … 1)
   void add_cross_entropy(std::size_t slot, const Rows& x, const Rows& y, float scale);
   /// Where the sums lie, for kernels that add to them by themselves: slot s is float s.
@@ -22,7 +24,8 @@ class LossAccumulator {
   std::vector<float> read_and_reset();
 
  private:
-  void add(const char* kernel, std::size_t slot, const Rows& x, const Rows& y, float scale);
+  void add(const char* kernel, std::size_t slot, const Rows& x, const Rows& y, float scale,
+           const Matrix* factor = nullptr);
   Matrix partial_, sums_;  ///< [1 x largest_batch], [1 x slots]
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 #include "base/upper_median.hpp"
 #include "device/default_tuning.hpp"
@@ -34,6 +35,12 @@ std::string described(const Tuning& tuning, const Tuning& usual) {
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, tuning.*value);
   std::ranges::replace(text, '_', ' ');
   return text.empty() ? "the default" : text;
+}
+
+/// What only products depend on (gemm.cpp).
+auto product_parameters(const Tuning& tuning) {
+  return std::tie(tuning.product_rows, tuning.product_columns, tuning.transposed_rows,
+                  tuning.transposed_columns, tuning.summed_rows);
 }
 
 /// The rival's time as a share of the best's: the median over pairs measured side by side, as a
@@ -88,13 +95,15 @@ Tuning tuning_for_units(Device& device, const TuningNotice& notice) {
   return is_full ? usual : for_units_of_8_floats(usual);
 }
 
-Tuning fastest_tuning(const DeviceInfo& info, const Tuning& usual, const TunedTime& time_s,
+Tuning fastest_tuning(const DeviceInfo& info, const Tuning& usual, const TunedWork& work,
                       const TuningNotice& notice) {
   Tuning best = usual;
   for (const Tuning& rival : tuning_candidates(info, usual)) {
     if (rival == usual) continue;
     const Tuning merged = with_changes(best, rival, usual);
-    const double ratio = paired_ratio(time_s, merged, best);
+    const bool of_products = product_parameters(rival) != product_parameters(usual);
+    const double ratio =
+        paired_ratio(of_products ? work.products_s : work.minibatches_s, merged, best);
     if (notice)
       notice(fmt::format("{}: {:.2f} of the best so far", described(merged, usual), ratio));
     if (ratio < kWorthwhile) best = merged;
@@ -128,19 +137,22 @@ std::int64_t clblast_threshold(Device& device, double seconds, const TuningNotic
   return 0;
 }
 
-void tune(Device& device, const Tuning& usual, const TunedTime& time_s, double seconds,
+bool tune(Device& device, const Tuning& usual, const TunedWork& work, double seconds,
           const TuningNotice& notice) {
+  const auto on_device = [&](const TunedTime& time_s) {
+    return [&device, time_s](const Tuning& tuning) {
+      device.set_tuning(tuning);
+      return time_s(tuning);
+    };
+  };
   Tuning best = fastest_tuning(
       device.info(), usual,
-      [&](const Tuning& tuning) {
-        device.set_tuning(tuning);
-        return time_s(tuning);
-      },
+      {.products_s = on_device(work.products_s), .minibatches_s = on_device(work.minibatches_s)},
       notice);
   device.set_tuning(best);
   best.clblast_from = clblast_threshold(device, seconds, notice);
   device.set_tuning(best);
-  store_tuning(device.info(), best);
+  return store_tuning(device.info(), best);
 }
 
 }  // namespace mcdbn

@@ -10,6 +10,12 @@ namespace mcdbn {
 
 /// Seconds of the work that counts, on a device that has this tuning.
 using TunedTime = std::function<double(const Tuning&)>;
+/// The work that candidates are measured with. Mini-batches of CRBMs have no products, so their
+/// time says nothing about the parameters of products.
+struct TunedWork {
+  TunedTime products_s;     ///< for a candidate that changes a parameter of products (gemm.cl)
+  TunedTime minibatches_s;  ///< for all others
+};
 /// Hears of each measurement.
 using TuningNotice = std::function<void(const std::string&)>;
 
@@ -17,7 +23,7 @@ using TuningNotice = std::function<void(const std::string&)>;
 Tuning tuning_for_units(Device& device, const TuningNotice& notice = {});
 
 /// The fastest that one parameter changed after another leads to from `usual` (tuning_candidates).
-Tuning fastest_tuning(const DeviceInfo& info, const Tuning& usual, const TunedTime& time_s,
+Tuning fastest_tuning(const DeviceInfo& info, const Tuning& usual, const TunedWork& work,
                       const TuningNotice& notice = {});
 
 /// The fewest multiply-adds from which CLBlast's product takes less time than ours and is right; 0
@@ -26,8 +32,9 @@ Tuning fastest_tuning(const DeviceInfo& info, const Tuning& usual, const TunedTi
 std::int64_t clblast_threshold(Device& device, double seconds, const TuningNotice& notice = {});
 
 /// Finds both, sets them on the device and stores them in the user's cache folder.
-/// @param usual where to begin  @param seconds for each measurement of a product
-void tune(Device& device, const Tuning& usual, const TunedTime& time_s, double seconds,
+/// @param usual where to begin  @param seconds for each measurement by clblast_threshold
+/// @return whether they could be stored
+bool tune(Device& device, const Tuning& usual, const TunedWork& work, double seconds,
           const TuningNotice& notice = {});
 
 }  // namespace mcdbn

@@ -90,11 +90,11 @@ std::optional<Tuning> load_tuning(const DeviceInfo& info) {
   return std::nullopt;
 }
 
-void store_tuning(const DeviceInfo& info, const Tuning& tuning) {
+bool store_tuning(const DeviceInfo& info, const Tuning& tuning) {
   nlohmann::json json = {{"clblast_from", tuning.clblast_from}};
   for (const TuningField& field : kTuningFields)
     json[std::string(field.name)] = tuning.*field.value;
-  write_cache_entry(kKind, key_of(info), json.dump());
+  return write_cache_entry(kKind, key_of(info), json.dump());
 }
 
 }  // namespace mcdbn

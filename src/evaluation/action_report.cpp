@@ -16,6 +16,8 @@ namespace {
 
 using Clips = std::vector<const ReportClip*>;
 
+constexpr int kBins = 20;  // of a histogram
+
 void check(const std::string& action, const Clips& clips) {
   if (clips.empty()) throw ShapeError(fmt::format("{}: no clip to report on", action));
   for (const ReportClip* clip : clips)
@@ -88,7 +90,7 @@ const DistributionFit* CorrelationReport::weibull() const {
 
 CorrelationReport correlation_report(std::vector<double> values) {
   CorrelationReport report;
-  report.statistics = summarize(values);
+  report.statistics = summarize(values, kBins);
   std::vector<double> finite;
   std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
                [](double value) { return std::isfinite(value); });

@@ -25,7 +25,7 @@ struct SummaryStatistics {
 };
 
 /// @throws ConfigError unless bins > 0
-SummaryStatistics summarize(const std::vector<double>& values, int bins = 20);
+SummaryStatistics summarize(const std::vector<double>& values, int bins);
 
 /// Counts over a range of one's own, so that two histograms can be drawn over each other. What lies
 /// outside of it, or is NaN, is not counted. @throws ConfigError unless bins > 0 and low <= high

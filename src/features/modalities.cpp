@@ -1,10 +1,10 @@
 #include "mcdbn/features/modalities.hpp"
 
 #include <Eigen/Geometry>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "mcdbn/camera/level_view.hpp"
 
 namespace mcdbn {
@@ -91,7 +91,7 @@ Camera Modalities::assumed_camera(const AssumedView& view, int width_px, int hei
   Camera assumed = camera_at_origin(placement);
   // A camera that is turned clockwise sees the world turned the other way.
   assumed.camera_from_world =
-      Eigen::AngleAxisd(-roll_deg * std::numbers::pi / 180, Eigen::Vector3d::UnitZ()) *
+      Eigen::AngleAxisd(-roll_deg * kRadiansPerDegree, Eigen::Vector3d::UnitZ()) *
       assumed.camera_from_world;
   return assumed;
 }

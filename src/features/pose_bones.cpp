@@ -27,9 +27,9 @@ std::vector<PoseBone> pose_bones(const PoseFeatures& features) {
     const auto block = std::find(features.joints().begin(), features.joints().end(), j);
     if (block != features.joints().end())
       turned[j].block = static_cast<int>(block - features.joints().begin());
-    if (joint.parent < 0 || j == features.root()) continue;
+    if (joint.parent < 0 || j <= features.root()) continue;  // joints before the root are above it
     const Turned& parent = turned[joint.parent];
-    if (parent.block < 0) continue;  // above the root
+    if (parent.block < 0) continue;  // turned by no orientation
     const double* channels = features.fixed_channels().data() + skeleton.first_channel(j);
     if (turned[j].block < 0) {
       turned[j].block = parent.block;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion/humanoid.hpp"
 #include "motion/body_size.hpp"
 #include "motion/joint_matching.hpp"
 
@@ -79,8 +80,8 @@ PoseFeatures PoseFeatures::fit(const std::vector<const Motion*>& clips) {
       constants[k] = definition.offset[axis_of(channel)] + mean_displacement(clips, joint, channel);
     }
   }
-  result.find_leading_axes();
-  return result;
+  return restored(std::move(result.skeleton_), result.root_, std::move(result.joints_),
+                  result.constant_channels_);
 }
 
 int PoseFeatures::dimension() const {
@@ -150,16 +151,17 @@ MatrixD PoseFeatures::turned(const MatrixD& features,
 }
 
 PoseFeatures PoseFeatures::restored(Skeleton skeleton, int root, std::vector<int> joints,
-                                    RowVectorD fixed_channels) {
+                                    const RowVectorD& fixed_channels) {
   const auto exists = [&](int joint) { return joint >= 0 && joint < skeleton.joint_count(); };
   if (!exists(root) || !std::all_of(joints.begin(), joints.end(), exists) ||
       fixed_channels.size() != skeleton.channel_count())
     throw InputError("pose features: sizes that do not fit together; the model file is damaged");
+  Motion fixed = with_humanoid_orders({std::move(skeleton), 1.0, fixed_channels});
   PoseFeatures result;
-  result.skeleton_ = std::move(skeleton);
+  result.skeleton_ = std::move(fixed.skeleton);
   result.root_ = root;
   result.joints_ = std::move(joints);
-  result.constant_channels_ = std::move(fixed_channels);
+  result.constant_channels_ = fixed.channels.row(0);
   result.find_leading_axes();
   return result;
 }

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "base/numbers.hpp"
 #include "base/upper_median.hpp"
 #include "fitting/camera_angles.hpp"
+#include "fitting/prior_deviations.hpp"
 #include "fitting/robust_residuals.hpp"
 #include "fitting/rotation.hpp"
 #include "fitting/turned_bones.hpp"
@@ -55,6 +58,13 @@ std::vector<BoneKind> kinds_of(const std::vector<int>& lengths, const PoseFeatur
 
 }  // namespace
 
+Camera fitted_camera(const PosteriorPoint& point, Camera assumed) {
+  assumed.camera_from_world = rotation_of(point.lean) * assumed.camera_from_world;
+  assumed.fx_px *= std::exp(point.log_focal);
+  assumed.fy_px *= std::exp(point.log_focal);
+  return assumed;
+}
+
 ClipEvidence::ClipEvidence(const PoseFeatures& features, const Motion& answer,
                            const MatrixD& travelled, const TrackRays& track, const Camera& camera)
     : skeleton_(answer.skeleton), units_per_m_(file_units_per_metre(answer.skeleton)) {
@@ -100,6 +110,15 @@ ClipEvidence::ClipEvidence(const PoseFeatures& features, const Motion& answer,
   clip.planted = MatrixD::Zero(answer.frames(), std::ssize(feet_));
 }
 
+void ClipEvidence::set_doubts(const PosePrior& prior, const Modalities& modalities,
+                              bool body_unknown, std::optional<CameraDoubt> camera,
+                              const TrackFitSettings& settings) {
+  clip.turn_deviation_rad = fitted_turn_deviations_rad(prior, modalities, settings);
+  clip.root_m_s2 = fitted_root_acceleration_deviation_m_s2(prior, modalities, settings);
+  clip.body_unknown = body_unknown;
+  clip.camera = std::move(camera);
+}
+
 void ClipEvidence::find_planted(const Motion& motion) {
   const MatrixD positions = joint_positions(motion);
   for (Eigen::Index t = 1; t < clip.planted.rows(); ++t) {
@@ -107,7 +126,7 @@ void ClipEvidence::find_planted(const Motion& motion) {
     for (const int foot : feet_) lowest = std::min(lowest, step_to(positions, foot, t).height);
     for (std::size_t f = 0; f < feet_.size(); ++f) {
       const JointStep step = step_to(positions, feet_[f], t);
-      clip.planted(t, static_cast<Eigen::Index>(f)) = kPlantedInAnswer.surely(
+      clip.planted(t, static_cast<Eigen::Index>(f)) = kPlantedInAnswer.confidence(
           (step.height - lowest) / units_per_m_, step.moved.norm() / units_per_m_ * motion.fps());
     }
   }
@@ -129,11 +148,12 @@ Eigen::VectorXd ClipEvidence::ground(const PosteriorPoint& point) const {
   return ground;
 }
 
-ExpectedLean ClipEvidence::balanced(const Eigen::Vector3d& upright,
-                                    const TrackFitSettings& settings) const {
-  const Eigen::Vector3d up = upright.normalized();
-  const double speed = usual_speed_m_s() / settings.balance_speed_m_s;
-  const double deviation_rad = settings.balance_deg * kRadiansPerDegree * (1 + speed * speed);
+ExpectedLean ClipEvidence::balanced(const Stance& stance, const TrackFitSettings& settings) const {
+  const Eigen::Vector3d up = stance.upright.normalized();
+  const double speed = usual_speed_m_s() / settings.balance_speed_m_s,
+               bent = stance.bent_legs / settings.balance_bent_legs;
+  const double deviation_rad =
+      settings.balance_deg * kRadiansPerDegree * (1 + speed * speed) * (1 + bent * bent);
   return {pitch_rad(up) - pitch_rad(clip.up), roll_from_to_rad(clip.up, up), deviation_rad,
           deviation_rad};
 }
@@ -158,7 +178,7 @@ MatrixD ClipEvidence::root(const PosteriorPoint& point, double scale, const Came
          camera.camera_from_world;
 }
 
-Skeleton ClipEvidence::body(const PosteriorPoint& point) const {
+FittedBody ClipEvidence::body(const PosteriorPoint& point) const {
   Skeleton body = skeleton_;
   for (std::size_t joint = 0; joint < body.joints.size(); ++joint) {
     const int turn = turn_above_[joint];
@@ -166,7 +186,9 @@ Skeleton ClipEvidence::body(const PosteriorPoint& point) const {
       body.joints[joint].offset *=
           std::exp(point.log_lengths[clip.lengths[static_cast<std::size_t>(turn)]]);
   }
-  return body;
+  const double scale = units_per_m_ / file_units_per_metre(body);
+  for (Joint& joint : body.joints) joint.offset *= scale;
+  return {std::move(body), scale};
 }
 
 double ClipEvidence::usual_residual(const PosteriorPoint& point, Eigen::Index frames) const {

@@ -2,9 +2,20 @@
 
 #include "camera/track_rays.hpp"
 #include "fitting/clip_posterior.hpp"
-#include "mcdbn/features/pose_features.hpp"
+#include "fitting/stance.hpp"
+#include "mcdbn/features/modalities.hpp"
 
 namespace mcdbn {
+
+/// The assumed camera with the point's lean and focal length. Its place stays.
+Camera fitted_camera(const PosteriorPoint& point, Camera assumed);
+
+/// A body of 1.7 m, as the camera's metres are meant. A single camera does not determine the scale:
+/// with distances from the camera multiplied by `scale` the body looks as the point has it.
+struct FittedBody {
+  Skeleton skeleton;
+  double scale = 1;
+};
 
 /// A network's answer and the track that it is fitted to, as the posterior takes them.
 class ClipEvidence {
@@ -15,8 +26,11 @@ class ClipEvidence {
   ClipEvidence(const PoseFeatures& features, const Motion& answer, const MatrixD& travelled,
                const TrackRays& track, const Camera& camera);
 
-  PosteriorClip clip;  ///< deviations and planted feet still to be set
+  PosteriorClip clip;  ///< doubts and planted feet still to be set
 
+  /// How far the prior may be off, and what is not known besides, into `clip`.
+  void set_doubts(const PosePrior& prior, const Modalities& modalities, bool body_unknown,
+                  std::optional<CameraDoubt> camera, const TrackFitSettings& settings);
   /// Which feet stand in a motion of the same skeleton's joints, into `clip`: by how low and slow
   /// they are (kPlantedInAnswer), the ground being the lowest foot of the frame.
   void find_planted(const Motion& motion);
@@ -25,17 +39,16 @@ class ClipEvidence {
   /// as before where none does. @return as PosteriorPoint::ground_m
   Eigen::VectorXd ground(const PosteriorPoint& point) const;
   /// How the camera stands if the body's middle is, on average, straight above the feet.
-  /// Who moves fast leans, and that is less certain.
-  /// @param upright from feet to middle, camera axes, any length
-  ExpectedLean balanced(const Eigen::Vector3d& upright, const TrackFitSettings& settings) const;
+  /// That is less certain of who moves fast, and so leans, and of who sits or squats.
+  ExpectedLean balanced(const Stance& stance, const TrackFitSettings& settings) const;
 
   /// The answer's features, turned. @return [frames x dimension] along the camera's axes
   MatrixD turned(MatrixD features, const PosteriorPoint& point) const;
   /// Its root. @param scale of distances from the camera  @param camera that sees it
   /// @return [frames x 3] world, file units
   MatrixD root(const PosteriorPoint& point, double scale, const Camera& camera) const;
-  /// Its body. @return the answer's skeleton, bones as long as the point has them
-  Skeleton body(const PosteriorPoint& point) const;
+  /// Its body: the answer's skeleton, with the proportions that the point has.
+  FittedBody body(const PosteriorPoint& point) const;
 
   /// How far from the rays the joints of the first frames are: 1.4826 times the median residual,
   /// x/z and y/z, times the root of its confidence; 0 where nothing is seen.

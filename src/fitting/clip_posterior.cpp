@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
 #include <utility>
 
@@ -96,6 +97,20 @@ void PosteriorPoint::take_shared(const PosteriorPoint& other) {
   log_focal = other.log_focal;
 }
 
+std::size_t most_seen(const PosteriorClip& clip, const std::vector<ClipWindow>& windows) {
+  const auto seen_in = [&](const ClipWindow& window) {
+    std::ptrdiff_t joints = 0;
+    for (Eigen::Index t = window.first; t < window.end(); ++t)
+      joints += std::ranges::count_if(clip.seen[static_cast<std::size_t>(t)],
+                                      [](const SeenJoint& joint) { return joint.confidence > 0; });
+    return joints;
+  };
+  std::vector<std::pair<std::ptrdiff_t, std::ptrdiff_t>> ranks;
+  for (const ClipWindow& window : windows)
+    ranks.emplace_back(seen_in(window), -std::abs(std::ssize(ranks) - std::ssize(windows) / 2));
+  return static_cast<std::size_t>(std::ranges::max_element(ranks) - ranks.begin());
+}
+
 PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
                            const TrackFitSettings& settings, PosteriorPoint from,
                            SharedUnknowns shared, double small_gain, const WindowSizes& sizes) {
@@ -110,10 +125,10 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
   std::vector<std::size_t> others(windows.size());
   std::iota(others.begin(), others.end(), 0);
   if (shared == SharedUnknowns::to_be_found) {
-    const std::size_t middle = windows.size() / 2;
-    parts[middle] = solved(windows[middle], true);
-    start_as_seen(from, clip, windows[middle], parts[middle]);
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(middle));
+    const std::size_t first = most_seen(clip, windows);
+    parts[first] = solved(windows[first], true);
+    start_as_seen(from, clip, windows[first], parts[first]);
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(first));
   }
   on_two_threads(others.size(),
                  [&](std::size_t i) { parts[others[i]] = solved(windows[others[i]], false); });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -83,9 +84,14 @@ inline constexpr double kSmallGainOfDetector = 1e-2;
 
 /// What all frames share: body, ground and camera.
 enum class SharedUnknowns {
-  to_be_found,  ///< by the middle one of several windows, which the others then wait for
+  to_be_found,  ///< by one of several windows (most_seen), which the others then wait for
   as_found,     ///< a clip of several windows takes them as they stand; a single window finds them
 };
+
+/// The window that determines what all frames share: the one in whose frames the most joints are
+/// seen; of several, the one nearest to the middle of the clip.
+/// @param windows of the clip, one at least  @return which of them
+std::size_t most_seen(const PosteriorClip& clip, const std::vector<ClipWindow>& windows);
 
 /// The likeliest motion given prior and track: nonlinear least squares over all frames at once, of
 /// the costs in terms/. Long clips are solved in windows that overlap.

@@ -22,8 +22,8 @@ struct WindowSizes {
   Eigen::Index overlap;
 };
 inline constexpr WindowSizes kAllFrames{300, 30};
-/// Where there are but a few frames a second. The middle window, which all others wait for, is
-/// short; its frames still span more seconds than one of kAllFrames.
+/// Where there are but a few frames a second. The window that all others wait for is short; its
+/// frames still span more seconds than one of kAllFrames.
 inline constexpr WindowSizes kFewFrames{150, 10};
 
 /// Every frame is in one window at least; neighbours share twice the overlap. All have as many of

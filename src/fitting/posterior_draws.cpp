@@ -124,12 +124,11 @@ std::vector<PosteriorPoint> posterior_draws(const PosteriorClip& clip, const Ray
     return WindowPosterior(derivatives,
                            derivatives.cols() - window.frames * (likeliest.turns.cols() + 3));
   };
-  // The middle window determines the body, as in most_likely.
   std::vector<Eigen::VectorXd> bodies(count, Eigen::VectorXd::Zero(likeliest.log_lengths.size()));
   if (lengths > 0) {
-    const WindowPosterior middle = posterior_of(windows[windows.size() / 2]);
+    const WindowPosterior determining = posterior_of(windows[most_seen(clip, windows)]);
     for (std::size_t i = 0; i < count; ++i) {
-      bodies[i] = settings.spread * middle.draw_lengths(normals(seed, i, kBody, lengths));
+      bodies[i] = settings.spread * determining.draw_lengths(normals(seed, i, kBody, lengths));
       draws[i].log_lengths += bodies[i];
     }
   }

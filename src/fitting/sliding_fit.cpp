@@ -8,9 +8,7 @@
 #include "base/upper_median.hpp"
 #include "fitting/prior_deviations.hpp"
 #include "fitting/root_trajectory.hpp"
-#include "fitting/rotation.hpp"
 #include "fitting/tracked_joints.hpp"
-#include "fitting/upright.hpp"
 #include "fitting/usual_body.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/body_size.hpp"
@@ -26,8 +24,8 @@ constexpr int kIterations = 2;
 constexpr double kSmallGain = 1e-3;
 /// Solutions of so long a time give an estimate of the track's lasting noise.
 constexpr double kLearned_s = 0.2;
-/// So much of the past is solved again: the middle window of fit_to_track, which finds body and
-/// camera, is as long. With 8 s the answer is 0.6 mm further from that of the whole clip.
+/// So much of the past is solved again: the window of fit_to_track that finds body and camera is as
+/// long. With 8 s the answer is 0.6 mm further from that of the whole clip.
 constexpr double kLookedAt_s = 15;
 /// How often it is; while the clip is short, after half as many frames again.
 constexpr double kLookEvery_s = 0.5;
@@ -139,19 +137,14 @@ ClipEvidence SlidingFit::evidence_of(const ClipRows& rows, const Motion& answer)
       travelled_way(features.root_features(rows.mean).rightCols(3), modalities_.fps);
   ClipEvidence evidence(features, answer, units_per_m_ * travelled_m * assumed_.camera_from_world,
                         track_rays(names_, rows.track, assumed_), assumed_);
-  PosteriorClip& clip = evidence.clip;
-  clip.turn_deviation_rad = fitted_turn_deviations_rad(rows.prior, modalities_, settings_);
-  clip.root_m_s2 = fitted_root_acceleration_deviation_m_s2(rows.prior, modalities_, settings_);
-  clip.body_unknown = body_unknown_;
-  clip.mean_lean = rows.mean_lean;
-  clip.camera = doubt_;
+  evidence.set_doubts(rows.prior, modalities_, body_unknown_, doubt_, settings_);
+  evidence.clip.mean_lean = rows.mean_lean;
   return evidence;
 }
 
 /// @param evidence of an unknown camera, else it stays as it is
 void SlidingFit::expect_balance(ClipEvidence& evidence) const {
-  if (evidence.clip.camera)
-    evidence.clip.camera->balanced = evidence.balanced(upright(), settings_);
+  if (evidence.clip.camera) evidence.clip.camera->balanced = evidence.balanced(stance(), settings_);
 }
 
 void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double track_noise_px) {
@@ -270,12 +263,8 @@ bool SlidingFit::learn(SeenNoise& noise) {
 }
 
 void SlidingFit::take(const PosteriorPoint& point) {
-  double scale = 1;
-  if (body_unknown_) {  // one of 1.7 m, as fit_to_track has it
-    body_ = evidence_->body(point);
-    scale = units_per_m_ / file_units_per_metre(body_);
-    for (Joint& joint : body_.joints) joint.offset *= scale;
-  }
+  auto [body, scale] = evidence_->body(point);
+  body_ = std::move(body);
   if (!camera_known_)
     look_as(point,
             scale * units_per_m_ * (evidence_->clip.root.row(0) + point.shift.row(0)).transpose());
@@ -286,9 +275,7 @@ void SlidingFit::take(const PosteriorPoint& point) {
 /// The world turns about the place where the first frame showed the root, which stays.
 void SlidingFit::look_as(const PosteriorPoint& point, const Eigen::Vector3d& first_root) {
   camera_lean_ = point.lean;
-  camera_.camera_from_world = rotation_of(point.lean) * assumed_.camera_from_world;
-  camera_.fx_px = std::exp(point.log_focal) * assumed_.fx_px;
-  camera_.fy_px = std::exp(point.log_focal) * assumed_.fy_px;
+  camera_ = fitted_camera(point, assumed_);
   if (settled_ == 0) {
     first_root_ = first_root;
     first_height_ =
@@ -298,13 +285,15 @@ void SlidingFit::look_as(const PosteriorPoint& point, const Eigen::Vector3d& fir
 }
 
 /// From the feet to the body's middle, the mean of all frames so far.
-Eigen::Vector3d SlidingFit::upright() const {
-  const auto open = static_cast<double>(motion_.frames() - held_);
-  return upright_sum_ + open * upright_in_camera(motion_, camera_);
+Stance SlidingFit::stance() const {
+  return mean_stance(settled_stance_, static_cast<double>(settled_),
+                     stance_in_camera(motion_, camera_),
+                     static_cast<double>(motion_.frames() - held_));
 }
 
 Eigen::Index SlidingFit::settle(Eigen::Index frames) {
-  upright_sum_ += static_cast<double>(frames) * upright_in_camera(motion_, camera_);
+  settled_stance_ = mean_stance(settled_stance_, static_cast<double>(settled_),
+                                stance_in_camera(motion_, camera_), static_cast<double>(frames));
   settled_ += frames;
   held_ += frames;
   drop_rows(fading_, frames);

@@ -70,7 +70,7 @@ class SlidingFit {
   void begin_fade();
   void fade();
   void look_as(const PosteriorPoint& point, const Eigen::Vector3d& first_root);
-  Eigen::Vector3d upright() const;
+  Stance stance() const;
 
   const Modalities& modalities_;
   TrackFitSettings settings_;
@@ -98,8 +98,8 @@ class SlidingFit {
   std::future<PosteriorPoint> look_;  ///< only what all frames share is taken from it
   MatrixD fading_;  ///< channels of frames that were open when it began, as they were
   Eigen::Index fading_frames_ = 0;  ///< as many as they were
-  // Of all frames that have settled, along the camera's axes, file units:
-  Eigen::Vector3d upright_sum_{0, 0, 0};
+  // Of all frames that have settled:
+  Stance settled_stance_;
   long long settled_ = 0;
   Eigen::Vector3d first_root_{0, 0, 0};
   double first_height_ = 0;  ///< of that root above the ground, as the prior has it

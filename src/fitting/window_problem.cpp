@@ -345,6 +345,24 @@ MarginalPrior WindowProblem::without_first(Eigen::Index frames) {
   return past;
 }
 
+/// Whether the body has legs, and no frame shows a joint that a thigh or a shank moves. Lengths of
+/// hidden legs may be unknowns all the same: those of feet that stand.
+bool WindowProblem::hides_legs() const {
+  const auto is_of_leg = [&](int length) {
+    return static_cast<std::size_t>(length) < clip_.length_kinds.size() &&
+           clip_.length_kinds[static_cast<std::size_t>(length)] == BoneKind::leg;
+  };
+  const auto shows_a_leg = [&](const SeenJoint& joint) {
+    return joint.confidence > 0 && std::ranges::any_of(joint.levers, [&](const Lever& lever) {
+             return is_of_leg(clip_.lengths[static_cast<std::size_t>(lever.turn)]);
+           });
+  };
+  if (std::ranges::none_of(clip_.lengths, is_of_leg)) return false;
+  for (Eigen::Index t = 0; t < x_.turns.rows(); ++t)
+    if (std::ranges::any_of(seen(t), shows_a_leg)) return false;
+  return true;
+}
+
 /// One camera does not distinguish a small person from one far away: a person's size is that of the
 /// legs, and where they are hidden, of what is seen.
 double WindowProblem::proportion_deviation(std::size_t length, bool legs_hidden) const {
@@ -362,18 +380,13 @@ double WindowProblem::proportion_deviation(std::size_t length, bool legs_hidden)
 }
 
 void WindowProblem::add_lengths(Unknowns unknowns) {
-  bool has_legs = false, sees_legs = false;
-  for (std::size_t i = 0; i < clip_.length_kinds.size(); ++i) {
-    if (clip_.length_kinds[i] != BoneKind::leg) continue;
-    has_legs = true;
-    sees_legs |= problem_.HasParameterBlock(&x_.log_lengths[static_cast<Eigen::Index>(i)]);
-  }
+  const bool legs_hidden = hides_legs();
   for (std::size_t i = 0; i < static_cast<std::size_t>(x_.log_lengths.size()); ++i) {
     double& length = x_.log_lengths[static_cast<Eigen::Index>(i)];
     if (unknowns != Unknowns::seen || problem_.HasParameterBlock(&length))
-      problem_.AddResidualBlock(new LinearTerm({1}, Eigen::VectorXd::Zero(1),
-                                               proportion_deviation(i, has_legs && !sees_legs)),
-                                nullptr, &length);
+      problem_.AddResidualBlock(
+          new LinearTerm({1}, Eigen::VectorXd::Zero(1), proportion_deviation(i, legs_hidden)),
+          nullptr, &length);
   }
 }
 

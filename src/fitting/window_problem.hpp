@@ -65,6 +65,7 @@ class WindowProblem {
   void add_feet();
   void add_ground();
   void add_camera();
+  bool hides_legs() const;
   double proportion_deviation(std::size_t length, bool legs_hidden) const;
   void add_lengths(Unknowns unknowns);
   void add_past();

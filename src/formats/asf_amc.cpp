@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <numbers>
 
+#include "base/numbers.hpp"
 #include "formats/asf_skeleton.hpp"
 #include "formats/bvh_parser.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -47,7 +47,7 @@ class AmcParser {
   Motion parse() {
     std::string_view word = cursor_.next();
     for (; !word.empty() && word.front() == ':'; word = cursor_.next())
-      if (same_word(word, ":radians")) degrees_per_angle_ = 180 / std::numbers::pi;
+      if (same_word(word, ":radians")) degrees_per_angle_ = 1 / kRadiansPerDegree;
     std::vector<RowVectorD> frames;
     while (!word.empty()) {
       check_frame_number(word);

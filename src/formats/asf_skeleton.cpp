@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 
+#include "base/numbers.hpp"
 #include "formats/bvh_parser.hpp"
 
 namespace mcdbn {
@@ -85,7 +85,7 @@ class AsfParser {
         const std::string_view unit = cursor_.next();
         if (!same_word(unit, "deg") && !same_word(unit, "rad"))
           cursor_.fail(fmt::format("angles are in {}; deg or rad is wanted", shown(unit)));
-        degrees_per_angle_ = same_word(unit, "rad") ? 180 / std::numbers::pi : 1;
+        degrees_per_angle_ = same_word(unit, "rad") ? 1 / kRadiansPerDegree : 1;
       } else {
         cursor_.rest_of_line();
       }
@@ -118,7 +118,7 @@ class AsfParser {
     std::string_view word = cursor_.next();
     for (; !opens_section(word); word = cursor_.next()) {
       if (!same_word(word, "begin"))
-        cursor_.fail(fmt::format("{} where a bone begins; `begin` is wanted", shown(word)));
+        cursor_.fail(fmt::format("{} where a bone begins; 'begin' is wanted", shown(word)));
       add_bone();
     }
     return word;
@@ -236,9 +236,8 @@ class AsfParser {
 Eigen::Matrix3d turn_of(const std::vector<int>& order, const std::vector<double>& angles_deg) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   for (std::size_t i = 0; i < order.size(); ++i)
-    turn =
-        Eigen::AngleAxisd(angles_deg[i] * std::numbers::pi / 180, Eigen::Vector3d::Unit(order[i])) *
-        turn;
+    turn = Eigen::AngleAxisd(angles_deg[i] * kRadiansPerDegree, Eigen::Vector3d::Unit(order[i])) *
+           turn;
   return turn;
 }
 

@@ -5,8 +5,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <opencv2/core/eigen.hpp>
+#include <string_view>
 
+#include "base/lower_extension.hpp"
 #include "base/text_file.hpp"
 #include "formats/camera_formats.hpp"
 #include "formats/camera_parts.hpp"
@@ -64,18 +67,22 @@ CameraFormat opencv_camera_format() {
           recognises, read};
 }
 
+bool has_camera_ending(const std::filesystem::path& path) {
+  constexpr std::array<std::string_view, 4> kEndings{".yml", ".yaml", ".xml", ".json"};
+  return std::ranges::find(kEndings, lower_extension(path)) != kEndings.end();
+}
+
 void write_camera(const std::filesystem::path& path, const Camera& camera) {
-  const std::string extension = path.extension().string();
-  constexpr std::string_view kFormats[] = {".yml", ".yaml", ".xml", ".json"};
-  if (std::find(std::begin(kFormats), std::end(kFormats), extension) == std::end(kFormats)) {
+  if (!has_camera_ending(path)) {
     throw InputError(
         fmt::format("{}: no camera format has the ending '{}'; use .yml, .xml or .json",
-                    path.string(), extension));
+                    path.string(), path.extension().string()));
   }
   std::string text;
   try {
     // In memory the name only chooses the format.
-    cv::FileStorage storage("camera" + extension, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    cv::FileStorage storage("camera" + lower_extension(path),
+                            cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
     cv::Mat rotation;
     cv::eigen2cv(camera.camera_from_world, rotation);
     storage << "image_width" << camera.width_px << "image_height" << camera.height_px;

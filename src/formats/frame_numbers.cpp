@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <numeric>
 #include <set>
 
 namespace mcdbn {
@@ -50,6 +51,16 @@ std::vector<std::optional<long long>> frame_numbers(const std::vector<std::strin
     if (std::from_chars(digits.data(), digits.data() + digits.size(), number).ec == std::errc())
       numbers.back() = number;
   }
+  return numbers;
+}
+
+std::vector<std::optional<long long>> numbers_of_files(
+    const std::vector<std::filesystem::path>& files) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : files) names.push_back(file.stem().string());
+  std::vector<std::optional<long long>> numbers = frame_numbers(names);
+  if (std::ranges::none_of(numbers, [](const auto& number) { return number.has_value(); }))
+    std::iota(numbers.begin(), numbers.end(), 0LL);
   return numbers;
 }
 

@@ -68,7 +68,7 @@ std::size_t joint_count(const SeenPeople& people, const std::string& file) {
 }
 
 /// Whether the names are those of a skeleton's joints: as such they are all of a person's limbs,
-/// and more are known than as places that detectors see (whose `LeftFoot` are the toes).
+/// and more are known than as places that detectors see (whose `LeftFoot` may be the toes).
 bool are_a_skeletons(const std::vector<std::string>& names) {
   if (are_a_detectors(names)) return false;
   const SkeletonRoles roles = roles_by_name(names);

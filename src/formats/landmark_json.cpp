@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
@@ -65,7 +66,8 @@ std::vector<std::string> keys_by_number(std::vector<std::string> keys) {
 
 struct LandmarkBody {
   SeenPerson person;
-  /// [landmarks] The number behind x and y, a confidence or a depth; -1: no list of three.
+  /// [landmarks] The number behind x and y, a confidence or a depth, 1 where it is null; -1: no
+  /// list of three.
   std::vector<double> thirds;
 };
 
@@ -180,6 +182,9 @@ class LandmarkReader {
     body.thirds.assign(body.thirds.size(), -1);
   }
 
+  /// The confidence of a landmark of which it is not known.
+  static double one_if_null(double confidence) { return std::isnan(confidence) ? 1.0 : confidence; }
+
   static void add_landmark(const JsonPlace& place, LandmarkBody& body) {
     SeenPerson& person = body.person;
     if (place.is_list()) {
@@ -187,8 +192,8 @@ class LandmarkReader {
       if (numbers.size() < 2) place.fail("x and y are needed");
       person.x_px.push_back(numbers[0]);
       person.y_px.push_back(numbers[1]);
-      person.confidence.push_back(numbers.size() > 3 ? numbers[3] : 1.0);
-      body.thirds.push_back(numbers.size() == 3 ? numbers[2] : -1);
+      person.confidence.push_back(numbers.size() > 3 ? one_if_null(numbers[3]) : 1.0);
+      body.thirds.push_back(numbers.size() == 3 ? one_if_null(numbers[2]) : -1);
       return;
     }
     const JsonPlace at = place.has("position") ? place["position"] : place;
@@ -204,7 +209,7 @@ class LandmarkReader {
     for (const auto& [number, frame] : bodies_)
       for (const LandmarkBody& body : frame)
         for (const double third : body.thirds)
-          if (!(third >= 0)) return false;
+          if (third < 0) return false;
     return true;
   }
 

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-
+#include "base/lower_extension.hpp"
 #include "base/text_file.hpp"
 #include "formats/asf_amc.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -14,13 +12,6 @@ namespace fs = std::filesystem;
 
 namespace mcdbn {
 namespace {
-
-bool ends_in(const fs::path& path, std::string_view extension) {
-  std::string own = path.extension().string();
-  std::ranges::transform(own, own.begin(),
-                         [](unsigned char letter) { return std::tolower(letter); });
-  return own == extension;
-}
 
 /// What macOS puts beside files on disks of others: `._NAME`, with no motion in it.
 bool is_of_macos(const fs::path& path) {
@@ -35,7 +26,7 @@ fs::path skeleton_beside(const fs::path& amc) {
   fs::path best, last;
   std::size_t length = 0, count = 0;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (!ends_in(entry.path(), ".asf") || is_of_macos(entry.path())) continue;
+    if (lower_extension(entry.path()) != ".asf" || is_of_macos(entry.path())) continue;
     last = entry.path();
     ++count;
     const std::string own = entry.path().stem().string();
@@ -55,16 +46,17 @@ fs::path skeleton_beside(const fs::path& amc) {
 }  // namespace
 
 bool is_motion_file(const fs::path& path) {
-  return (ends_in(path, ".bvh") || ends_in(path, ".amc")) && !is_of_macos(path);
+  const std::string extension = lower_extension(path);
+  return (extension == ".bvh" || extension == ".amc") && !is_of_macos(path);
 }
 
 fs::path skeleton_file_of(const fs::path& path) {
-  return ends_in(path, ".amc") ? skeleton_beside(path) : fs::path();
+  return lower_extension(path) == ".amc" ? skeleton_beside(path) : fs::path();
 }
 
 Motion parse_motion(std::string_view text, const fs::path& path,
                     std::vector<std::string>* warnings) {
-  if (ends_in(path, ".asf"))
+  if (lower_extension(path) == ".asf")
     throw InputError(
         fmt::format("{}: is a skeleton; name the .amc files that hold its motion", path.string()));
   const fs::path skeleton = skeleton_file_of(path);

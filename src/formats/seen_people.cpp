@@ -61,23 +61,20 @@ void mark_missing(SeenPerson& person) {
 
 SeenPeople people_of_folder(const TrackSource& source,
                             std::vector<SeenPerson> (*people_of)(const JsonPlace& content)) {
-  std::vector<std::string> names;
-  for (const auto& file : source.json_files()) names.push_back(file.stem().string());
-  const auto numbers = frame_numbers(names);
-  const bool numbered = std::ranges::any_of(numbers, [](const auto& n) { return n.has_value(); });
+  const auto numbers = numbers_of_files(source.json_files());
   SeenPeople people;
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
     const auto& file = source.json_files()[i];
-    if (numbered && !numbers[i]) {
+    if (!numbers[i]) {
       people.notices.push_back(
           fmt::format("{} has no frame number and is left out", file.filename().string()));
       continue;
     }
     const nlohmann::json content = source.json_of(file);
     const JsonPlace place(content, file.string());
-    const long long number = numbers[i].value_or(static_cast<long long>(i));
-    if (!people.frames.emplace(number, people_of(place)).second)
-      place.fail(fmt::format("a second file of frame {}; give a folder of one camera", number));
+    if (!people.frames.emplace(*numbers[i], people_of(place)).second)
+      place.fail(
+          fmt::format("a second file of frame {}; give a folder of one camera", *numbers[i]));
   }
   return people;
 }

@@ -194,6 +194,7 @@ class TrackReader {
       }
     }
     const auto missing = track_.x_px.array().isNaN() || track_.y_px.array().isNaN() ||
+                         (track_.x_px.array() == 0 && track_.y_px.array() == 0) ||
                          track_.confidence.array() == 0;
     // Evaluated first: the expression reads what the next lines change.
     const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> gone = missing;

@@ -21,7 +21,7 @@ namespace mcdbn {
 namespace {
 
 bool is_json(std::string_view line) {
-  return line.starts_with('{') || line.starts_with('[');
+  return line.starts_with('{') || line.starts_with('[') || line == "null";
 }
 
 double farthest(const std::vector<SeenPerson>& people) {
@@ -50,7 +50,7 @@ class TrackLines::Reader {
       if (!is_known_) header_ += '\n';  // lines are counted
       return {};
     }
-    if (!is_known_ && header_.find_first_not_of('\n') == std::string::npos) json_ = is_json(line);
+    if (!std::exchange(has_begun_, true)) json_ = is_json(line);
     if (json_) return frame_of(people_of_json(line));
     if (line.front() == '#' || !has_header_) {
       // Comments count as long as no frame was read.
@@ -70,17 +70,30 @@ class TrackLines::Reader {
     throw InputError(fmt::format("{}:{}: {}", name_, line_, what));
   }
 
-  /// A JSON line is an entry of a list of frames, as in a file of such lines.
+  /// The format that recognises it, of all or only that of the lines before it.
+  const TrackFormat* format_of(const TrackSource& source) const {
+    if (format_) return format_->recognises(source) ? format_ : nullptr;
+    const auto found = std::ranges::find_if(
+        track_formats(), [&](const TrackFormat& format) { return format.recognises(source); });
+    return found == track_formats().end() ? nullptr : &*found;
+  }
+
+  /// A JSON line is an entry of a list of frames, as in a file of such lines; or, as COCO's list of
+  /// a frame's people, a file's whole content.
   SeenPeople people_of_json(std::string_view line) {
-    const TrackSource source(fmt::format("[{}]", line), fmt::format("{}:{}", name_, line_));
+    const std::string place = fmt::format("{}:{}", name_, line_);
+    TrackSource source(fmt::format("[{}]", line), place);
     if (!format_ && !options_.format.empty()) format_ = &track_format(options_.format);
     // Of whatever format: a camera may run for long before anybody comes.
     if (shows_nobody(source.json().value())) return {};
-    if (!format_) {
-      for (const TrackFormat& format : track_formats())
-        if (!format_ && format.recognises(source)) format_ = &format;
-      if (!format_) fail("not a frame of a 2D track in a known format");
+    const TrackFormat* format = format_of(source);
+    if (!format) {
+      TrackSource whole(std::string(line), place);
+      format = format_of(whole);
+      if (format) source = std::move(whole);
     }
+    if (!format_) format_ = format;
+    if (!format_) fail("not a frame of a 2D track in a known format");
     try {
       SeenPeople people = format_->read(source);
       if (people.frames.size() > 1) fail("more than one frame in a line");
@@ -162,7 +175,7 @@ class TrackLines::Reader {
   TrackReadOptions options_;
   PersonChoice choice_;
   int line_ = 0;
-  bool json_ = false, has_header_ = false, is_known_ = false, shares_ = false;
+  bool has_begun_ = false, json_ = false, has_header_ = false, is_known_ = false, shares_ = false;
   std::string header_;  ///< of a CSV, with the comments and empty lines around it
   const TrackFormat* format_ = nullptr;
   Track2d like_;

@@ -40,12 +40,22 @@ std::optional<JsonPlace> first_shown(const JsonPlace& list) {
   return {};
 }
 
-/// rtmlib answers with all people of an image at once: people x joints x 2, people x joints.
-bool holds_people(const JsonPlace& instance) {
+/// Whether the keypoints of a JSON object with scores are lists in lists, at least so deep.
+bool nests_keypoints(const JsonPlace& instance, int lists) {
   if (scores_key(instance) == nullptr) return false;
   std::optional<JsonPlace> place = instance["keypoints"];
-  for (int depth = 0; depth < 2 && place; ++depth) place = first_shown(*place);
+  for (int depth = 1; depth < lists && place; ++depth) place = first_shown(*place);
   return place && place->is_list();
+}
+
+/// rtmlib answers with all people of an image at once: people x joints x 2, people x joints.
+bool holds_people(const JsonPlace& instance) {
+  return nests_keypoints(instance, 3);
+}
+
+/// frames x people x joints x 2
+bool holds_frames_of_people(const JsonPlace& instance) {
+  return nests_keypoints(instance, 4);
 }
 
 /// The key of a frame's people; none: no frame.
@@ -208,6 +218,9 @@ void add_content(SeenPeople& people, const JsonPlace& content) {
 
 /// A file of a folder.
 std::vector<SeenPerson> people_of_image(const JsonPlace& content) {
+  // In a file of a whole film the same lists would be its frames.
+  if (is_instance(content) && holds_people(content) && !holds_frames_of_people(content))
+    return people_of_instance(content);
   SeenPeople image;
   add_content(image, content);
   if (image.frames.size() != 1) content.fail("not of one image, as the files of a folder are");

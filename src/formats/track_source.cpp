@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/text_file.hpp"
+#include "formats/frame_numbers.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -78,8 +79,10 @@ std::optional<JsonPlace> TrackSource::first_json_if_any() const {
   if (!is_folder_) return json_if_any();
   if (first_json_) return JsonPlace(*first_json_, name());
   try {
-    for (const fs::path& file : json_files_) {
-      first_json_ = json_of(file);
+    const auto numbers = numbers_of_files(json_files_);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (!numbers[i]) continue;
+      first_json_ = json_of(json_files_[i]);
       if (!first_json_->empty()) return JsonPlace(*first_json_, name());
     }
   } catch (const InputError&) {

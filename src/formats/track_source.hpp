@@ -36,7 +36,7 @@ class TrackSource {
   std::optional<JsonPlace> json_if_any() const;
   /// @throws InputError `file:line: what`
   JsonPlace json() const;
-  /// Of the first file of a folder that is not an empty list (no person was found), or of the file.
+  /// Of a folder's first frame that is not an empty list (no person was found), or of the file.
   std::optional<JsonPlace> first_json_if_any() const;
   /// Of one of json_files(); it is not kept.
   nlohmann::json json_of(const std::filesystem::path& file) const;

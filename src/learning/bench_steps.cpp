@@ -224,7 +224,7 @@ BenchStep mrbm_chain_step(Device& device, std::size_t visible, std::size_t hidde
   MrbmChainOptions options;
   options.steps = steps;
   options.temperature = static_cast<float>(temperature);
-  // The first pass up is the drive alone.
+  // The first pass up has the present modalities' input alone.
   const double multiply_adds = 2.0 * static_cast<double>(steps * visible * hidden);
   return {{{"layer", "mrbm_chain"},
            {"visible", 2 * visible},

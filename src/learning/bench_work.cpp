@@ -42,7 +42,7 @@ std::vector<KernelWork> multi_prediction_work(std::size_t modalities, std::size_
   const double wide_v = padded_units(visible), wide_h = padded_units(hidden);
   const double weights = m * wide_v * wide_h;
   const double stacks = m * t * n * 2.0 * (wide_v + wide_h);
-  // A direction: the present modalities' drive; T downs, T − 1 ups (the first starts from zeros),
+  // A direction: the present modalities' input; T downs, T − 1 ups (the first starts from zeros),
   // and as many of their back-propagation and of their gradients.
   return {{"multi_prediction", m * product * (m - 1.0 + 4.0 * t - 2.0),
            kFloat * (2.0 * weights + m * n * (wide_v + 2.0 * wide_h) + stacks)},

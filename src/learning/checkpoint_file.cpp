@@ -60,17 +60,14 @@ TrainingState::Content content_of(const Safetensors& file, const std::string& pa
 
 void write_checkpoint(const fs::path& path, const CheckpointContent& content) {
   Safetensors file;
-  json about = {{"format_version", kCheckpointVersion},
-                {"over", json::object()},
-                {"stage", content.running},
-                {"done", content.done},
-                {"now", content.now.numbers},
-                {"more", content.more.numbers}};
-  for (const auto& [stage, result] : content.over) {
+  json about = {{"format_version", kCheckpointVersion}, {"over", json::object()},
+                {"stage", content.running_stage},       {"done", content.done_minibatches},
+                {"now", content.running_state.numbers}, {"more", content.extra_state.numbers}};
+  for (const auto& [stage, result] : content.finished_stages) {
     about["over"][stage] = result.numbers;
     put(file, stage, result);
   }
-  put(file, content.running, content.now);
+  put(file, content.running_stage, content.running_state);
   file.metadata[kKey] = about.dump();
   write_safetensors(path, file);
 }
@@ -90,11 +87,11 @@ CheckpointContent read_checkpoint(const fs::path& path) {
   CheckpointContent content;
   const JsonPlace over = about["over"];
   for (const std::string& stage : over.keys())
-    content.over[stage] = content_of(file, path.string(), stage, over[stage]);
-  content.running = about["stage"].text();
-  content.done = about["done"].count(any_seed());
-  content.now = content_of(file, path.string(), content.running, about["now"]);
-  content.more = {numbers_of(about["more"]), {}, path.string()};
+    content.finished_stages[stage] = content_of(file, path.string(), stage, over[stage]);
+  content.running_stage = about["stage"].text();
+  content.done_minibatches = about["done"].count(any_seed());
+  content.running_state = content_of(file, path.string(), content.running_stage, about["now"]);
+  content.extra_state = {numbers_of(about["more"]), {}, path.string()};
   return content;
 }
 

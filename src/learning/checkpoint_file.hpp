@@ -10,11 +10,11 @@ namespace mcdbn {
 
 /// What stands in the file of a checkpoint.
 struct CheckpointContent {
-  std::map<std::string, TrainingState::Content> over;  ///< results of the stages that ended
-  std::string running;                                 ///< the stage that runs; empty: between two
-  std::size_t done = 0;                                ///< its mini-batches
-  TrainingState::Content now;                          ///< its state
-  TrainingState::Content more;                         ///< the training's own numbers
+  std::map<std::string, TrainingState::Content> finished_stages;  ///< their results
+  std::string running_stage;                                      ///< empty: between two
+  std::size_t done_minibatches = 0;                               ///< of the running stage
+  TrainingState::Content running_state;                           ///< of the running stage
+  TrainingState::Content extra_state;                             ///< the training's own numbers
 };
 
 /// Writes atomically. @throws InputError

@@ -45,7 +45,7 @@ Checkpoints::Checkpoints(Options options) : options_(std::move(options)) {
   }
   if (!damage.empty() && !found_) throw InputError(damage);
   if (!damage.empty()) options_.warn(damage + "; gone on from the one before it");
-  if (found_) restore(found_->more, options_.more);
+  if (found_) restore(found_->extra_state, options_.extra_state);
 }
 
 std::optional<std::size_t> Checkpoints::begin(const std::string& stage, Visit result,
@@ -54,24 +54,25 @@ std::optional<std::size_t> Checkpoints::begin(const std::string& stage, Visit re
   result_ = std::move(result);
   running_ = std::move(running);
   if (!found_) return 0;
-  if (const auto over = found_->over.find(stage); over != found_->over.end()) {
-    restore(over->second, result_);
-    over_[stage] = std::move(over->second);
+  if (const auto finished = found_->finished_stages.find(stage);
+      finished != found_->finished_stages.end()) {
+    restore(finished->second, result_);
+    finished_[stage] = std::move(finished->second);
     return {};
   }
   const CheckpointContent stages = std::exchange(found_, {}).value();
-  if (stages.running.empty()) return 0;
-  if (stages.running != stage)
+  if (stages.running_stage.empty()) return 0;
+  if (stages.running_stage != stage)
     throw InputError(fmt::format("{}: of another training: it stands in {}, not {}",
-                                 stages.now.file, shown(stages.running), stage));
-  TrainingState::Content now = stages.now;
-  restore(now, result_);
-  restore(now, running_);
-  return stages.done;
+                                 stages.running_state.file, shown(stages.running_stage), stage));
+  TrainingState::Content state = stages.running_state;
+  restore(state, result_);
+  restore(state, running_);
+  return stages.done_minibatches;
 }
 
 void Checkpoints::end() {
-  over_[stage_] = saved(result_);
+  finished_[stage_] = saved(result_);
   stage_.clear();
   result_ = running_ = [](TrainingState&) {};
   try_to_write(0);
@@ -85,7 +86,8 @@ void Checkpoints::write(std::size_t done) {
   });
   const fs::path last = options_.folder / kLast;
   const OutputsAtOnce at_once;
-  write_checkpoint(options_.folder / kNext, {over_, stage_, done, now, saved(options_.more)});
+  write_checkpoint(options_.folder / kNext,
+                   {finished_, stage_, done, now, saved(options_.extra_state)});
   std::error_code error;
   if (fs::exists(last)) fs::rename(last, options_.folder / kPrevious, error);
   fs::rename(options_.folder / kNext, last, error);

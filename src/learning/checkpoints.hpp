@@ -22,7 +22,7 @@ class Checkpoints {
     std::filesystem::path folder;           ///< holds checkpoint.safetensors, and the one before it
     std::chrono::duration<double> every{};  ///< from one to the next
     /// The training's own: what it writes beside its parameters.
-    Visit more = [](TrainingState&) {};
+    Visit extra_state = [](TrainingState&) {};
     /// Hears of one that could not be written; the training goes on.
     std::function<void(const std::string&)> warn = [](const std::string&) {};
   };
@@ -53,7 +53,7 @@ class Checkpoints {
   using Clock = std::chrono::steady_clock;
   Options options_;
   std::optional<CheckpointContent> found_;
-  std::map<std::string, TrainingState::Content> over_;
+  std::map<std::string, TrainingState::Content> finished_;
   std::string stage_;  ///< the running one; empty between two
   Visit result_, running_;
   Clock::time_point last_ = Clock::now();

@@ -4,17 +4,27 @@
 #include <map>
 
 namespace mcdbn {
+namespace {
+
+/// Of each group of clips that are all there is.
+std::map<std::size_t, double> frames_of_groups(const SynchronizedClips& clips) {
+  std::map<std::size_t, double> frames;
+  for (std::size_t i = 0; i < clips.count(); ++i)
+    frames[clips.groups.empty() ? 0 : clips.groups[i]] += static_cast<double>(clips.frames(i));
+  return frames;
+}
+
+}  // namespace
 
 std::vector<double> clip_weights(const SynchronizedClips& clips, double power) {
-  const auto group = [&](std::size_t clip) {
-    return clips.groups.empty() ? 0 : clips.groups[clip];
-  };
-  std::map<std::size_t, double> frames_of;
-  for (std::size_t i = 0; i < clips.count(); ++i)
-    frames_of[group(i)] += static_cast<double>(clips.frames(i));
+  const bool are_pieces = !clips.group_frames.empty();
+  const auto counted = are_pieces ? std::map<std::size_t, double>() : frames_of_groups(clips);
   std::vector<double> weights;
-  for (std::size_t i = 0; i < clips.count(); ++i)
-    weights.push_back(std::pow(frames_of[group(i)], power - 1.0));
+  for (std::size_t i = 0; i < clips.count(); ++i) {
+    const std::size_t group = clips.groups.empty() ? 0 : clips.groups[i];
+    const double frames = are_pieces ? clips.group_frames[group] : counted.at(group);
+    weights.push_back(std::pow(frames, power - clips.drawn_power));
+  }
   return weights;
 }
 

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <numbers>
-
+#include "base/random_phases.hpp"
 #include "device/gemm.hpp"
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
+#include "learning/optimizer_of.hpp"
+#include "learning/rate_schedule.hpp"
+#include "machines/unit_kinds.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -15,13 +16,8 @@ namespace {
 
 /// What is left of the rates.
 double share_of_rate(const CdSettings& settings, double progress) {
-  const double left =
-      settings.cosine ? 0.5 * (1.0 + std::cos(std::numbers::pi * progress)) : 1.0 - progress;
-  return settings.final_rate + (1.0 - settings.final_rate) * left;
-}
-
-OptimizerKind optimizer_of(const CdSettings& settings) {
-  return settings.adam ? OptimizerKind::adam : OptimizerKind::momentum;
+  if (settings.cosine) return cosine_fall(progress, settings.final_rate);
+  return settings.final_rate + (1.0 - settings.final_rate) * (1.0 - progress);
 }
 
 bool is_gaussian_rbm(const CrbmShape& shape) {
@@ -121,13 +117,14 @@ void ContrastiveDivergence::step(const Rows& rows, const CdRule& rule, const Ran
   seen_ = seen;
   optimizer_.next_step();
   run_chain(rows, rule, key);
+  if (!tile_) add_loss(rows.count, losses);
   if (crbm_.has_deviation && rule.deviation_rate > 0.0F)
     learn_deviation(rows.count, rule.deviation_rate);
   if (rule.sparsity_strength > 0.0F) pull_to_target(rows.count, rule);
   if (tile_)
     fused_update(rows, rule, losses);
   else
-    composed_update(rows, rule, losses);
+    composed_update(rows, rule);
   after_update(rule);
 }
 
@@ -175,11 +172,14 @@ void ContrastiveDivergence::learn_deviation(std::size_t count, float rate) {
          to_int(visible_data_.columns()), rate, crbm_.visible_deviation.buffer());
 }
 
-void ContrastiveDivergence::composed_update(const Rows& rows, const CdRule& rule,
-                                            LossAccumulator& losses) {
-  const Rows data(visible_data_, 0, rows.count), reconstruction(visible_, 0, rows.count);
-  losses.add_squared_error(0, data, reconstruction,
-                           1.0F / static_cast<float>(rows.count * crbm_.shape().visible));
+/// While the deviation is still the one that the units are over.
+void ContrastiveDivergence::add_loss(std::size_t count, LossAccumulator& losses) {
+  losses.add_squared_error(0, Rows(visible_data_, 0, count), Rows(visible_, 0, count),
+                           1.0F / static_cast<float>(count * crbm_.shape().visible),
+                           crbm_.has_deviation ? &crbm_.visible_deviation : nullptr);
+}
+
+void ContrastiveDivergence::composed_update(const Rows& rows, const CdRule& rule) {
   composed_gradients(rows);
   optimizer_.update([&rule](const ParameterShape& shape) {
     return shape.name == "A" ? rule.A : shape.name == "B" ? rule.B : rule.W;
@@ -199,10 +199,9 @@ void ContrastiveDivergence::clamp_data(const Rows& rows, const RandomKey& key) {
   }
   if (crbm_.has_deviation) scale_columns(data, crbm_.visible_deviation, true);
   dynamic_biases(crbm_, rows);
-  GemmOptions hidden;
+  GemmOptions hidden = mean_of_units(VisibleKind::binary);
   hidden.bias = &hidden_bias_;
-  hidden.activation = Activation::sigmoid;
-  hidden.sampling = Sampling::bernoulli;
+  hidden.sampling = sampling_of(VisibleKind::binary);
   hidden.sample = &hidden_sample;
   hidden.random = key;
   gemm(data, crbm_.W, Rows(hidden_data_, 0, rows.count), hidden);
@@ -216,26 +215,23 @@ void ContrastiveDivergence::dynamic_biases(const Crbm& machine, const Rows& rows
 void ContrastiveDivergence::gibbs_chain(const Crbm& machine, std::size_t count, const CdRule& rule,
                                         RandomKey key, bool draw_last) {
   const Rows visible_rows(visible_, 0, count), hidden_sample(hidden_sample_, 0, count);
-  const bool is_binary = machine.shape().kind == VisibleKind::binary;
-  GemmOptions visible;
+  GemmOptions visible = mean_of_units(machine.shape().kind);
   visible.bias = &visible_bias_;
-  if (is_binary) visible.activation = Activation::sigmoid;
   if (rule.sample_visible) {
-    visible.sampling = is_binary ? Sampling::bernoulli : Sampling::gaussian;
+    visible.sampling = sampling_of(machine.shape().kind);
     visible.sample = &visible_rows;  // in place of the means
   }
   const std::uint16_t first_phase = key.phase;
   for (std::size_t k = 1; k <= rule.gibbs_steps; ++k) {
     const auto step = static_cast<std::uint16_t>(first_phase + k);
-    key.phase = static_cast<std::uint16_t>(kVisiblePhase + step);
+    key.phase = static_cast<std::uint16_t>(random_phases::kVisibleUnits + step);
     visible.random = key;
     gemm(hidden_sample, machine.W_transposed, visible_rows, visible);
     if (seen_) multiply(visible_rows, Rows(visible_seen_, 0, count));
-    GemmOptions hidden;
+    GemmOptions hidden = mean_of_units(VisibleKind::binary);
     hidden.bias = &hidden_bias_;
-    hidden.activation = Activation::sigmoid;
     if (k < rule.gibbs_steps || draw_last) {
-      hidden.sampling = Sampling::bernoulli;
+      hidden.sampling = sampling_of(VisibleKind::binary);
       hidden.sample = &hidden_sample;
       key.phase = step;
       hidden.random = key;

@@ -62,8 +62,9 @@ class ContrastiveDivergence : public LearningRule {
   void visit_state(TrainingState& state) override;
 
   /// One mini-batch: enqueues and returns. The draws are those of `key` with phase = Gibbs step for
-  /// hidden units, kVisiblePhase + Gibbs step for visible ones.
-  /// Adds the mean squared reconstruction error of a unit to `losses` slot 0.
+  /// hidden units, random_phases::kVisibleUnits + Gibbs step for visible ones.
+  /// Adds the mean squared reconstruction error of a unit to `losses` slot 0, in the data's units
+  /// also where the machine has a deviation.
   /// @param rows the current frames, indexed, at most `largest_batch` of them
   /// @param seen what was seen in the frames' matrix, 1 or 0, in its shape: the rest, which has to
   ///        be 0 there, is no part of the machine in that frame: 0 in every reconstruction too, so
@@ -76,8 +77,6 @@ class ContrastiveDivergence : public LearningRule {
   const std::optional<RowTile>& tile() const { return tile_; }
   /// The gradient of the last step, downhill, where the optimizer is none; for tests.
   CrbmParameters gradients();
-
-  static constexpr std::uint16_t kVisiblePhase = 0x1000;
 
  protected:
   /// From the data to the chain's end.
@@ -107,7 +106,8 @@ class ContrastiveDivergence : public LearningRule {
   Matrix hidden_sample_;                          // composed
 
  private:
-  void composed_update(const Rows& rows, const CdRule& rule, LossAccumulator& losses);
+  void add_loss(std::size_t count, LossAccumulator& losses);
+  void composed_update(const Rows& rows, const CdRule& rule);
   void composed_gradients(const Rows& rows);
   void fused_update(const Rows& rows, const CdRule& rule, LossAccumulator& losses);
   void pull_to_target(std::size_t count, const CdRule& rule);

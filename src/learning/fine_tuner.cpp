@@ -1,13 +1,13 @@
 #include "learning/fine_tuner.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <numeric>
 #include <string>
 
+#include "base/random_phases.hpp"
 #include "base/random_streams.hpp"
 #include "device/kernel_arguments.hpp"
+#include "learning/rate_schedule.hpp"
 #include "learning/squared_loss.hpp"
 
 namespace mcdbn {
@@ -18,10 +18,9 @@ constexpr float kLongestGradient = 1.0F;
 
 /// Adam's rate: rises over the first steps, then falls along a cosine.
 double rate_at(double rate, std::size_t step, std::size_t steps) {
-  constexpr double kRise = 30.0, kEnd = 0.02;
+  constexpr double kRise = 30.0;
   const double progress = static_cast<double>(step) / static_cast<double>(steps);
-  const double fall = kEnd + (1.0 - kEnd) * 0.5 * (1.0 + std::cos(std::numbers::pi * progress));
-  return rate * fall * std::min(1.0, static_cast<double>(step + 1) / kRise);
+  return rate * cosine_fall(progress) * std::min(1.0, static_cast<double>(step + 1) / kRise);
 }
 
 /// Frames that every direction's up-pass needs before the first it can judge.
@@ -37,8 +36,8 @@ SequenceWindows sequence_windows(const Mcdbn& network, const FineTuningSettings&
   SequenceWindows windows;
   windows.count = settings.windows;
   windows.first = longest_history(network);
-  windows.lead = windows.first + settings.settle_frames;
-  windows.frames = windows.lead + settings.window_frames;
+  windows.judged_from = windows.first + settings.settle_frames;
+  windows.frames = windows.judged_from + settings.window_frames;
   return windows;
 }
 
@@ -130,7 +129,7 @@ void FineTuner::step(std::size_t step) {
   for (Direction& direction : directions_) {
     direction.learn(rows, kept, key);
     if (settings_.reverse == 0 || step % kReverseEvery != 0) break;
-    key.phase = static_cast<std::uint16_t>(key.phase + 0x100);
+    key.phase = static_cast<std::uint16_t>(key.phase + random_phases::kPhasesOfDirection);
   }
   UpdateRule rule =
       UpdateRule::adam(static_cast<float>(rate_at(settings_.rate, step, settings_.steps)),

@@ -11,6 +11,7 @@
 #include "learning/divergence_guard.hpp"
 #include "learning/epoch_clock.hpp"
 #include "learning/fine_tuner.hpp"
+#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -100,7 +101,7 @@ class ReportClock {
   double took_s() const { return seconds(begin_); }
   double trained_s() const { return trained_.took_s(); }
   /// To a thousandth.
-  double waited_share() const { return std::round(1e3 * waited_s_ / took_s()) / 1e3; }
+  double waiting_share() const { return std::round(1e3 * waited_s_ / took_s()) / 1e3; }
   void restart() {
     begin_ = Clock::now();
     trained_.restart();
@@ -132,18 +133,38 @@ EpochReport report_of(std::size_t done, const FineTuningSettings& settings, doub
   return report;
 }
 
+/// A source's sequences, which fit the network. @throws ShapeError, InputError
+SynchronizedClips checked_sequences(const SequenceSource& source, const Mcdbn& network) {
+  SynchronizedClips clips = source.sequences();
+  clips.check();
+  if (clips.modalities.size() != network.modality_count())
+    throw ShapeError(fmt::format("fine-tuning: sequences of {} modalities, not {}",
+                                 clips.modalities.size(), network.modality_count()));
+  for (std::size_t m = 0; m < network.modality_count(); ++m) {
+    const std::size_t visible = network.cdbns[m].layers.front().shape().visible;
+    if (clips.modalities[m].dimension() != visible)
+      throw ShapeError(fmt::format("fine-tuning: {} has {} visible units, its sequences {} columns",
+                                   network.modality(m).name, visible,
+                                   clips.modalities[m].dimension()));
+  }
+  return clips;
+}
+
 }  // namespace
 
 FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& source,
                     const SequenceSource* held_out, const LearningSettings& settings,
                     const SequenceLossMaker& make_loss, const EpochObserver& observer,
                     Checkpoints* checkpoints) {
+  if (settings.look_ahead != start.look_ahead)
+    throw ConfigError(fmt::format("`look-ahead` is {}, but {} in the network to start from",
+                                  settings.look_ahead, start.look_ahead));
   const std::size_t steps = settings.fine_tuning.steps;
   const SequenceWindows windows = sequence_windows(start, settings.fine_tuning);
   std::optional<HeldOutWindows> judged;
-  if (held_out) judged.emplace(device, held_out->sequences(), windows, settings, make_loss);
-  const SynchronizedClips clips = source.sequences();
-  clips.check();
+  if (held_out)
+    judged.emplace(device, checked_sequences(*held_out, start), windows, settings, make_loss);
+  const SynchronizedClips clips = checked_sequences(source, start);
   FineTuner tuner(device, start, clips, windows, settings, make_loss);
   HeldOutRecord record;
   DivergenceGuard guard(
@@ -168,7 +189,7 @@ FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& so
     EpochReport report =
         report_of(done, settings.fine_tuning, loss, done - reported, clock.trained_s());
     reported = done;
-    report.waited = clock.waited_share();
+    report.waiting_share = clock.waiting_share();
     if (judged) report.held_out_loss = judged->loss(tuner);
     clock.restart();
     if (observer) observer(report);

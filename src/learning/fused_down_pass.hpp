@@ -15,15 +15,15 @@ namespace mcdbn {
 class FusedDownPass {
  public:
   /// Nothing where the kernels do not fit the device, or no history is seen.
-  static std::optional<FusedDownPass> of(const UnrolledNetwork::Layer& layer, Below below,
+  static std::optional<FusedDownPass> of(const UnrolledNetwork::Layer& layer, InputKind input_kind,
                                          const SequenceWindows& windows);
-  FusedDownPass(const UnrolledNetwork::Layer& layer, Below below, const SequenceWindows& windows,
-                const RowTile& tile);
+  FusedDownPass(const UnrolledNetwork::Layer& layer, InputKind input_kind,
+                const SequenceWindows& windows, const RowTile& tile);
 
-  /// @param drive a and what the layer above gives, of the frames from `first` on
+  /// @param input_from_above a and what the layer above gives, of the frames from `first` on
   ///        [count · (frames − first) x visible]
   /// @param states [rows x visible], the history before `first`; the frames after it are written
-  void forward(const Matrix& drive, const Matrix& states) const;
+  void forward(const Matrix& input_from_above, const Matrix& states) const;
   /// @param errors [at least rows x visible] of the frames, become those by their inputs
   /// @param kept_share of drop-out, after which `states` are
   void backward(const Matrix& states, const Matrix& errors, float kept_share) const;
@@ -32,7 +32,7 @@ class FusedDownPass {
   LaunchSize size() const;
 
   const UnrolledNetwork::Layer* layer_;
-  Below below_;
+  InputKind input_kind_;
   SequenceWindows windows_;
   RowTile tile_;
 };

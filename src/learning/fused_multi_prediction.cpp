@@ -60,7 +60,8 @@ void MultiPrediction::fused_chain(const Part& part) {
          to_int(part.rows), to_int(part.stride), to_int(part.first), to_int(batch_),
          mrbm_.parameters().all().buffer(), mrbm_.transposed().all().buffer(), codes_.buffer(),
          stacked_values_.buffer(), stacked_value_errors_.buffer(), hidden_.buffer(),
-         hidden_errors_.buffer(), drive_.buffer(), drive_error_.buffer(), row_losses_.buffer());
+         hidden_errors_.buffer(), present_input_.buffer(), present_input_error_.buffer(),
+         row_losses_.buffer());
 }
 
 /// Adds up the tiles of every W over pieces of a part's stacks, and the biases' gradients.
@@ -72,7 +73,7 @@ void MultiPrediction::fused_products(const Part& part) {
   launch(device, kernel, {{all_panels(mrbm_, *tile_) * group, pieces() + 1}, {group, 1}},
          mrbm_.layout().buffer(), to_int(part.stride), part.first > 0 ? 1 : 0, codes_.buffer(),
          stacked_values_.buffer(), stacked_value_errors_.buffer(), hidden_.buffer(),
-         hidden_errors_.buffer(), drive_error_.buffer(), partial_.buffer(),
+         hidden_errors_.buffer(), present_input_error_.buffer(), partial_.buffer(),
          to_int(all_units(mrbm_)));
 }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "base/random_phases.hpp"
 #include "base/random_streams.hpp"
 #include "device/pointwise.hpp"
 #include "learning/checkpoints.hpp"
@@ -14,14 +15,13 @@
 #include "learning/history_noise.hpp"
 #include "learning/minibatch.hpp"
 #include "learning/mrbm_rule.hpp"
+#include "learning/overall_progress.hpp"
 #include "learning/persistent_contrastive_divergence.hpp"
+#include "learning/unit_values.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
-
-/// Phases of a layer's random numbers that Gibbs steps do not use (those count from 0).
-enum RandomPhase : std::uint16_t { kShufflePhase = 0x7000, kWeightPhase = 0x7100 };
 
 RandomKey key_of(const LearningSettings& learning, std::uint16_t stream, std::uint32_t step,
                  std::uint16_t phase) {
@@ -67,7 +67,7 @@ void run_epochs(const Stage& stage, MinibatchSchedule& schedule, DivergenceGuard
   std::size_t first = run.done() % batches;
   for (step.epoch = 1; step.epoch <= stage.epochs; ++step.epoch) {
     RandomKey shuffle = random;
-    shuffle.phase = kShufflePhase;
+    shuffle.phase = random_phases::kShuffle;
     shuffle.step = static_cast<std::uint32_t>(step.epoch);
     schedule.shuffle(shuffle);  // each goes on from the one before
     if (step.epoch <= run.done() / batches) continue;
@@ -137,28 +137,6 @@ double mrbm_cost(std::size_t codes, const LearningSettings& learning) {
          static_cast<double>(codes * learning.mrbm_hidden);
 }
 
-/// Turns the progress of each part into that of the whole.
-class OverallProgress {
- public:
-  OverallProgress(EpochObserver observer, double total)
-      : observer_(std::move(observer)), total_(total) {}
-
-  EpochObserver part(double cost) {
-    const double before = done_;
-    done_ += cost;
-    if (!observer_) return {};
-    return [this, before, cost](EpochReport report) {
-      report.overall_progress = (before + cost * report.overall_progress) / total_;
-      observer_(report);
-    };
-  }
-
- private:
-  EpochObserver observer_;
-  double total_;
-  double done_ = 0;
-};
-
 const CdSettings& settings_for(const CrbmShape& shape, const LearningSettings& learning) {
   return shape.kind == VisibleKind::gaussian ? learning.gaussian : learning.binary;
 }
@@ -172,7 +150,7 @@ double cdbn_cost(const std::vector<CrbmShape>& layers, const LearningSettings& l
 CrbmParameters small_weights(const CrbmShape& shape, const LearningSettings& learning,
                              std::uint16_t stream) {
   return CrbmParameters::random(shape, settings_for(shape, learning).initial_deviation,
-                                key_of(learning, stream, 0, kWeightPhase));
+                                key_of(learning, stream, 0, random_phases::kFirstWeights));
 }
 
 MatrixF logit(const MatrixF& p) {
@@ -234,54 +212,8 @@ std::vector<MatrixF> some_codes(std::span<const Sequences> codes,
   return gathered;
 }
 
-}  // namespace
-
-MrbmParameters small_weights(const MrbmShape& shape, std::span<const Sequences> codes,
-                             const LearningSettings& learning) {
-  MrbmParameters initial =
-      MrbmParameters::random(shape, learning.mrbm.initial_deviation,
-                             key_of(learning, random_streams::kMrbm, 0, kWeightPhase));
-  // So that the mean field starts near the codes' own means rather than at one half.
-  for (std::size_t m = 0; m < codes.size(); ++m)
-    initial.a[m] = shape.modalities[m].kind == VisibleKind::binary ? logit(mean_of(codes[m]))
-                                                                   : mean_of(codes[m]);
-  return initial;
-}
-
-std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings& learning,
-                                    VisibleKind kind) {
-  std::vector<CrbmShape> shapes{{visible, learning.hidden, learning.order, kind}};
-  while (shapes.size() < learning.layers)
-    shapes.push_back({learning.hidden, learning.hidden, learning.order, VisibleKind::binary});
-  return shapes;
-}
-
-TrainedCdbn train_cdbn(Device& device, Sequences visible, const std::vector<CrbmShape>& layers,
-                       const LearningSettings& learning, std::uint16_t first_stream,
-                       const EpochObserver& observer, const std::string& name, const Cdbn* start,
-                       Checkpoints* checkpoints) {
-  TrainedCdbn trained;
-  trained.code = std::move(visible);
-  OverallProgress progress(observer, cdbn_cost(layers, learning));
-  std::uint16_t stream = first_stream;
-  for (const CrbmShape& shape : layers) {
-    const CdSettings& settings = settings_for(shape, learning);
-    const std::size_t layer = trained.cdbn.layers.size();
-    if (shape.visible != trained.code.values.columns())
-      throw ShapeError(fmt::format("CDBN: layer {} has {} visible units, what it learns from {}",
-                                   layer, shape.visible, trained.code.values.columns()));
-    trained.cdbn.layers.push_back(train_crbm(
-        device, trained.code,
-        start ? start->layers.at(layer).to_host() : small_weights(shape, learning, stream),
-        settings, learning, stream, progress.part(crbm_cost(shape, settings)),
-        fmt::format("{}.{}", name, layer), checkpoints));
-    ++stream;
-    trained.code = up_pass(trained.cdbn.layers.back(), trained.code);
-  }
-  return trained;
-}
-
-Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
+/// train_crbm() on values that are known to suit.
+Crbm learn_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
                 const CdSettings& settings, const LearningSettings& learning, std::uint16_t stream,
                 const EpochObserver& observer, const std::string& stage, Checkpoints* checkpoints) {
   const CrbmShape shape = initial.shape;
@@ -310,7 +242,34 @@ Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial
   return crbm;
 }
 
-Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
+/// train_cdbn() likewise.
+TrainedCdbn learn_cdbn(Device& device, Sequences visible, const std::vector<CrbmShape>& layers,
+                       const LearningSettings& learning, std::uint16_t first_stream,
+                       const EpochObserver& observer, const std::string& name, const Cdbn* start,
+                       Checkpoints* checkpoints) {
+  TrainedCdbn trained;
+  trained.code = std::move(visible);
+  OverallProgress progress(observer, cdbn_cost(layers, learning));
+  std::uint16_t stream = first_stream;
+  for (const CrbmShape& shape : layers) {
+    const CdSettings& settings = settings_for(shape, learning);
+    const std::size_t layer = trained.cdbn.layers.size();
+    if (shape.visible != trained.code.values.columns())
+      throw ShapeError(fmt::format("CDBN: layer {} has {} visible units, what it learns from {}",
+                                   layer, shape.visible, trained.code.values.columns()));
+    trained.cdbn.layers.push_back(learn_crbm(
+        device, trained.code,
+        start ? start->layers.at(layer).to_host() : small_weights(shape, learning, stream),
+        settings, learning, stream, progress.part(crbm_cost(shape, settings)),
+        fmt::format("{}.{}", name, layer), checkpoints));
+    ++stream;
+    trained.code = up_pass(trained.cdbn.layers.back(), trained.code);
+  }
+  return trained;
+}
+
+/// train_mrbm() likewise.
+Mrbm learn_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
                 const LearningSettings& learning, std::uint16_t stream,
                 const EpochObserver& observer, Checkpoints* checkpoints) {
   const MrbmSettings& settings = learning.mrbm;
@@ -333,6 +292,54 @@ Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmPara
               }},
              schedule, guard, key_of(learning, stream, 0, 0), observer, checkpoints);
   return mrbm;
+}
+
+}  // namespace
+
+MrbmParameters initial_mrbm_weights(const MrbmShape& shape, std::span<const Sequences> codes,
+                                    const LearningSettings& learning) {
+  if (codes.size() != shape.modalities.size())
+    throw ShapeError("MRBM: other modalities than sequences");
+  MrbmParameters initial = MrbmParameters::random(
+      shape, learning.mrbm.initial_deviation,
+      key_of(learning, random_streams::kMrbm, 0, random_phases::kFirstWeights));
+  // So that the mean field starts near the codes' own means rather than at one half.
+  for (std::size_t m = 0; m < codes.size(); ++m)
+    initial.a[m] = shape.modalities[m].kind == VisibleKind::binary ? logit(mean_of(codes[m]))
+                                                                   : mean_of(codes[m]);
+  return initial;
+}
+
+std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings& learning,
+                                    VisibleKind kind) {
+  std::vector<CrbmShape> shapes{{visible, learning.hidden, learning.order, kind}};
+  while (shapes.size() < learning.layers)
+    shapes.push_back({learning.hidden, learning.hidden, learning.order, VisibleKind::binary});
+  return shapes;
+}
+
+TrainedCdbn train_cdbn(Device& device, Sequences visible, const std::vector<CrbmShape>& layers,
+                       const LearningSettings& learning, std::uint16_t first_stream,
+                       const EpochObserver& observer, const std::string& name, const Cdbn* start,
+                       Checkpoints* checkpoints) {
+  if (!layers.empty()) check_unit_values(visible, layers.front().kind, fmt::format("{}.0", name));
+  return learn_cdbn(device, std::move(visible), layers, learning, first_stream, observer, name,
+                    start, checkpoints);
+}
+
+Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
+                const CdSettings& settings, const LearningSettings& learning, std::uint16_t stream,
+                const EpochObserver& observer, const std::string& stage, Checkpoints* checkpoints) {
+  check_unit_values(visible, initial.shape.kind, stage);
+  return learn_crbm(device, visible, std::move(initial), settings, learning, stream, observer,
+                    stage, checkpoints);
+}
+
+Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
+                const LearningSettings& learning, std::uint16_t stream,
+                const EpochObserver& observer, Checkpoints* checkpoints) {
+  check_codes(codes, initial.shape.modalities);
+  return learn_mrbm(device, codes, initial, learning, stream, observer, checkpoints);
 }
 
 Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningSettings& learning,
@@ -367,20 +374,20 @@ Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningS
     const std::size_t m = modalities - 1 - i;
     const ModalityClips& modality = clips.modalities[m];
     TrainedCdbn trained =
-        train_cdbn(device, weighted(device, clips, modality, learning), layers[m], learning,
+        learn_cdbn(device, weighted(device, clips, modality, learning), layers[m], learning,
                    random_streams::layers_of(i), progress.part(cdbn_cost(layers[m], learning)),
                    modality.name, start ? &start->cdbns.at(m) : nullptr, checkpoints);
     cdbns[m] = std::move(trained.cdbn);
     codes[m] = std::move(trained.code);
   }
-  Mrbm mrbm = train_mrbm(device, codes,
-                         start ? start->mrbm.to_host() : small_weights(shape, codes, learning),
-                         learning, random_streams::kMrbm, progress.part(last_cost), checkpoints);
+  Mrbm mrbm = learn_mrbm(
+      device, codes, start ? start->mrbm.to_host() : initial_mrbm_weights(shape, codes, learning),
+      learning, random_streams::kMrbm, progress.part(last_cost), checkpoints);
   const RegenerationSettings& drawn = learning.regeneration;
   return {std::move(cdbns), std::move(mrbm), learning.look_ahead, learning.mrbm.mean_field_steps,
           SamplingRule{.gibbs_steps = drawn.gibbs_steps,
                        .mrbm_gibbs_steps = drawn.mrbm_gibbs_steps,
-                       .always = drawn.sampled}};
+                       .sampled = drawn.sampled}};
 }
 
 }  // namespace mcdbn

@@ -1,5 +1,6 @@
 #include "learning/history_noise.hpp"
 
+#include "base/random_phases.hpp"
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
 
@@ -42,7 +43,7 @@ void HistoryNoise::learn(std::span<const Rows> visible, const LearningStep& step
   noise.sample = &all;
   noise.temperature = deviation_;
   noise.random = step.random;
-  noise.random.phase = kNoisePhase;
+  noise.random.phase = random_phases::kHistoryNoise;
   apply_epilogue(all, noise);
   LearningStep noisy_step = step;
   if (step.seen) {

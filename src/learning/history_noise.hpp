@@ -17,11 +17,10 @@ class HistoryNoise : public LearningRule {
                std::size_t largest_batch, double deviation);
 
   std::size_t loss_count() const override { return rule_.loss_count(); }
-  /// The noise takes phase kNoisePhase of the step's draws.
+  /// The noise takes phase random_phases::kHistoryNoise of the step's draws.
   void learn(std::span<const Rows> visible, const LearningStep& step,
              LossAccumulator& losses) override;
   void visit_state(TrainingState& state) override { rule_.visit_state(state); }
-  static constexpr std::uint16_t kNoisePhase = 0x7200;
 
  private:
   LearningRule& rule_;

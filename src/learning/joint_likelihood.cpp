@@ -4,11 +4,12 @@
 
 #include "learning/code_stack.hpp"
 #include "learning/mrbm_rule.hpp"
+#include "learning/optimizer_of.hpp"
 
 namespace mcdbn {
 namespace {
 
-std::optional<RowTile> choose_tile(const Mrbm& mrbm, std::size_t batch) {
+std::optional<RowTile> choose_joint_tile(const Mrbm& mrbm, std::size_t batch) {
   return choose_row_tile(mrbm.device(), all_units(mrbm) + padded(mrbm.hidden()), batch,
                          "joint likelihood");
 }
@@ -17,7 +18,7 @@ std::optional<RowTile> choose_tile(const Mrbm& mrbm, std::size_t batch) {
 
 JointLikelihood::JointLikelihood(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings,
                                  std::optional<OptimizerKind> optimizer)
-    : JointLikelihood(mrbm, batch, choose_tile(mrbm, batch), settings, optimizer) {}
+    : JointLikelihood(mrbm, batch, choose_joint_tile(mrbm, batch), settings, optimizer) {}
 
 JointLikelihood::JointLikelihood(Mrbm& mrbm, std::size_t batch, std::optional<RowTile> tile,
                                  const MrbmSettings& settings,

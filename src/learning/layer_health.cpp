@@ -37,6 +37,7 @@ MatrixF history_of(const std::vector<MatrixF>& frames, std::size_t order) {
 }
 
 /// Goes on from the true history; frames [order, order + kFreeRunFrames) are its own.
+/// @param windows over the machine's deviation
 double free_run_error(const CrbmParameters& p, const std::vector<MatrixF>& windows) {
   const std::size_t order = p.shape.order;
   std::vector<MatrixF> frames;
@@ -49,7 +50,9 @@ double free_run_error(const CrbmParameters& p, const std::vector<MatrixF>& windo
         order > 0 ? frames.back() : MatrixF(MatrixF::Zero(truth.rows(), truth.cols()));
     for (int step = 0; step < kMeanFieldSteps; ++step)
       visible = visible_on_host(p, hidden_on_host(p, visible, history), history);
-    sum += (visible - truth).cast<double>().squaredNorm() / static_cast<double>(truth.size());
+    MatrixF error = visible - truth;
+    error.array().rowwise() *= p.visible_deviation.row(0).array();
+    sum += error.cast<double>().squaredNorm() / static_cast<double>(truth.size());
     frames.push_back(std::move(visible));
   }
   return sum / kFreeRunFrames;

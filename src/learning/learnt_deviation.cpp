@@ -43,11 +43,11 @@ Answers answers_to(const Mcdbn& network, const SynchronizedClips& clips) {
 }  // namespace
 
 AnswerDeviation learnt_deviation(const Mcdbn& network, const SynchronizedClips& clips,
-                                 const SynchronizedClips* strangers) {
+                                 const SynchronizedClips* held_out) {
   const Answers learnt = answers_to(network, clips);
   AnswerDeviation deviation = AnswerDeviation::fit(learnt.codes, learnt.residuals);
-  if (strangers != nullptr) {
-    const Answers unseen = answers_to(network, *strangers);
+  if (held_out != nullptr) {
+    const Answers unseen = answers_to(network, *held_out);
     deviation.calibrate(unseen.residuals, deviation.of(unseen.codes));
   }
   return deviation;

@@ -9,9 +9,9 @@ namespace mcdbn {
 /// answers to whole sequences of the first, as regeneration gives them, to clips that it has learnt
 /// from and, where there are some, calibrated on clips that it has not. Of many frames every n-th
 /// sequence is taken.
-/// @param strangers clips that nothing was learnt from, or none
+/// @param held_out clips that nothing was learnt from, or none
 /// @throws ShapeError if there are no two frames
 AnswerDeviation learnt_deviation(const Mcdbn& network, const SynchronizedClips& clips,
-                                 const SynchronizedClips* strangers);
+                                 const SynchronizedClips* held_out);
 
 }  // namespace mcdbn

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "base/random_streams.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/learning/greedy_schedule.hpp"
@@ -36,23 +34,6 @@ void check_layers(const std::vector<LayerSize>& layers) {
   }
 }
 
-/// @throws InputError for what a machine with visible units of this kind cannot learn from
-void check_values(const Sequences& data, VisibleKind kind, const std::string& what) {
-  const MatrixF values = data.values.to_host();
-  for (Eigen::Index r = 0; r < values.rows(); ++r)
-    for (Eigen::Index c = 0; c < values.cols(); ++c) {
-      const float x = values(r, c);
-      if (!std::isfinite(x))
-        throw InputError(fmt::format("{}: row {}, column {} is {}; numbers are needed throughout",
-                                     what, r + 1, c + 1, x));
-      if (kind == VisibleKind::binary && (x < 0.0F || x > 1.0F))
-        throw InputError(fmt::format(
-            "{}: row {}, column {} is {}; binary units need values from 0 to 1 (Gaussian ones take "
-            "any)",
-            what, r + 1, c + 1, x));
-    }
-}
-
 }  // namespace
 
 Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind,
@@ -60,7 +41,6 @@ Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind,
                const EpochObserver& observer) {
   check_layers(layers);
   const LearningSettings learning = learning_of(settings);
-  check_values(data, kind, "data");
   std::vector<CrbmShape> shapes;
   shapes.reserve(layers.size());
   for (const LayerSize& layer : layers)
@@ -76,15 +56,10 @@ Mrbm fit_mrbm(Device& device, const std::vector<Modality>& modalities,
   const LearningSettings learning = learning_of(settings);
   MrbmShape shape{modalities, settings.hidden};
   if (modalities.size() != data.size()) throw ShapeError("MRBM: other modalities than data");
-  for (std::size_t m = 0; m < data.size(); ++m) {
-    shape.modalities[m].visible = data[m].values.columns();
-    if (data[m].values.rows() != data.front().values.rows())
-      throw ShapeError("MRBM: modalities differ in rows");
-  }
-  shape.check();
   for (std::size_t m = 0; m < data.size(); ++m)
-    check_values(data[m], modalities[m].kind, modalities[m].name);
-  return train_mrbm(device, data, small_weights(shape, data, learning), learning,
+    shape.modalities[m].visible = data[m].values.columns();
+  shape.check();
+  return train_mrbm(device, data, initial_mrbm_weights(shape, data, learning), learning,
                     random_streams::kMrbm, observer);
 }
 

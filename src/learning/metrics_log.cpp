@@ -37,7 +37,7 @@ void MetricsLog::add(const EpochReport& report) {
   // Up to version 0.1 fine-tuning was called so.
   if (report.stage == "fine-tuning") line["former_stage"] = "joint";
   if (report.held_out_loss) line["held_out_loss"] = *report.held_out_loss;
-  if (report.waited) line["waited"] = *report.waited;
+  if (report.waiting_share) line["waited"] = *report.waiting_share;
   if (report.health) append(line, *report.health);
   waiting_ += line.dump() + '\n';
   write_waiting();

@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "base/random_phases.hpp"
 #include "device/gemm.hpp"
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
@@ -74,7 +75,8 @@ void MrbmChains::run(std::span<const std::size_t> free, const RandomKey& key, bo
         down.sampling = sampling_of(mrbm_.kind(m));
         down.sample = &chain[m];
         down.random = key;
-        down.random.phase = static_cast<std::uint16_t>(kVisiblePhase + k * chain.size() + m);
+        down.random.phase =
+            static_cast<std::uint16_t>(random_phases::kVisibleUnits + k * chain.size() + m);
       }
       absent_units(mrbm_, m, hidden_sample, down, chain[m]);
     }

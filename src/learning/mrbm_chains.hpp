@@ -12,8 +12,9 @@ namespace mcdbn {
 /// JointLikelihood and PerceptronLoss.
 ///
 /// As in contrastive divergence, hidden units are sampled, visible ones are means unless the
-/// settings want them sampled, and the last hidden step keeps probabilities. What is here takes one
-/// product after the other.
+/// settings want them sampled, and the last hidden step keeps probabilities. Phases of the draws:
+/// the step for hidden units, kVisibleUnits + step · modalities + modality for visible ones. What
+/// is here takes one product after the other.
 class MrbmChains : public LearningRule {
  public:
   std::size_t loss_count() const override { return mrbm_.modality_count(); }
@@ -27,9 +28,6 @@ class MrbmChains : public LearningRule {
 
   /// The gradient of the last step, downhill, where the optimizer is none; for tests.
   MrbmParameters gradients();
-
-  /// Draws of visible units: kVisiblePhase + step · modalities + modality; of hidden ones: step.
-  static constexpr std::uint16_t kVisiblePhase = 0x1000;
 
  protected:
   MrbmChains(Mrbm& mrbm, std::size_t batch, const MrbmSettings& settings, OptimizerKind optimizer);

@@ -2,7 +2,9 @@
 
 #include "learning/joint_likelihood.hpp"
 #include "learning/multi_prediction.hpp"
+#include "learning/optimizer_of.hpp"
 #include "learning/perceptron_loss.hpp"
+#include "learning/rate_schedule.hpp"
 
 namespace mcdbn {
 
@@ -13,14 +15,9 @@ std::unique_ptr<LearningRule> make_mrbm_rule(Mrbm& mrbm, std::size_t batch,
   return std::make_unique<MultiPrediction>(mrbm, batch, settings, optimizer_of(settings));
 }
 
-OptimizerKind optimizer_of(const MrbmSettings& settings) {
-  return settings.adam ? OptimizerKind::adam : OptimizerKind::momentum;
-}
-
 UpdateRule mrbm_update_rule(const MrbmSettings& settings, double progress) {
-  constexpr double kFlat = 0.5, kEnd = 0.02;
-  const double share =
-      progress < kFlat ? 1.0 : 1.0 - (1.0 - kEnd) * (progress - kFlat) / (1.0 - kFlat);
+  constexpr double kFlat = 0.5;
+  const double share = progress < kFlat ? 1.0 : linear_fall((progress - kFlat) / (1.0 - kFlat));
   UpdateRule rule = UpdateRule::adam(static_cast<float>(settings.rate * share),
                                      static_cast<float>(settings.weight_decay));
   rule.momentum = static_cast<float>(settings.momentum);

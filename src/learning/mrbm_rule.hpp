@@ -13,8 +13,7 @@ namespace mcdbn {
 std::unique_ptr<LearningRule> make_mrbm_rule(Mrbm& mrbm, std::size_t batch,
                                              const MrbmSettings& settings);
 
-OptimizerKind optimizer_of(const MrbmSettings& settings);
-/// Flat, then falling to a fiftieth over the second half, so that the last epochs average out the
+/// Flat, then falling to kFinalRate over the second half, so that the last epochs average out the
 /// noise. @param progress 0 … 1, of all mini-batches
 UpdateRule mrbm_update_rule(const MrbmSettings& settings, double progress);
 

@@ -53,9 +53,9 @@ MultiPrediction::MultiPrediction(Mrbm& mrbm, std::size_t batch, const MrbmSettin
       tile_(tile),
       block_(whole_blocks(part_rows_, tile)),
       optimizer_(mrbm.parameters(), optimizer),
-      drive_(mrbm.device(), (tile ? mrbm.modality_count() : 1) * block_, mrbm.hidden()),
-      drive_error_(Matrix::like(drive_)),
-      hidden_(mrbm.device(), steps_ * drive_.rows(), mrbm.hidden()),
+      present_input_(mrbm.device(), (tile ? mrbm.modality_count() : 1) * block_, mrbm.hidden()),
+      present_input_error_(Matrix::like(present_input_)),
+      hidden_(mrbm.device(), steps_ * present_input_.rows(), mrbm.hidden()),
       hidden_errors_(Matrix::like(hidden_)),
       row_losses_(mrbm.device(), 1, mrbm.modality_count() * batch) {
   if (steps_ == 0) throw ConfigError("`mrbm.mean-field-steps` must be at least 1");
@@ -116,11 +116,11 @@ void MultiPrediction::step(const std::vector<Rows>& codes, const UpdateRule& rul
 void MultiPrediction::unroll(std::size_t q) {
   const std::vector<std::size_t> present = all_but(q, mrbm_.modality_count());
   std::vector<Rows> units(target_.begin(), target_.end());
-  drive_of(mrbm_, present, units, drive_);
+  present_input_of(mrbm_, present, units, present_input_);
   for (std::size_t t = 0; t < steps_; ++t) {
     const Rows hidden(hidden_, t * batch_, batch_);
     units[q] = Rows(values_[q], t * batch_, batch_);
-    shared_units(mrbm_, std::span(&q, 1), units, drive_, mean_of_units(VisibleKind::binary),
+    shared_units(mrbm_, std::span(&q, 1), units, present_input_, mean_of_units(VisibleKind::binary),
                  hidden);
     absent_units(mrbm_, q, hidden, mean_of_units(mrbm_.kind(q)),
                  Rows(values_[q], (t + 1) * batch_, batch_));
@@ -157,7 +157,7 @@ void MultiPrediction::back_propagate(std::size_t q, LossAccumulator& losses) {
     }
     gemm(hidden_error(t), mrbm_.W_transposed[q], value_error(t - 1), down);
   }
-  block_sum(hidden_errors_, drive_error_);
+  block_sum(hidden_errors_, present_input_error_);
   add_gradients(q);
 }
 
@@ -166,9 +166,9 @@ void MultiPrediction::add_gradients(std::size_t q) {
   gemm_transposed_a(value_errors_[q], hidden_, gradient_->W[q], 1.0F, 1.0F);
   gemm_transposed_a(before, hidden_errors_, gradient_->W[q], 1.0F, 1.0F);
   for (const std::size_t p : all_but(q, mrbm_.modality_count()))
-    gemm_transposed_a(target_[p], drive_error_, gradient_->W[p], 1.0F, 1.0F);
+    gemm_transposed_a(target_[p], present_input_error_, gradient_->W[p], 1.0F, 1.0F);
   column_sum(value_errors_[q], 1.0F, 1.0F, gradient_->a[q]);
-  column_sum(drive_error_, 1.0F, 1.0F, gradient_->b);
+  column_sum(present_input_error_, 1.0F, 1.0F, gradient_->b);
 }
 
 MrbmParameters MultiPrediction::gradients() {

@@ -70,8 +70,7 @@ class MultiPrediction : public LearningRule {
   Mrbm& mrbm_;
   MrbmSettings settings_;
   std::size_t steps_, batch_;
-  std::size_t
-      part_rows_;  ///< of every part but the last, which may have fewer; composed: the batch
+  std::size_t part_rows_;  ///< of a part, the last may have fewer; composed: the batch
   std::optional<RowTile> tile_;
   std::size_t block_;  ///< rows of one mean-field step in the stacks: a part's, in whole blocks
   Optimizer optimizer_;
@@ -81,11 +80,11 @@ class MultiPrediction : public LearningRule {
   std::vector<Matrix> target_;                 // [batch x visible]
   std::vector<Matrix> values_, value_errors_;  // [steps·batch x visible], zeros before the values
   // Composed: of one direction; fused: of all, one after the other.
-  Matrix drive_, drive_error_;            // [block x hidden]
-  Matrix hidden_, hidden_errors_;         // [steps·block x hidden]
-  Matrix row_losses_;                     // [1 x modalities·batch], fused
-  Matrix partial_;                        // of multi_prediction_products, fused
-  std::optional<MrbmMatrices> gradient_;  // the optimizer's, composed
+  Matrix present_input_, present_input_error_;  // [block x hidden]
+  Matrix hidden_, hidden_errors_;               // [steps·block x hidden]
+  Matrix row_losses_;                           // [1 x modalities·batch], fused
+  Matrix partial_;                              // of multi_prediction_products, fused
+  std::optional<MrbmMatrices> gradient_;        // the optimizer's, composed
 };
 
 }  // namespace mcdbn

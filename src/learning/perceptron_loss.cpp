@@ -1,7 +1,8 @@
 #include "learning/perceptron_loss.hpp"
 
+#include "base/random_phases.hpp"
 #include "device/pointwise.hpp"
-#include "learning/mrbm_rule.hpp"
+#include "learning/optimizer_of.hpp"
 #include "machines/mrbm_energy.hpp"
 
 namespace mcdbn {
@@ -24,7 +25,7 @@ void PerceptronLoss::draw_data(const RandomKey& key) {
     draw.sampling = Sampling::bernoulli;
     draw.sample = &units;
     draw.random = key;
-    draw.random.phase = static_cast<std::uint16_t>(kVisiblePhase + m);
+    draw.random.phase = static_cast<std::uint16_t>(random_phases::kVisibleUnits + m);
     apply_epilogue(units, draw);
   }
 }

@@ -67,8 +67,8 @@ Mcdbn random_start(Device& device, const std::vector<Modality>& modalities,
         drawn.W *= static_cast<float>(kDown / kFromFrame *
                                       std::sqrt(static_cast<double>(modality.visible) /
                                                 static_cast<double>(learning.hidden)));
-      network.cdbns[m].layers.emplace_back(device,
-                                           uncentered(drawn, i == 0 ? Below::data : Below::code));
+      network.cdbns[m].layers.emplace_back(
+          device, uncentered(drawn, i == 0 ? InputKind::data : InputKind::code));
     }
   }
   return network;

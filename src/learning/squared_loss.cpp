@@ -32,17 +32,18 @@ void SquaredLoss::differentiate(const Matrix& prediction, const Matrix& target, 
   Defines defines{{"DIMENSION", to_int(target.columns())}, {"LD", to_int(target.stride())}};
   if (seen_) defines["MASKED"] = 1;
   const int count = to_int(windows_.count), frames = to_int(windows_.frames),
-            lead = to_int(windows_.lead);
+            judged_from = to_int(windows_.judged_from);
   const auto run = [&](const auto&... more) {
     launch(device, device.programs().kernel("squared_loss.cl", "squared_loss", defines),
-           {{windows_.rows(), 1}}, prediction.buffer(), target.buffer(), count, frames, lead,
+           {{windows_.rows(), 1}}, prediction.buffer(), target.buffer(), count, frames, judged_from,
            static_cast<float>(weight_), error.buffer(), losses_.buffer(), to_int(losses_.stride()),
            more...);
   };
   if (seen_) {
     require_windows(windows_, *seen_, target, error);
     launch(device, device.programs().kernel("squared_loss.cl", "count_seen", defines),
-           {{target.columns(), 1}}, seen_->buffer(), count, frames, lead, seen_count_.buffer());
+           {{target.columns(), 1}}, seen_->buffer(), count, frames, judged_from,
+           seen_count_.buffer());
     run(seen_->buffer(), seen_count_.buffer());
   } else {
     run();

@@ -14,9 +14,9 @@ constexpr float kCenter = 0.5F;
 constexpr const char* kMrbmPrefix = "mrbm.";
 
 /// What moving the units' zero by `sign` halves does to the biases.
-CrbmParameters shifted(CrbmParameters layer, Below below, float sign) {
+CrbmParameters shifted(CrbmParameters layer, InputKind input_kind, float sign) {
   const float hidden = sign * kCenter;
-  const float visible = below == Below::code ? sign * kCenter : 0.0F;
+  const float visible = input_kind == InputKind::code ? sign * kCenter : 0.0F;
   layer.b += visible * (layer.W.colwise().sum() + layer.B.colwise().sum());
   layer.a += hidden * layer.W.rowwise().sum().transpose() + visible * layer.A.colwise().sum();
   layer.visible_mean.array() -= visible;
@@ -31,8 +31,8 @@ MrbmParameters shifted(MrbmParameters mrbm, float sign) {
   return mrbm;
 }
 
-Below below_of(std::size_t layer) {
-  return layer == 0 ? Below::data : Below::code;
+InputKind input_kind_of(std::size_t layer) {
+  return layer == 0 ? InputKind::data : InputKind::code;
 }
 
 /// `track.0.`
@@ -59,11 +59,11 @@ std::vector<ParameterShape> parameter_shapes(const Mcdbn& network) {
 
 }  // namespace
 
-CrbmParameters centered(CrbmParameters layer, Below below) {
-  return shifted(std::move(layer), below, 1.0F);
+CrbmParameters centered(CrbmParameters layer, InputKind input_kind) {
+  return shifted(std::move(layer), input_kind, 1.0F);
 }
-CrbmParameters uncentered(CrbmParameters layer, Below below) {
-  return shifted(std::move(layer), below, -1.0F);
+CrbmParameters uncentered(CrbmParameters layer, InputKind input_kind) {
+  return shifted(std::move(layer), input_kind, -1.0F);
 }
 MrbmParameters centered(MrbmParameters mrbm) {
   return shifted(std::move(mrbm), 1.0F);
@@ -73,12 +73,12 @@ MrbmParameters uncentered(MrbmParameters mrbm) {
 }
 
 UnrolledNetwork::Layer::Layer(const Parameters& parameters, const Parameters& gradients,
-                              const CrbmParameters& start, Below below)
+                              const CrbmParameters& start, InputKind input_kind)
     : crbm(parameters, start.shape, start.visible_mean, start.visible_deviation),
       gradient(gradients),
       A_following(parameters.device(), start.shape.order_A() * crbm.A.stride(),
                   start.shape.visible) {
-  if (below == Below::code)
+  if (input_kind == InputKind::code)
     B_following =
         Matrix(parameters.device(), start.shape.order_B() * crbm.B.stride(), start.shape.visible);
 }
@@ -98,10 +98,10 @@ UnrolledNetwork::UnrolledNetwork(Device& device, const Mcdbn& start, std::size_t
   for (std::size_t m = 0; m < layers_.size(); ++m)
     for (const Crbm& layer : start.cdbns[m].layers) {
       const std::string prefix = prefix_of(start.modality(m), layers_[m].size());
-      const CrbmParameters own = centered(layer.to_host(), below_of(layers_[m].size()));
+      const CrbmParameters own = centered(layer.to_host(), input_kind_of(layers_[m].size()));
       own.write(parameters_.part(prefix));
       layers_[m].emplace_back(parameters_.part(prefix), gradients.part(prefix), own,
-                              below_of(layers_[m].size()));
+                              input_kind_of(layers_[m].size()));
     }
   centered(start.mrbm.to_host()).write(mrbm_.parameters());
   averages_.copy_from(parameters_.all());
@@ -143,7 +143,7 @@ Mcdbn UnrolledNetwork::with_parameters(const Matrix& values) {
   for (std::size_t m = 0; m < layers_.size(); ++m)
     for (const Layer& layer : layers_[m]) {
       auto& own = result.cdbns[m].layers;
-      own.emplace_back(device(), uncentered(layer.crbm.to_host(), below_of(own.size())));
+      own.emplace_back(device(), uncentered(layer.crbm.to_host(), input_kind_of(own.size())));
     }
   parameters_.copy_from(spare_);
   result.fills_gaps = false;

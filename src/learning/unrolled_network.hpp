@@ -8,13 +8,15 @@
 
 namespace mcdbn {
 
+/// What a layer's visible units are: data, or the code of the layer beneath.
+enum class InputKind { data, code };
+
 /// The same layer over units about zero: binary units are probabilities less one half, so that Adam
 /// and weight decay treat the effect of weights apart from that of biases (Montavon and Müller
 /// 2012). Nothing that the layer computes changes but the half.
-/// @param below what the visible units are: a code is moved, data stay as they are
-enum class Below { data, code };
-CrbmParameters centered(CrbmParameters layer, Below below);
-CrbmParameters uncentered(CrbmParameters layer, Below below);
+/// @param input_kind a code is moved, data stay as they are
+CrbmParameters centered(CrbmParameters layer, InputKind input_kind);
+CrbmParameters uncentered(CrbmParameters layer, InputKind input_kind);
 MrbmParameters centered(MrbmParameters mrbm);
 MrbmParameters uncentered(MrbmParameters mrbm);
 
@@ -31,7 +33,7 @@ class UnrolledNetwork {
   struct Layer {
     /// @param start centered; its weights and biases are in `parameters`
     Layer(const Parameters& parameters, const Parameters& gradients, const CrbmParameters& start,
-          Below below);
+          InputKind input_kind);
     Layer(const Layer&) = delete;
     Layer& operator=(const Layer&) = delete;
     Crbm crbm;  ///< centered

@@ -89,7 +89,8 @@ UnrolledPass::UnrolledPass(UnrolledNetwork& network, std::size_t absent,
     least = std::max(least, total_order(network.layers(m)));
     up_.push_back(make_up_pass(m));
   }
-  if (windows.first < least || windows.lead < windows.first || windows.lead >= windows.frames)
+  if (windows.first < least || windows.judged_from < windows.first ||
+      windows.judged_from >= windows.frames)
     throw ShapeError("unrolled pass: the windows are too short for the layers' histories");
   Device& device = network.device();
   const std::size_t absent_code = down_layers_.back().crbm.shape().hidden,
@@ -97,10 +98,10 @@ UnrolledPass::UnrolledPass(UnrolledNetwork& network, std::size_t absent,
   // The mean field starts from zeros, which are −½ about zero.
   start_ = Matrix::from_host(device,
                              MatrixF::Constant(1, static_cast<Eigen::Index>(absent_code), -0.5F));
-  start_drive_ = Matrix(device, 1, shared);
+  start_input_ = Matrix(device, 1, shared);
   start_error_ = Matrix(device, 1, shared);
-  drive_ = Matrix(device, code_rows_, shared);
-  drive_error_ = Matrix(device, code_rows_, shared);
+  present_input_ = Matrix(device, code_rows_, shared);
+  present_input_error_ = Matrix(device, code_rows_, shared);
   values_ = Matrix(device, steps_ * code_rows_, absent_code);
   value_errors_ = Matrix(device, steps_ * code_rows_, absent_code);
   hidden_ = Matrix(device, steps_ * code_rows_, shared);
@@ -111,9 +112,10 @@ UnrolledPass::UnrolledPass(UnrolledNetwork& network, std::size_t absent,
     state_errors_.emplace_back(device, rows_ + layer.crbm.shape().order,
                                layer.crbm.shape().visible);
     down_errors_.emplace_back(device, code_rows_, layer.crbm.shape().visible);
-    const Below below = &layer == &down_layers_.front() ? Below::data : Below::code;
-    fused_.push_back(fused ? FusedDownPass::of(layer, below, windows) : std::nullopt);
-    down_drives_.push_back(fused_.back() ? Matrix(device, code_rows_, layer.crbm.shape().visible)
+    const InputKind input_kind =
+        &layer == &down_layers_.front() ? InputKind::data : InputKind::code;
+    fused_.push_back(fused ? FusedDownPass::of(layer, input_kind, windows) : std::nullopt);
+    down_inputs_.push_back(fused_.back() ? Matrix(device, code_rows_, layer.crbm.shape().visible)
                                          : Matrix());
   }
   if (down_layers_.front().crbm.has_deviation) prediction_ = Matrix::like(states_.front());
@@ -195,7 +197,7 @@ void UnrolledPass::mean_field() {
   }
   GemmOptions centered;
   centered.activation = Activation::centered_sigmoid;
-  drive_of(mrbm, present, units, drive_);
+  present_input_of(mrbm, present, units, present_input_);
   ++drop_out_key_.phase;
   for (std::size_t t = 1; t <= steps_; ++t) {
     const Rows hidden = step_of(hidden_, t);
@@ -203,7 +205,7 @@ void UnrolledPass::mean_field() {
       shared_from_start(hidden);
     } else {
       units[q] = step_of(values_, t - 1);
-      shared_units(mrbm, std::span(&q, 1), units, drive_, centered, hidden);
+      shared_units(mrbm, std::span(&q, 1), units, present_input_, centered, hidden);
     }
     drop_out(hidden, coded_frames_);  // the same units in every step
     absent_units(mrbm, q, hidden, centered, step_of(values_, t));
@@ -212,10 +214,10 @@ void UnrolledPass::mean_field() {
 
 /// The absent units start alike in every row, and so does what they give.
 void UnrolledPass::shared_from_start(const Rows& hidden) {
-  gemm(start_, network_.mrbm().W[absent_], start_drive_);
-  hidden_.copy_rows_from(drive_, 0, code_rows_, hidden.first);
+  gemm(start_, network_.mrbm().W[absent_], start_input_);
+  hidden_.copy_rows_from(present_input_, 0, code_rows_, hidden.first);
   GemmOptions options;
-  options.bias = &start_drive_;
+  options.bias = &start_input_;
   options.activation = Activation::centered_sigmoid;
   apply_epilogue(hidden, options);
 }
@@ -233,8 +235,8 @@ void UnrolledPass::down_pass() {
     GemmOptions options;
     options.bias = &layer.a;
     gemm(is_top ? step_of(values_, steps_) : coded(states_[i + 1]), layer.W_transposed,
-         down_drives_[i], options);
-    fused_[i]->forward(down_drives_[i], states_[i]);
+         down_inputs_[i], options);
+    fused_[i]->forward(down_inputs_[i], states_[i]);
   }
 }
 
@@ -328,11 +330,11 @@ void UnrolledPass::mean_field_backward() {
     const Rows v = step_of(values_, t - 1);
     gemm(hidden_error, mrbm.W_transposed[q], step_of(value_errors_, t - 1), through_units(&v));
   }
-  block_sum(hidden_errors_, drive_error_);
+  block_sum(hidden_errors_, present_input_error_);
   add_mean_field_gradients();
   for (UpPass& up : up_) {
     const Rows code(up.units.back());
-    gemm(drive_error_, mrbm.W_transposed[up.modality], up.code_error,
+    gemm(present_input_error_, mrbm.W_transposed[up.modality], up.code_error,
          through_units(&code, kept_share_));
   }
 }
@@ -347,9 +349,9 @@ void UnrolledPass::add_mean_field_gradients() {
   column_sum(step_of(hidden_errors_, 1), 1.0F, 0.0F, start_error_);
   gemm_transposed_a(start_, start_error_, gradient.W[q], 1.0F, 1.0F);
   column_sum(value_errors_, 1.0F, 1.0F, gradient.a[q]);
-  column_sum(drive_error_, 1.0F, 1.0F, gradient.b);
+  column_sum(present_input_error_, 1.0F, 1.0F, gradient.b);
   for (const UpPass& up : up_)
-    gemm_transposed_a(up.units.back(), drive_error_, gradient.W[up.modality], 1.0F, 1.0F);
+    gemm_transposed_a(up.units.back(), present_input_error_, gradient.W[up.modality], 1.0F, 1.0F);
 }
 
 void UnrolledPass::up_pass_backward(UpPass& up) {

@@ -22,12 +22,11 @@ class UnrolledPass {
   /// @param modalities standardized rows of the windows, [windows.rows() x visible], indexed, of
   ///        each modality; those of the absent one are not read
   /// @param kept_share of all hidden units but the absent code; drop-out takes the others, drawn by
-  /// `key`, for a
-  ///        whole window at once: units that flicker would teach the decoder to shake
+  ///        `key`, for a whole window at once: units that flicker would teach the decoder to shake
   void forward(std::span<const Rows> modalities, float kept_share, const RandomKey& key);
   /// The absent modality, [at least windows.rows() x visible]; frames before `first` do not count.
   const Matrix& prediction() const { return prediction_.empty() ? states_.front() : prediction_; }
-  /// Where the loss writes its derivative by the prediction; zero before `lead`.
+  /// Where the loss writes its derivative by the prediction; zero before `judged_from`.
   Matrix& prediction_error() { return state_errors_.front(); }
   /// Adds to the gradients of all parameters that took part. Uses up prediction_error().
   void backward();
@@ -85,17 +84,17 @@ class UnrolledPass {
   Layers& down_layers_;
   float kept_share_ = 1.0F;
   RandomKey drop_out_key_;
-  Matrix start_, start_drive_;     ///< the absent units' start, what it gives the shared ones
-  Matrix start_error_;             ///< [1 x MRBM hidden] summed up over the rows
-  Matrix drive_, drive_error_;     ///< [code rows x MRBM hidden]
-  Matrix values_, value_errors_;   ///< of each step, [code rows x code]
-  Matrix hidden_, hidden_errors_;  ///< the same, [code rows x MRBM hidden]
+  Matrix start_, start_input_;  ///< the absent units' start, what it gives the shared ones
+  Matrix start_error_;          ///< [1 x MRBM hidden] summed up over the rows
+  Matrix present_input_, present_input_error_;  ///< [code rows x MRBM hidden]
+  Matrix values_, value_errors_;                ///< of each step, [code rows x code]
+  Matrix hidden_, hidden_errors_;               ///< the same, [code rows x MRBM hidden]
   std::vector<Matrix> states_,
       state_errors_;                 ///< visible units of the absent layers, of all frames
   Matrix prediction_;                ///< in the data's units, where the lowest units have others
   std::vector<Matrix> down_errors_;  ///< the same errors, [code rows x visible]
   std::vector<std::optional<FusedDownPass>> fused_;  ///< of the absent layers
-  std::vector<Matrix> down_drives_;                  ///< of those that are fused
+  std::vector<Matrix> down_inputs_;                  ///< from above, of those that are fused
 };
 
 }  // namespace mcdbn

@@ -38,17 +38,17 @@ std::vector<std::int32_t> WindowSampler::rows(std::size_t step) const {
     const RandomKey key{seed_, static_cast<std::uint32_t>(step), random_streams::kWindows, 0};
     const auto row = static_cast<std::uint32_t>(i);
     const Sequences::Clip& clip = draw_clip(random_uniform(key, row, 0));
-    const auto judged = windows_.frames - windows_.lead;
+    const auto judged = windows_.frames - windows_.judged_from;
     const double starts = clip.frames > judged ? static_cast<double>(clip.frames - judged) : 0.0;
     // Now and then the clip's very first frame: there is no history, and every clip has it.
     constexpr float kFromStart = 0.1F;
     const double where = random_uniform(key, row, 1) < kFromStart
                              ? 0.0
                              : std::floor((starts + 1.0) * random_uniform(key, row, 2));
-    const auto lead = static_cast<std::int64_t>(windows_.lead);
+    const auto judged_from = static_cast<std::int64_t>(windows_.judged_from);
     for (std::size_t t = 0; t < windows_.frames; ++t) {
       const std::int64_t frame =
-          static_cast<std::int64_t>(where) + static_cast<std::int64_t>(t) - lead;
+          static_cast<std::int64_t>(where) + static_cast<std::int64_t>(t) - judged_from;
       const std::size_t at = i * windows_.frames + t;
       rows[at] = row_of(clip, frame);
       rows[windows_.rows() + at] = row_of(clip, frame + static_cast<std::int64_t>(look_ahead_));

@@ -4,6 +4,7 @@
 
 #include "base/random_streams.hpp"
 #include "device/pointwise.hpp"
+#include "machines/own_units.hpp"
 #include "machines/unit_kinds.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 std::vector<Matrix> at_training_mean(const Cdbn& cdbn, std::size_t rows) {
   std::vector<Matrix> states;
   for (const Crbm& layer : cdbn.layers)
-    states.push_back(Matrix::filled_with_row(layer.visible_mean, rows));
+    states.push_back(Matrix::filled_with_row(in_own_units(layer, layer.visible_mean), rows));
   return states;
 }
 
@@ -41,7 +42,7 @@ void CdbnDecoder::decode(std::size_t first, std::size_t last, const Regeneration
                          bool fused) {
   for (const Crbm& layer : cdbn_.layers)
     if (first < layer.shape().order) throw ShapeError("decoder: the first frame has no history");
-  const bool sampled = options.drawn_share() > 0.0 && options.sampling.gibbs_steps > 0;
+  const bool sampled = options.samples_decoder();
   last = std::min(last, frames_);
   if (first >= last) return;
   const auto tiles = fused ? fused_tiles(sampled) : std::nullopt;
@@ -58,31 +59,31 @@ void CdbnDecoder::decode(std::size_t first, std::size_t last, const Regeneration
 
 void CdbnDecoder::decode_frames(std::size_t first, std::size_t last,
                                 const RegenerationOptions& options, bool sampled) {
-  if (!sampled) drive_layer(states_.size() - 1, first, last);
+  if (!sampled) set_input_from_above(states_.size() - 1, first, last);
   for (std::size_t frame = first; frame < last; ++frame) {
     if (sampled) sample_top_layer(frame, options);
     down_pass(frame, !sampled);
   }
 }
 
-void CdbnDecoder::drive_layer(std::size_t layer, std::size_t first, std::size_t last) {
+void CdbnDecoder::set_input_from_above(std::size_t layer, std::size_t first, std::size_t last) {
   const Crbm& crbm = cdbn_.layers[layer];
   const bool is_top = layer + 1 == cdbn_.layers.size();
-  GemmOptions drive;
-  drive.bias = &crbm.a;
+  GemmOptions from_above;
+  from_above.bias = &crbm.a;
   for (std::size_t i = 0; i < sequences_; ++i) {
     const std::size_t begin = i * frames_ + first;
     gemm(Rows(is_top ? code_ : states_[layer + 1], begin, last - first), crbm.W_transposed,
-         Rows(states_[layer], begin, last - first), drive);
+         Rows(states_[layer], begin, last - first), from_above);
   }
 }
 
-void CdbnDecoder::down_pass(std::size_t frame, bool top_is_driven) {
+void CdbnDecoder::down_pass(std::size_t frame, bool top_has_input) {
   for (std::size_t i = cdbn_.layers.size(); i-- > 0;) {
     const Crbm& layer = cdbn_.layers[i];
     const Rows state = at(states_[i], frame);
     const bool is_top = i + 1 == cdbn_.layers.size();
-    if (is_top && !top_is_driven) continue;  // sampled already
+    if (is_top && !top_has_input) continue;  // sampled already
     GemmOptions options;
     if (is_top) {
       // The state holds a + code·Wᵀ: what is left is the history's part.

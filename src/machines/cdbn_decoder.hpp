@@ -41,9 +41,9 @@ class CdbnDecoder {
   void fused_samples(std::size_t first, std::size_t last, const RegenerationOptions& options,
                      const RowTile& tile);
   /// a + (layer above)·Wᵀ of all frames at once, where the down-pass picks it up.
-  void drive_layer(std::size_t layer, std::size_t first, std::size_t last);
+  void set_input_from_above(std::size_t layer, std::size_t first, std::size_t last);
   void sample_top_layer(std::size_t frame, const RegenerationOptions& options);
-  void down_pass(std::size_t frame, bool top_is_driven);
+  void down_pass(std::size_t frame, bool top_has_input);
 
   const Cdbn& cdbn_;
   const Matrix& code_;

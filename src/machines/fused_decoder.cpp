@@ -50,7 +50,7 @@ std::optional<std::vector<RowTile>> CdbnDecoder::fused_tiles(bool sampled) const
 void CdbnDecoder::fused_decode(std::size_t first, std::size_t last,
                                const RegenerationOptions& options,
                                const std::vector<RowTile>& tiles) {
-  const bool sampled = options.drawn_share() > 0.0 && options.sampling.gibbs_steps > 0;
+  const bool sampled = options.samples_decoder();
   for (std::size_t i = cdbn_.layers.size(); i-- > 0;) {
     if (sampled && i + 1 == cdbn_.layers.size())
       fused_samples(first, last, options, tiles[i]);
@@ -61,7 +61,7 @@ void CdbnDecoder::fused_decode(std::size_t first, std::size_t last,
 
 void CdbnDecoder::fused_means(std::size_t layer, std::size_t first, std::size_t last,
                               const RowTile& tile) {
-  drive_layer(layer, first, last);
+  set_input_from_above(layer, first, last);
   const Crbm& crbm = cdbn_.layers[layer];
   launch(crbm.device(), decoder_kernel(crbm, "decode_means", 0, tile), size_for(sequences_, tile),
          states_[layer].buffer(), states_[layer].buffer(), to_int(frames_), 0, to_int(sequences_),

@@ -34,9 +34,10 @@ RowVectorD deviation_of(const std::vector<MatrixF>& sequences) {
 
 }  // namespace
 
-std::size_t shortest_cycle(const MatrixF& sequence, std::size_t longest) {
+std::size_t shortest_cycle(const MatrixF& sequence) {
   // A minimum is known by the lag that follows it.
-  longest = std::min(longest, static_cast<std::size_t>(sequence.rows()) / 2 + 1);
+  const std::size_t longest =
+      std::min(kLongestLag, static_cast<std::size_t>(sequence.rows()) / 2 + 1);
   double largest = 0, before = 0, at = change(sequence, 1);
   for (std::size_t lag = 2; lag <= longest; ++lag) {
     const double after = change(sequence, static_cast<Eigen::Index>(lag));

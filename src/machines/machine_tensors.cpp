@@ -166,7 +166,7 @@ json sampling_json(const SamplingRule& rule) {
           {"mrbm_gibbs_steps", rule.mrbm_gibbs_steps},
           {"steady", rule.steady},
           {"scale", rule.scale},
-          {"always", rule.always}};
+          {"always", rule.sampled}};
 }
 
 SamplingRule sampling_from(const JsonPlace& description) {

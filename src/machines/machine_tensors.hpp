@@ -20,7 +20,7 @@ struct TensorFile {
   std::string path;  ///< for errors
 };
 
-/// Finite weights of any size would answer with numbers that are not.
+/// Larger weights would overflow in inference.
 inline constexpr float kLargestWeight = 1e6F;
 /// Of what is in the units of the data, which may be large.
 inline constexpr float kAnyFinite = std::numeric_limits<float>::max();

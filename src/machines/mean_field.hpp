@@ -11,19 +11,19 @@ namespace mcdbn {
 /// the fused kernels have them in one launch. What the units are (probabilities, draws, centered
 /// ones) is the options' activation and sampling. Rows are given of every modality.
 ///
-/// eq 32: the shared units from those of the modalities `from` and from `drive`, which is b and the
-/// present modalities' products.
-/// @param units [rows x visible] of each modality  @param drive, shared [rows x hidden]
+/// eq 32: the shared units from those of the modalities `from` and from `present_input`, which
+/// present_input_of() makes; b alone, if no modality is apart from these.
+/// @param units [rows x visible] of each modality  @param present_input, shared [rows x hidden]
 inline void shared_units(const Mrbm& mrbm, std::span<const std::size_t> from,
-                         std::span<const Rows> units, const Matrix& drive, GemmOptions options,
-                         const Rows& shared) {
+                         std::span<const Rows> units, const Matrix& present_input,
+                         GemmOptions options, const Rows& shared) {
   for (const std::size_t m : from.first(from.size() - 1)) {
     GemmOptions sum;
     sum.beta = options.beta;
     gemm(units[m], mrbm.W[m], shared, sum);
     options.beta = 1.0F;
   }
-  options.bias = &drive;
+  options.bias = &present_input;
   gemm(units[from.back()], mrbm.W[from.back()], shared, options);
 }
 
@@ -34,13 +34,14 @@ inline void absent_units(const Mrbm& mrbm, std::size_t m, const Rows& shared, Ge
   gemm(shared, mrbm.W_transposed[m], absent, options);
 }
 
-/// b and what the present modalities give the shared units, the same in every step.
-inline void drive_of(const Mrbm& mrbm, std::span<const std::size_t> present,
-                     std::span<const Rows> units, const Rows& drive) {
+/// b and the present modalities' products: the shared units' input that is the same in every step.
+/// @param present_input [rows x hidden]
+inline void present_input_of(const Mrbm& mrbm, std::span<const std::size_t> present,
+                             std::span<const Rows> units, const Rows& present_input) {
   GemmOptions options;
   options.bias = &mrbm.b;
   for (const std::size_t m : present) {
-    gemm(units[m], mrbm.W[m], drive, options);
+    gemm(units[m], mrbm.W[m], present_input, options);
     options.bias = nullptr;
     options.beta = 1.0F;
   }

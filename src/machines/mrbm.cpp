@@ -139,10 +139,9 @@ MrbmParameters Mrbm::to_host() const {
 }
 
 void Mrbm::infer(const std::vector<Rows>& modalities, const std::vector<bool>& present,
-                 std::size_t steps, bool doubled) const {
+                 std::size_t steps) const {
   MrbmChainOptions options;
   options.steps = std::max<std::size_t>(steps, 1);
-  options.doubled = doubled;
   if (modalities.empty()) throw ShapeError("MRBM: no modalities to infer from");
   MrbmChain(*this, present, modalities.front().count).run(modalities, options);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/random_phases.hpp"
 #include "device/gemm.hpp"
 #include "device/kernel_arguments.hpp"
 #include "device/pointwise.hpp"
@@ -56,8 +57,9 @@ GemmOptions units_options(VisibleKind kind, const Rows& units, const MrbmChainOp
   epilogue.temperature = options.temperature;
   epilogue.random = options.random;
   const std::size_t phase = options.random.phase + pass;
-  epilogue.random.phase = static_cast<std::uint16_t>(phase % kChainPhases);
-  epilogue.random.step += static_cast<std::uint32_t>(phase / kChainPhases) * options.steps_apart;
+  epilogue.random.phase = static_cast<std::uint16_t>(phase % random_phases::kPhasesOfChain);
+  epilogue.random.step +=
+      static_cast<std::uint32_t>(phase / random_phases::kPhasesOfChain) * options.steps_apart;
   return epilogue;
 }
 
@@ -73,12 +75,12 @@ MrbmChain::MrbmChain(const Mrbm& mrbm, const std::vector<bool>& present, std::si
       absent_(indices_where(present, false)),
       largest_rows_(largest_rows),
       tile_(tile),
-      drive_(mrbm.device(), whole_blocks(largest_rows, tile), mrbm.hidden()) {
+      present_input_(mrbm.device(), whole_blocks(largest_rows, tile), mrbm.hidden()) {
   require(present.size() == mrbm.modality_count() && !absent_.empty(),
           "MRBM chain: needs to know of every modality whether it is there, and one that is not");
   require(!tile_ || (present_.size() == 1 && absent_.size() == 1),
           "MRBM chain: only two modalities are fused");
-  if (!tile_) hidden_ = Matrix::like(drive_);
+  if (!tile_) hidden_ = Matrix::like(present_input_);
 }
 
 void MrbmChain::check(const std::vector<Rows>& modalities, const MrbmChainOptions& options) const {
@@ -128,45 +130,36 @@ void MrbmChain::fused(const Rows& present, const MrbmChainOptions& options, cons
   const auto group = static_cast<std::size_t>(tile_->group);
   const std::size_t blocks = ceil_divide(present.count, static_cast<std::size_t>(tile_->rows));
   // Without an index its argument still needs a buffer.
-  const cl::Buffer& index = present.index ? present.index->buffer() : drive_.buffer();
+  const cl::Buffer& index = present.index ? present.index->buffer() : present_input_.buffer();
   launch(device, kernel, {{blocks * group, 1}, {group, 1}}, present.matrix->buffer(),
          present.offset(), present.stride(), index, present.index ? 1 : 0,
          to_int(present.index_first), present.shift, to_int(present.count), mrbm_.layout().buffer(),
          to_int(present_[0]), to_int(absent_[0]), mrbm_.parameters().all().buffer(),
-         mrbm_.transposed().all().buffer(), drive_.buffer(), absent.matrix->buffer(),
-         absent.offset(), absent.stride(), to_int(options.steps), options.doubled ? 1 : 0,
-         options.temperature, random_argument(options.random), options.steps_apart);
-}
-
-/// Absent modalities are zeros: what the present ones give, or twice that.
-void MrbmChain::first_hidden(const std::vector<Rows>& modalities, const MrbmChainOptions& options,
-                             const GemmOptions& up, const Rows& hidden) {
-  if (options.doubled && !present_.empty()) {
-    shared_units(mrbm_, present_, modalities, drive_, up, hidden);
-    return;
-  }
-  hidden_.copy_rows_from(drive_, 0, hidden.count, 0);
-  apply_epilogue(hidden, up);
+         mrbm_.transposed().all().buffer(), present_input_.buffer(), absent.matrix->buffer(),
+         absent.offset(), absent.stride(), to_int(options.steps), options.temperature,
+         random_argument(options.random), options.steps_apart);
 }
 
 void MrbmChain::composed(const std::vector<Rows>& modalities, const MrbmChainOptions& options) {
   const std::size_t count = modalities[0].count, passes = 1 + absent_.size();
-  const Rows drive(drive_, 0, count), hidden(hidden_, 0, count);
+  const Rows present_input(present_input_, 0, count), hidden(hidden_, 0, count);
   if (present_.empty()) {
     GemmOptions alone;
     alone.bias = &mrbm_.b;
-    drive_.set_zero();
-    apply_epilogue(drive, alone);
+    present_input_.set_zero();
+    apply_epilogue(present_input, alone);
   } else {
-    drive_of(mrbm_, present_, modalities, drive);
+    present_input_of(mrbm_, present_, modalities, present_input);
   }
   for (std::size_t step = 0; step < options.steps; ++step) {
     std::size_t pass = step * passes;
     const GemmOptions up = units_options(VisibleKind::binary, hidden, options, pass);
-    if (step > 0)
-      shared_units(mrbm_, absent_, modalities, drive_, up, hidden);
-    else
-      first_hidden(modalities, options, up, hidden);
+    if (step > 0) {
+      shared_units(mrbm_, absent_, modalities, present_input_, up, hidden);
+    } else {  // the absent modalities are zeros
+      hidden_.copy_rows_from(present_input_, 0, count, 0);
+      apply_epilogue(hidden, up);
+    }
     for (const std::size_t m : absent_) {
       GemmOptions down = units_options(mrbm_.kind(m), modalities[m], options, ++pass);
       if (step + 1 == options.steps) {

@@ -13,19 +13,13 @@ struct MrbmChainOptions {
   /// 0: mean field (eq 32, 33). 1: sampled (eq 21 to 23). Between: each draw pulled towards its
   /// probability p, as p + temperature · (draw − p).
   float temperature = 0.0F;
-  /// The first pass counts the present modality twice in place of the absent one's zeros (Sohn et
-  /// al.).
-  bool doubled = false;
   Sampling sampling = Sampling::bernoulli;  ///< or concrete; Gaussian units draw as such
   /// The draws are those of row r of the chain. Each step has a phase for the hidden units, then
-  /// one for each absent modality. After kChainPhases of them they begin anew, with a
+  /// one for each absent modality. After random_phases::kPhasesOfChain they begin anew, with a
   /// `RandomKey::step` that is `steps_apart` further on.
   RandomKey random = {};
   std::uint32_t steps_apart = 1;
 };
-
-/// Phases are below 0x8000, and chains may be longer.
-inline constexpr std::size_t kChainPhases = 0x4000;
 
 /// What mrbm_shape.clh needs but for STEPS.
 Defines shape_defines(const Mrbm& mrbm);
@@ -60,15 +54,13 @@ class MrbmChain {
   void check(const std::vector<Rows>& modalities, const MrbmChainOptions& options) const;
   void fused(const Rows& present, const MrbmChainOptions& options, const Rows& absent);
   void composed(const std::vector<Rows>& modalities, const MrbmChainOptions& options);
-  void first_hidden(const std::vector<Rows>& modalities, const MrbmChainOptions& options,
-                    const GemmOptions& up, const Rows& hidden);
 
   const Mrbm& mrbm_;
   std::vector<std::size_t> present_, absent_;  ///< indices of the modalities
   std::size_t largest_rows_;
   std::optional<RowTile> tile_;
-  Matrix drive_;   ///< what the present modalities give the hidden units, and b [rows x hidden]
-  Matrix hidden_;  ///< [rows x hidden], composed
+  Matrix present_input_;  ///< b and the present modalities' products [rows x hidden]
+  Matrix hidden_;         ///< [rows x hidden], composed
 };
 
 }  // namespace mcdbn

@@ -6,8 +6,8 @@
 #include "base/missing_values.hpp"
 #include "base/random_streams.hpp"
 #include "device/gemm.hpp"
-#include "machines/carried_on.hpp"
 #include "machines/cdbn_decoder.hpp"
+#include "machines/mirrored_continuation.hpp"
 #include "machines/mrbm_chain.hpp"
 #include "machines/sequence_completion.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -15,12 +15,14 @@
 namespace mcdbn {
 namespace {
 
-/// `lead` copies of the first row, the sequence, then its end carried on up to `frames` rows.
-MatrixF extended(const MatrixF& sequence, Eigen::Index lead, Eigen::Index frames,
+/// `before` copies of the first row, the sequence, then its mirrored_continuation, `frames` rows in
+/// all.
+MatrixF extended(const MatrixF& sequence, Eigen::Index before, Eigen::Index frames,
                  VisibleKind kind) {
   MatrixF result(frames, sequence.cols());
-  const Eigen::Index behind = frames - lead - sequence.rows();
-  result << sequence.row(0).replicate(lead, 1), sequence, carried_on(sequence, behind, kind);
+  const Eigen::Index behind = frames - before - sequence.rows();
+  result << sequence.row(0).replicate(before, 1), sequence,
+      mirrored_continuation(sequence, behind, kind);
   return result;
 }
 
@@ -35,13 +37,14 @@ Matrix repeated(const Matrix& code, std::size_t sequences, std::size_t copies) {
 }
 
 /// Which frames are inferred and decoded. Frame t of the network is that of all modalities without
-/// a look-ahead; a sequence of `longest` frames begins at `lead`.
+/// a look-ahead.
 struct Frames {
-  std::size_t first = 0;  ///< of the network: every present modality has a code from here on
-  std::size_t start = 0;  ///< of the wanted modality: decoded from here on
-  std::size_t lead = 0, longest = 0;
-  std::size_t end = 0;    ///< of the network, behind the last
-  std::size_t total = 0;  ///< that the present modalities must show
+  std::size_t first = 0;    ///< of the network: every present modality has a code from here on
+  std::size_t start = 0;    ///< of the wanted modality: decoded from here on
+  std::size_t begin = 0;    ///< of a sequence, behind the history and the run-in
+  std::size_t longest = 0;  ///< frames of a sequence
+  std::size_t end = 0;      ///< of the network, behind the last
+  std::size_t total = 0;    ///< that the present modalities must show
 };
 
 Frames frames_of(const Mcdbn& network, const std::vector<std::vector<MatrixF>>& present,
@@ -58,8 +61,8 @@ Frames frames_of(const Mcdbn& network, const std::vector<std::vector<MatrixF>>& 
   frames.start = frames.first + network.ahead(wanted);
   for (const Crbm& layer : network.cdbns[wanted].layers)
     frames.start = std::max(frames.start, layer.shape().order);
-  frames.lead = frames.start + run_in;
-  frames.end = frames.lead + frames.longest - network.ahead(wanted);
+  frames.begin = frames.start + run_in;
+  frames.end = frames.begin + frames.longest - network.ahead(wanted);
   frames.total = frames.end + latest;
   return frames;
 }
@@ -134,7 +137,7 @@ void infer_samples(const Mcdbn& network, const Frames& frames, std::size_t wante
 Matrix infer_code(const Mcdbn& network, const Frames& frames, std::size_t wanted,
                   std::vector<std::optional<Sequences>> present, std::size_t sequences,
                   const RegenerationOptions& options) {
-  const bool sampled = options.drawn_share() > 0.0 && options.sampling.mrbm_gibbs_steps > 0;
+  const bool sampled = options.samples_mrbm();
   const std::size_t count = sampled ? sequences * options.samples : sequences;
   Device& device = network.mrbm.device();
   Codes codes{std::move(present),
@@ -181,7 +184,7 @@ Sequences code_of(const Mcdbn& network, std::size_t modality, const std::vector<
   for (const MatrixF& sequence : present)
     sequences.push_back(extended(
         network.fills_gaps ? complete_sequence(cdbn, sequence) : at_mean_where_unknown(sequence),
-        static_cast<Eigen::Index>(frames.lead), static_cast<Eigen::Index>(frames.total),
+        static_cast<Eigen::Index>(frames.begin), static_cast<Eigen::Index>(frames.total),
         cdbn.layers.front().shape().kind));
   return cdbn.up_pass(Sequences::from_host(network.mrbm.device(), sequences));
 }
@@ -198,8 +201,8 @@ struct Decoded {
     std::vector<MatrixF> sequences;
     sequences.reserve(lengths.size());
     for (std::size_t i = 0; i < lengths.size(); ++i)
-      sequences.emplace_back(
-          values.middleRows(static_cast<Eigen::Index>(i * frames.total + frames.lead), lengths[i]));
+      sequences.emplace_back(values.middleRows(
+          static_cast<Eigen::Index>(i * frames.total + frames.begin), lengths[i]));
     return sequences;
   }
 };
@@ -220,7 +223,7 @@ Decoded decoded(const Mcdbn& network, const std::vector<std::vector<MatrixF>>& p
     result.lengths.push_back((*shown)[i / options.samples].rows());
   result.code = infer_code(network, frames, wanted, std::move(present_codes), sequences, options);
   CdbnDecoder decoder(network.cdbns[wanted], result.code, result.lengths.size());
-  decoder.decode(frames.start, frames.lead + frames.longest, options);
+  decoder.decode(frames.start, frames.begin + frames.longest, options);
   result.visible = decoder.visible();
   return result;
 }

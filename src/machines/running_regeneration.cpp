@@ -6,8 +6,9 @@
 #include <utility>
 
 #include "base/missing_values.hpp"
-#include "machines/carried_on.hpp"
 #include "machines/cdbn_decoder.hpp"
+#include "machines/mirrored_continuation.hpp"
+#include "machines/own_units.hpp"
 #include "machines/sequence_completion.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -55,14 +56,15 @@ std::vector<Matrix> RunningRegeneration::visible_to_go_on(Eigen::Index rows) con
   std::vector<Matrix> visible;
   const Cdbn& cdbn = network_.cdbns[kAnswered];
   for (std::size_t i = 0; i < cdbn.layers.size(); ++i) {
-    const Matrix& mean = cdbn.layers[i].visible_mean;
+    const Crbm& layer = cdbn.layers[i];
     if (visible_.empty()) {
-      visible.push_back(Matrix::filled_with_row(mean, static_cast<std::size_t>(rows)));
+      visible.push_back(Matrix::filled_with_row(in_own_units(layer, layer.visible_mean),
+                                                static_cast<std::size_t>(rows)));
       continue;
     }
     MatrixF values = MatrixF::Zero(rows, visible_[i].cols());
     values.topRows(history_) = visible_[i];
-    visible.push_back(Matrix::from_host(mean.device(), values));
+    visible.push_back(Matrix::from_host(layer.device(), values));
   }
   return visible;
 }
@@ -80,7 +82,7 @@ CodedAnswer RunningRegeneration::answer(const MatrixF& open) {
   const auto ahead = static_cast<Eigen::Index>(network_.look_ahead);
   MatrixF seen(rows + ahead, dimension);
   seen << last_shown_,
-      carried_on(last_shown_, ahead, network_.cdbns[kShown].layers[0].shape().kind);
+      mirrored_continuation(last_shown_, ahead, network_.cdbns[kShown].layers[0].shape().kind);
   const Sequences shown = network_.cdbns[kShown].up_pass(Sequences::from_host(device, {seen}));
   const Matrix code(device, static_cast<std::size_t>(rows), cdbn.code_dimension());
   const auto first = static_cast<std::size_t>(history_),

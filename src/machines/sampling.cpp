@@ -85,10 +85,11 @@ Sequences reconstructed(Layers layers, const Sequences& visible, std::size_t ste
   return above;
 }
 
-/// Sequences side by side, `lead` frames of history and then as many as the longest has: frame t of
-/// all of them is one strided block of rows.
+/// Sequences side by side, `history` frames and then as many as the longest has: frame t of all of
+/// them is one strided block of rows.
 struct Grid {
-  std::size_t sequences = 0, lead = 0, frames = 0;  ///< lead included in frames
+  std::size_t sequences = 0, history = 0;
+  std::size_t frames = 0;  ///< of a sequence, its history included
 
   Rows at(const Matrix& matrix, std::size_t frame) const {
     return Rows::strided(matrix, frame, sequences, frames);
@@ -100,8 +101,8 @@ struct Grid {
 };
 
 /// Without a history every row is a sequence of its own.
-std::vector<Sequences::Clip> sequences_of(const Sequences& given, std::size_t lead) {
-  if (lead > 0) return given.clips;
+std::vector<Sequences::Clip> sequences_of(const Sequences& given, std::size_t history) {
+  if (history > 0) return given.clips;
   std::vector<Sequences::Clip> rows(given.values.rows());
   for (std::size_t r = 0; r < rows.size(); ++r) rows[r] = {r, 1};
   return rows;
@@ -114,7 +115,7 @@ Matrix on_grid(const Grid& grid, const Sequences& given,
   MatrixF all = MatrixF::Constant(static_cast<Eigen::Index>(grid.sequences * grid.frames),
                                   values.cols(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < sequences.size(); ++i)
-    all.middleRows(static_cast<Eigen::Index>(i * grid.frames + grid.lead),
+    all.middleRows(static_cast<Eigen::Index>(i * grid.frames + grid.history),
                    static_cast<Eigen::Index>(sequences[i].frames)) =
         values.middleRows(static_cast<Eigen::Index>(sequences[i].first),
                           static_cast<Eigen::Index>(sequences[i].frames));
@@ -129,21 +130,21 @@ class ClampedStack {
     require(given.values.columns() == layers.front().shape().visible,
             "sample: the frames do not fit the machine");
     require(settings.steps > 0, "sample: needs at least one step");
-    for (const Crbm& layer : layers) grid_.lead = std::max(grid_.lead, layer.shape().order);
-    const auto sequences = sequences_of(given, grid_.lead);
+    for (const Crbm& layer : layers) grid_.history = std::max(grid_.history, layer.shape().order);
+    const auto sequences = sequences_of(given, grid_.history);
     grid_.sequences = sequences.size();
     for (const auto& sequence : sequences) grid_.frames = std::max(grid_.frames, sequence.frames);
-    grid_.frames += grid_.lead;
+    grid_.frames += grid_.history;
     given_ = in_own_units(layers.front(), on_grid(grid_, given, sequences));
     for (const Crbm& layer : layers) {
       states_.push_back(grid_.filled(layer));
       chains_.emplace_back(layer, grid_.sequences);
     }
     drawn_ = Matrix(given_.device(), grid_.sequences, layers.front().shape().visible);
-    for (std::size_t t = grid_.lead; t < grid_.frames; ++t) draw_frame(t);
+    for (std::size_t t = grid_.history; t < grid_.frames; ++t) draw_frame(t);
     result_ = {Matrix::like(given.values), given.clips, 0};
     for (std::size_t i = 0; i < sequences.size(); ++i)
-      result_.values.copy_rows_from(states_.front(), i * grid_.frames + grid_.lead,
+      result_.values.copy_rows_from(states_.front(), i * grid_.frames + grid_.history,
                                     sequences[i].frames, sequences[i].first);
     if (!layers.front().has_deviation) return;
     to_data_units(layers.front(), result_.values);
@@ -158,7 +159,7 @@ class ClampedStack {
     for (std::size_t i = 0; i < layers_.size(); ++i)
       chains_[i].take_history(grid_.at(states_[i], t));
     // The state is the mean already where there is no frame before.
-    where_given(grid_.at(given_, t), grid_.at(states_.front(), t - (grid_.lead > 0 ? 1 : 0)),
+    where_given(grid_.at(given_, t), grid_.at(states_.front(), t - (grid_.history > 0 ? 1 : 0)),
                 visible);
     for (std::size_t step = 1; step <= settings_.steps; ++step) {
       draws_.next_step();

@@ -8,9 +8,11 @@ namespace {
 
 constexpr int kMeanFieldSteps = 10;
 
-/// The `order` frames before `frame`, the training mean (zero) where the sequence has not begun.
-MatrixF history_of(const MatrixF& sequence, Eigen::Index frame, std::size_t order) {
-  MatrixF history = MatrixF::Zero(1, static_cast<Eigen::Index>(order) * sequence.cols());
+/// The `order` frames before `frame`, the training mean where the sequence has not begun.
+/// @param mean, sequence as the layer's own units see them
+MatrixF history_of(const MatrixF& sequence, Eigen::Index frame, std::size_t order,
+                   const MatrixF& mean) {
+  MatrixF history = mean.replicate(1, static_cast<Eigen::Index>(order));
   for (Eigen::Index q = 0; q < static_cast<Eigen::Index>(order); ++q) {
     const Eigen::Index source = frame - static_cast<Eigen::Index>(order) + q;
     if (source >= 0)
@@ -21,10 +23,11 @@ MatrixF history_of(const MatrixF& sequence, Eigen::Index frame, std::size_t orde
 
 /// @param sequence as the layer's own units see it
 MatrixF completed(const CrbmParameters& layer, MatrixF sequence) {
+  const MatrixF mean = (layer.visible_mean.array() / layer.visible_deviation.array()).matrix();
   for (Eigen::Index t = 0; t < sequence.rows(); ++t) {
     const auto missing = sequence.row(t).array().isNaN().eval();
     if (!missing.any()) continue;
-    const MatrixF history = history_of(sequence, t, layer.shape.order);
+    const MatrixF history = history_of(sequence, t, layer.shape.order, mean);
     const MatrixF nothing = MatrixF::Zero(1, layer.W.cols());
     MatrixF row = t > 0 ? MatrixF(sequence.row(t - 1)) : visible_on_host(layer, nothing, history);
     row = missing.select(row, sequence.row(t));

@@ -20,6 +20,29 @@ struct Bone {
 
 constexpr double kHeight = 170.0;
 
+using AxisOrder = std::array<Channel, 3>;
+constexpr AxisOrder kFormerOrder{z_rotation, x_rotation, y_rotation};
+
+/// Of the middle and the left. The joint turns about the middle axis the least: at 90 degrees there
+/// the outer two are one axis.
+constexpr AxisOrder axis_order(JointRole role) {
+  switch (role) {
+    case left_shoulder:
+    case left_wrist:
+    case left_hip:
+    case left_toe:
+      return {x_rotation, y_rotation, z_rotation};
+    case left_knee:
+    case left_ankle:
+      return {x_rotation, z_rotation, y_rotation};
+    case left_clavicle:
+    case left_hand:
+      return {z_rotation, x_rotation, y_rotation};
+    default:  // the trunk, which turns about Y and bends about X, and elbows, which bend about Y
+      return {y_rotation, z_rotation, x_rotation};
+  }
+}
+
 const std::array kBones{
     Bone{pelvis, pelvis, {0, 0, 0}},
     Bone{spine, pelvis, {0, 0.050, 0}},
@@ -51,6 +74,13 @@ std::vector<JointRole> order() {
   return roles;
 }
 
+std::vector<Channel> channels_of(JointRole role, const AxisOrder& axes) {
+  std::vector<Channel> channels;
+  if (role == pelvis) channels = {x_position, y_position, z_position};
+  channels.insert(channels.end(), axes.begin(), axes.end());
+  return channels;
+}
+
 Joint joint_of(JointRole role, const SkeletonRoles& roles) {
   const bool right = role > left_toe;
   const Bone& bone = *std::ranges::find(kBones, right ? other_side(role) : role, &Bone::role);
@@ -60,8 +90,7 @@ Joint joint_of(JointRole role, const SkeletonRoles& roles) {
   const JointRole parent = right ? other_side(bone.parent) : bone.parent;
   joint.parent = role == pelvis ? -1 : roles.joint(parent);
   joint.offset = side.cwiseProduct(bone.offset);
-  if (role == pelvis) joint.channels = {x_position, y_position, z_position};
-  joint.channels.insert(joint.channels.end(), {z_rotation, x_rotation, y_rotation});
+  joint.channels = channels_of(role, axis_order(bone.role));
   if (bone.tip.norm() > 0) joint.end_sites = {side.cwiseProduct(bone.tip)};
   return joint;
 }
@@ -96,12 +125,31 @@ const SkeletonRoles& humanoid_roles() {
 bool is_humanoid(const Skeleton& skeleton) {
   const Skeleton& humanoid = canonical_humanoid();
   if (skeleton.joint_count() != humanoid.joint_count()) return false;
-  for (int j = 0; j < humanoid.joint_count(); ++j)
-    if (skeleton.joints[j].name != humanoid.joints[j].name ||
-        skeleton.joints[j].parent != humanoid.joints[j].parent ||
-        skeleton.joints[j].channels != humanoid.joints[j].channels)
+  for (int j = 0; j < humanoid.joint_count(); ++j) {
+    const Joint &joint = skeleton.joints[j], &own = humanoid.joints[j];
+    if (joint.name != own.name || joint.parent != own.parent) return false;
+    if (joint.channels != own.channels &&
+        joint.channels != channels_of(*humanoid_roles().role_of(j), kFormerOrder))
       return false;
+  }
   return true;
+}
+
+Motion with_humanoid_orders(const Motion& motion) {
+  Motion result = motion;
+  if (!is_humanoid(motion.skeleton)) return result;
+  for (int j = 0; j < motion.skeleton.joint_count(); ++j) {
+    const Joint& was = motion.skeleton.joints[j];
+    Joint& now = result.skeleton.joints[j];
+    now.channels = canonical_humanoid().joints[j].channels;
+    if (now.channels == was.channels) continue;
+    const int first = motion.skeleton.first_channel(j);
+    for (int t = 0; t < motion.frames(); ++t)
+      set_local_rotation(now, local_rotation(was, motion.channels.row(t).data() + first),
+                         t > 0 ? result.channels.row(t - 1).data() + first : nullptr,
+                         result.channels.row(t).data() + first);
+  }
+  return result;
 }
 
 }  // namespace mcdbn

@@ -3,13 +3,14 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "base/numbers.hpp"
 #include "motion/nearest_rotation.hpp"
 #include "motion/rotation_vector.hpp"
 
 namespace mcdbn {
 
 JointLimits JointLimits::of(const std::vector<Eigen::Matrix3d>& seen) {
-  constexpr double kLeftOut = 0.005, kBeyond = 5 * EIGEN_PI / 180;
+  constexpr double kLeftOut = 0.005, kBeyond = 5 * kRadiansPerDegree;
   JointLimits limits;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero(), spread = Eigen::Matrix3d::Zero();
   for (const Eigen::Matrix3d& rotation : seen) sum += rotation;
@@ -43,11 +44,6 @@ Eigen::Matrix3d JointLimits::clamped(const Eigen::Matrix3d& rotation,
                         within = turn.cwiseMax(low).cwiseMin(high);
   if (within == turn) return rotation;
   return middle_ * rotation_of(axes_ * within);
-}
-
-double JointLimits::beyond_deg(const Eigen::Matrix3d& rotation) const {
-  const Eigen::Vector3d turn = coordinates(rotation);
-  return (turn - turn.cwiseMax(low_).cwiseMin(high_)).norm() * 180 / EIGEN_PI;
 }
 
 }  // namespace mcdbn

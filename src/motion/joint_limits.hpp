@@ -16,8 +16,6 @@ class JointLimits {
   /// The rotation if it is within, or not farther out than `as_seen` along each axis; else the
   /// nearest that is.
   Eigen::Matrix3d clamped(const Eigen::Matrix3d& rotation, const Eigen::Matrix3d& as_seen) const;
-  /// Degrees beyond the box, 0 within.
-  double beyond_deg(const Eigen::Matrix3d& rotation) const;
 
  private:
   Eigen::Vector3d coordinates(const Eigen::Matrix3d& rotation) const;

@@ -32,7 +32,8 @@ void scale_bones(Motion& motion, const std::function<double(int joint)>& factor)
     // Positions stand for offsets.
     if (j > root) scale_positions(motion, j, longer);
   }
-  scale_positions(motion, root, body_height(skeleton) / size);
+  // The path is the sum of what these joints travel.
+  for (int j = 0; j <= root; ++j) scale_positions(motion, j, body_height(skeleton) / size);
 }
 
 Motion with_other_body(Motion motion, const OtherBody& deviations, std::uint64_t seed) {

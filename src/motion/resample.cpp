@@ -9,6 +9,7 @@
 
 #include "base/counted.hpp"
 #include "base/interruption.hpp"
+#include "base/numbers.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -146,7 +147,7 @@ double largest_turn_deg(const Motion& motion, int frame) {
     largest = std::max(largest, from.angularDistance(to));
     first += static_cast<int>(joint.channels.size());
   }
-  return largest * 180.0 / std::numbers::pi;
+  return largest / kRadiansPerDegree;
 }
 
 /// Whether a frame's rotations are whole degrees and at least three in four of them zero.

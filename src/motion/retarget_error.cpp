@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/numbers.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
 #include "motion/body_size.hpp"
 #include "motion/rig_axes.hpp"
@@ -54,8 +55,8 @@ RetargetError retarget_error(const HumanoidRig& rig, const Motion& motion) {
     for (std::size_t k = 0; k < kept.size(); ++k) {
       const auto joint = static_cast<std::size_t>(kept[k]);
       const double deg = Eigen::Quaterniond(was.world_from_joint[joint])
-                             .angularDistance(Eigen::Quaterniond(is.world_from_joint[joint])) *
-                         180 / EIGEN_PI,
+                             .angularDistance(Eigen::Quaterniond(is.world_from_joint[joint])) /
+                         kRadiansPerDegree,
                    off_mm = mm * (was.position[joint] - is.position[joint]).norm();
       RetargetError::OfJoint& of = error.joints[k];
       of.mean_deg += deg / some.frames();

@@ -6,36 +6,10 @@
 
 #include "base/interruption.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "motion/body_root.hpp"
 
 namespace mcdbn {
 namespace {
-
-/// Whether the joint has a position channel, that is, moves against its parent.
-bool has_position(const Joint& joint) {
-  return std::any_of(joint.channels.begin(), joint.channels.end(),
-                     [](Channel channel) { return !is_rotation(channel); });
-}
-
-/// The only child of `joint`, or -1.
-int only_child(const Skeleton& skeleton, int joint) {
-  int child = -1;
-  for (int i = joint + 1; i < skeleton.joint_count(); ++i) {
-    if (skeleton.joints[i].parent != joint) continue;
-    if (child >= 0) return -1;
-    child = i;
-  }
-  return child;
-}
-
-/// Where the body begins: the last joint with position channels on the root's chain of only
-/// children. The offset of a joint before it is where the clip happens to stand, not a bone.
-int body_root(const Skeleton& skeleton) {
-  int root = 0;
-  for (int joint = 0; joint >= 0; joint = only_child(skeleton, joint)) {
-    if (has_position(skeleton.joints[joint])) root = joint;
-  }
-  return root;
-}
 
 /// Size of the box around the rest pose, the body's root at the origin. As `root` stands on the
 /// chain of only children, all joints after it are below it.
@@ -158,10 +132,11 @@ int moving_root(const std::vector<const Motion*>& clips) {
   if (clips.empty()) return 0;
   const Skeleton& skeleton = clips.front()->skeleton;
   if (skeleton.joints.empty()) return 0;
+  int root = 0;
   for (int joint = 0; joint >= 0; joint = only_child(skeleton, joint)) {
-    if (travels(clips, skeleton.joints[joint].name)) return joint;
+    if (travels(clips, skeleton.joints[joint].name)) root = joint;
   }
-  return 0;
+  return root;
 }
 
 }  // namespace mcdbn

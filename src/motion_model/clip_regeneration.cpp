@@ -63,24 +63,19 @@ class OtherSkeleton {
   SkeletonRoles roles_;
 };
 
-/// The body and the camera found in one part of a track, which its other parts use.
-struct FoundBody {
-  Camera camera;
-  Skeleton skeleton;
-};
-
 /// A part as it was regenerated, once for each answer, at the track's rate.
 struct RegeneratedPart {
   TrackPart part;
   std::vector<Motion> motions;
-  std::vector<FoundBody> bodies;
+  std::vector<Skeleton> bodies;  ///< by answer, of the skeleton that is regenerated
+  Camera camera;                 ///< that sees all of them
   MatrixD uncertainty;
   TrackFeatures::FillCount filled;
   std::vector<SideSwap> swaps;
   bool placed_by_size = false;
 };
 
-/// The body and the camera, where not given, are found in the stretch that shows a body in the most
+/// The body and the camera, where not given, are found in the part that shows a body in the most
 /// frames, for all others.
 class PartRegeneration {
  public:
@@ -104,12 +99,14 @@ class PartRegeneration {
     std::ptrdiff_t most = -1;
     for (const FrameRange& stretch : stretches) {
       if (placement_.detected) put_sides_right(stretch, swaps);
-      const auto begin = bodies.begin() + stretch.first;
-      if (const auto shown = std::count(begin, begin + stretch.frames, true); shown > most) {
-        most = shown;
-        reference = parts.size();
+      for (const TrackPart& part : parts_of(track_, stretch)) {
+        const auto begin = bodies.begin() + part.range.first;
+        if (const auto shown = std::count(begin, begin + part.range.frames, true); shown > most) {
+          most = shown;
+          reference = parts.size();
+        }
+        parts.push_back(part);
       }
-      for (const TrackPart& part : parts_of(track_, stretch)) parts.push_back(part);
     }
     std::vector<RegeneratedPart> done(parts.size());
     done[reference] = regenerated(parts[reference], nullptr);
@@ -131,7 +128,7 @@ class PartRegeneration {
   }
 
   RegeneratedPart regenerated(const TrackPart& part, const RegeneratedPart* reference) const {
-    RegeneratedPart done{part, {}, {}, {}, {}, {}};
+    RegeneratedPart done{part, {}, {}, {}, {}, {}, {}};
     const FrameRange& range = part.range;
     SeenClip seen =
         see_clip(modalities_,
@@ -149,11 +146,13 @@ class PartRegeneration {
       const std::size_t answer = done.motions.size();
       ClipPlacement placement = placement_of(answer, reference);
       placement.found = seen.view;
+      if (answer > 0) placement.camera = done.camera;  // one camera sees all answers
       const FittedClip clip =
           fit_to_track(prior, modalities_, seen.joints, placement, placement.fit,
                        answer == 0 ? placement.uncertainty_draws : PosteriorDraws{});
       done.motions.push_back(at_tracks_rate(clip.motion, range));
-      done.bodies.push_back({clip.camera, clip.motion.skeleton});
+      done.bodies.push_back(clip.motion.skeleton);
+      done.camera = clip.camera;
       done.placed_by_size = done.placed_by_size || clip.placed_by_size;
       if (clip.draws.empty()) continue;
       std::vector<Motion> draws;
@@ -166,10 +165,10 @@ class PartRegeneration {
   ClipPlacement placement_of(std::size_t answer, const RegeneratedPart* reference) const {
     ClipPlacement placement = placement_;
     if (reference == nullptr) return placement;
-    placement.camera = reference->bodies[answer].camera;
+    placement.camera = reference->camera;
     // A body that was found is not exact.
     if (!placement.skeleton) placement.detected = placement.skeleton_found = true;
-    placement.skeleton = reference->bodies[answer].skeleton;
+    placement.skeleton = reference->bodies[answer];
     return placement;
   }
 
@@ -203,10 +202,26 @@ TrackFeatures::FillCount filled_in(const std::vector<RegeneratedPart>& parts) {
   return all;
 }
 
+/// Adds whole turns to angles, by channel the same in all rows, so that the first row is as near as
+/// possible to the one before.
+/// @param rows [frames x channels], degrees  @param before [1 x channels]
+void turn_on_from(const RowVectorD& before, const Skeleton& skeleton, MatrixD& rows) {
+  Eigen::Index column = 0;
+  for (const Joint& joint : skeleton.joints)
+    for (const Channel channel : joint.channels) {
+      if (is_rotation(channel))
+        rows.col(column).array() += 360 * std::round((before[column] - rows(0, column)) / 360);
+      ++column;
+    }
+}
+
 /// Puts a part behind what stands; over the frames that both have it fades in.
 void join(Motion& whole, const Motion& motion, const TrackPart& part) {
   if (part.shared == 0) {
-    whole.channels.middleRows(part.range.first, part.range.frames) = motion.channels;
+    MatrixD rows = motion.channels;
+    if (part.range.first > 0)
+      turn_on_from(whole.channels.row(part.range.first - 1), whole.skeleton, rows);
+    whole.channels.middleRows(part.range.first, part.range.frames) = rows;
     return;
   }
   for (int t = 0; t < part.range.frames; ++t) {
@@ -253,12 +268,9 @@ std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d&
     if (uncertainty.size() > 0) join(uncertainty, part.uncertainty, part.part);
   }
   if (!findings) return motions;
-  *findings = {filled_in(parts),
-               {},
-               parts.front().bodies.front().camera,
-               std::move(uncertainty),
-               std::move(found),
-               std::ranges::any_of(parts, &RegeneratedPart::placed_by_size)};
+  *findings = {filled_in(parts),     {},
+               parts.front().camera, std::move(uncertainty),
+               std::move(found),     std::ranges::any_of(parts, &RegeneratedPart::placed_by_size)};
   for (const RegeneratedPart& part : parts)
     findings->swaps.insert(findings->swaps.end(), part.swaps.begin(), part.swaps.end());
   std::ranges::sort(findings->swaps, {}, &SideSwap::first_frame);

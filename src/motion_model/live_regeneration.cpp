@@ -12,6 +12,7 @@
 #include "camera/track_resample.hpp"
 #include "fitting/sliding_fit.hpp"
 #include "fitting/track_smoothing.hpp"
+#include "fitting/usual_body.hpp"
 #include "machines/running_regeneration.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "motion/resample.hpp"
@@ -328,10 +329,9 @@ Motion LiveRegeneration::before_anybody(const Model& model, const ClipPlacement&
   (void)look_ahead_of(model, look_ahead);
   check_skeleton(model.modalities, placement);
   // How large the camera's image is does not matter to the pose.
-  return standing_mean(
-      model.modalities,
-      placement.skeleton ? *placement.skeleton : model.modalities.pose_features.skeleton(),
-      placement.camera_of(Track2d{}, model.modalities));
+  return standing_mean(model.modalities,
+                       body_to_begin_with(known_of(placement, true), model.modalities),
+                       placement.camera_of(Track2d{}, model.modalities));
 }
 
 std::vector<LiveFrame> LiveRegeneration::push(const TrackFrame& frame) {

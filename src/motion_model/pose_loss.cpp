@@ -72,17 +72,18 @@ void PoseLoss::differentiate(const Matrix& prediction, const Matrix& target, Mat
                         {"FEET", to_int(std::max<std::size_t>(feet_, 1))},
                         {"VELOCITY", velocity_feature_}};
   const LaunchSize size{{windows_.rows(), 1}};
-  const int frames = to_int(windows_.frames), lead = to_int(windows_.lead);
+  const int frames = to_int(windows_.frames), judged_from = to_int(windows_.judged_from);
   launch(device, device.programs().kernel("kinematic_loss.cl", "position_differences", defines),
          size, prediction.buffer(), target.buffer(), differences_.buffer(),
-         to_int(differences_.stride()), frames, lead, bone_table_, levers_, columns_, scale_);
+         to_int(differences_.stride()), frames, judged_from, bone_table_, levers_, columns_,
+         scale_);
   const cl_float4 weights{{static_cast<float>(weights_.features),
                            static_cast<float>(weights_.positions / (kPosition_m * kPosition_m)),
                            static_cast<float>(weights_.velocities / (kStep_m * kStep_m)),
                            static_cast<float>(weights_.contacts / (kStep_m * kStep_m))}};
   launch(device, device.programs().kernel("kinematic_loss.cl", "pose_errors", defines), size,
          prediction.buffer(), target.buffer(), differences_.buffer(), to_int(differences_.stride()),
-         to_int(windows_.count), frames, lead, weights, static_cast<float>(frame_s_),
+         to_int(windows_.count), frames, judged_from, weights, static_cast<float>(frame_s_),
          static_cast<float>(frame_s_ * weights_.planted_below_m_s), bone_table_, levers_, columns_,
          scale_, error.buffer(), losses_.buffer(), to_int(losses_.stride()));
   column_sum(losses_, 1.0F, 1.0F, sums_);

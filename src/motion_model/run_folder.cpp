@@ -42,7 +42,7 @@ bool holds_training(const fs::path& path) {
 
 }  // namespace
 
-/// Which headers that users see need not know.
+/// Hides FolderLock from the public header.
 class RunFolder::Lock : public FolderLock {
  public:
   using FolderLock::FolderLock;
@@ -77,15 +77,15 @@ RunFolder RunFolder::begin(const fs::path& path, const TrainingConfig& config,
   run.clips_ = clips;
   run.begun_here_ = true;
   try {
-    run.note_beginning(start);
+    run.write_start_record(start);
   } catch (...) {
-    run.take_back();  // of a full disk nothing is left that stands in the way later
+    run.discard_if_untrained();  // of a full disk nothing is left that stands in the way later
     throw;
   }
   return run;
 }
 
-void RunFolder::note_beginning(const fs::path& start) {
+void RunFolder::write_start_record(const fs::path& start) {
   std::error_code error;
   fs::remove_all(unfinished(), error);
   make_folder(unfinished());
@@ -122,7 +122,7 @@ RunFolder RunFolder::resume(const fs::path& path) {
   return run;
 }
 
-bool RunFolder::take_back() {
+bool RunFolder::discard_if_untrained() {
   std::error_code error;
   const fs::path metrics = unfinished() / kMetricsFile;
   const bool learnt = Checkpoints::exist_in(unfinished()) ||

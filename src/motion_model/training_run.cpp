@@ -75,7 +75,7 @@ TrainedRun train_to_folder(Device& device, const TrainingSet& data, const ClipSt
   options.folder = run.unfinished();
   options.every = std::chrono::duration<double>(60 * settings.minutes);
   if (watch.warning) options.warn = watch.warning;
-  options.more = [&](TrainingState& state) {
+  options.extra_state = [&](TrainingState& state) {
     if (metrics) metrics_bytes = metrics->bytes();
     state.number("metrics.bytes", metrics_bytes);
     digest.visit_state(state, run);

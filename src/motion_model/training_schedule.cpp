@@ -39,27 +39,29 @@ SequenceLossMaker pose_loss_maker(const Modalities& modalities, const PoseLossWe
   };
 }
 
-/// Fine-tuning on those lessons.
-/// @param strangers views of the person held out, or none
-/// @param before_deviation that is learnt from the lessons as they are then
-TrainedNetwork fine_tune_on(Device& device, const Mcdbn& start, const SequenceSource& lessons,
-                            const TrainingSet* strangers, const Modalities& modalities,
-                            const TrainingConfig& config, const EpochObserver& observer,
-                            Checkpoints* checkpoints,
-                            const std::function<void()>& before_deviation = {}) {
-  std::optional<ClipSource> judges;
-  if (strangers != nullptr) judges.emplace(*strangers);
-  FineTuned tuned = fine_tune(device, start, lessons, judges ? &*judges : nullptr, config,
-                              pose_loss_maker(modalities, config.pose_loss), observer, checkpoints);
+/// Fine-tuning, and how far off the answers are.
+/// @param source to learn from
+/// @param held_out_views of the person held out, or none
+/// @param before_deviation is called before the answers' deviation is learnt from the source
+TrainedNetwork fine_tune_on_source(Device& device, const Mcdbn& start, const SequenceSource& source,
+                                   const TrainingSet* held_out_views, const Modalities& modalities,
+                                   const TrainingConfig& config, const EpochObserver& observer,
+                                   Checkpoints* checkpoints,
+                                   const std::function<void()>& before_deviation = {}) {
+  std::optional<ClipSource> held_out_source;
+  if (held_out_views != nullptr) held_out_source.emplace(*held_out_views);
+  FineTuned tuned =
+      fine_tune(device, start, source, held_out_source ? &*held_out_source : nullptr, config,
+                pose_loss_maker(modalities, config.pose_loss), observer, checkpoints);
   if (before_deviation) before_deviation();
-  std::optional<SynchronizedClips> unseen;
-  if (judges) unseen = judges->sequences();
-  tuned.network.deviation =
-      learnt_deviation(tuned.network, lessons.sequences(), unseen ? &*unseen : nullptr);
+  std::optional<SynchronizedClips> held_out_clips;
+  if (held_out_source) held_out_clips = held_out_source->sequences();
+  tuned.network.deviation = learnt_deviation(tuned.network, source.sequences(),
+                                             held_out_clips ? &*held_out_clips : nullptr);
   TrainedNetwork trained{std::move(tuned.network), {}};
-  if (strangers != nullptr)
+  if (held_out_views != nullptr)
     trained.early_stopping =
-        EarlyStopping{clip_names(*strangers), tuned.kept->steps, tuned.kept->loss};
+        EarlyStopping{clip_names(*held_out_views), tuned.kept->steps, tuned.kept->loss};
   return trained;
 }
 
@@ -126,17 +128,17 @@ TrainingSet make_augmented_views(const ClipStore& clips, const Modalities& modal
                               person_to_hold_out(clips, config.hold_out_among));
 }
 
-TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& views,
-                         const TrainingConfig& config, const EpochObserver& observer,
-                         Checkpoints* checkpoints) {
-  std::optional<TrainingSet> others, stranger;
+TrainedNetwork fine_tune_on_views(Device& device, const Mcdbn& start, const TrainingSet& views,
+                                  const TrainingConfig& config, const EpochObserver& observer,
+                                  Checkpoints* checkpoints) {
+  std::optional<TrainingSet> others, held_out_views;
   if (const auto person = person_to_hold_out(views, config.hold_out_among)) {
     others = views_without(views, *person);
-    stranger = views_of(views, *person);
+    held_out_views = views_of(views, *person);
   }
-  return fine_tune_on(device, start, ClipSource(others ? *others : views),
-                      stranger ? &*stranger : nullptr, views.modalities, config, observer,
-                      checkpoints);
+  return fine_tune_on_source(device, start, ClipSource(others ? *others : views),
+                             held_out_views ? &*held_out_views : nullptr, views.modalities, config,
+                             observer, checkpoints);
 }
 
 TrainedNetwork train_network(Device& device, const TrainingSet& data, const ClipStore& clips,
@@ -154,17 +156,17 @@ TrainedNetwork train_network(Device& device, const TrainingSet& data, const Clip
   if (learns_from_fresh_views(clips, config)) {
     const FreshViewSource views(clips, data, config);
     start = greedy_start(device, views, std::move(start), config, observer, checkpoints);
-    const auto& strangers = views.strangers();
+    const auto& held_out_views = views.held_out_views();
     // Views that nothing was learnt from, the same after a training that was interrupted.
-    return fine_tune_on(device, start, views, strangers ? &*strangers : nullptr, data.modalities,
-                        config, tuning, checkpoints,
-                        [&] { views.renew(config.fine_tuning.steps + views.lifetime()); });
+    return fine_tune_on_source(device, start, views, held_out_views ? &*held_out_views : nullptr,
+                               data.modalities, config, tuning, checkpoints,
+                               [&] { views.renew(config.fine_tuning.steps + views.lifetime()); });
   }
   const ViewSource views(clips, data, config);
   start = greedy_start(device, views, std::move(start), config, observer, checkpoints);
-  const auto& strangers = views.strangers();
-  return fine_tune_on(device, start, views, strangers ? &*strangers : nullptr, data.modalities,
-                      config, tuning, checkpoints);
+  const auto& held_out_views = views.held_out_views();
+  return fine_tune_on_source(device, start, views, held_out_views ? &*held_out_views : nullptr,
+                             data.modalities, config, tuning, checkpoints);
 }
 
 }  // namespace mcdbn

@@ -14,7 +14,8 @@
 namespace mcdbn {
 namespace {
 
-/// Of a view of a corpus that is too large to be asked.
+/// How many windows are drawn from a view before a fresh one replaces it, where the settings do not
+/// say so: the corpus is too large to keep all its views.
 constexpr std::size_t kUsesOfMany = 16;
 
 PieceChoice pieces_of(const TrainingConfig& config) {
@@ -22,7 +23,7 @@ PieceChoice pieces_of(const TrainingConfig& config) {
 }
 
 /// Users' seeds are small numbers: no other views are drawn with this one.
-std::uint64_t seed_of_strangers(const TrainingConfig& config) {
+std::uint64_t held_out_seed(const TrainingConfig& config) {
   return config.seed + (1ULL << 32U);
 }
 
@@ -74,7 +75,8 @@ TrainingSet some_fresh_views(const ClipStore& clips, const Modalities& modalitie
       .make_set(0, static_cast<std::size_t>(kMostFramesInMemory / pieces.frames));
 }
 
-/// The views that are there, each in a place of its own that the next but so many takes over.
+/// The views in use, `count` at a time: view n is in place n mod count until view n + count
+/// replaces it.
 class ViewLoader {
  public:
   ViewLoader(FreshViews views, std::size_t count, const FineTuningSettings& settings)
@@ -84,14 +86,17 @@ class ViewLoader {
             static_cast<double>(settings.view_uses > 0 ? settings.view_uses : kUsesOfMany)),
         tracks_(count),
         poses_(count),
-        seen_(count) {
+        seen_(count),
+        groups_(count) {
     fill(0);
   }
 
   SynchronizedClips sequences() const {
     return {{{kModalityNames[kTrack], tracks_, VisibleKind::gaussian, seen_},
              {kModalityNames[kPose], poses_}},
-            {}};
+            groups_,
+            views_.group_frames(),
+            views_.groups_power()};
   }
   bool renew(std::size_t step) {
     const auto first = static_cast<std::size_t>(static_cast<double>(step) * fresh_a_step_);
@@ -104,7 +109,7 @@ class ViewLoader {
   }
 
  private:
-  /// Makes the views that are there `first` and those after it.
+  /// Puts the views from `first` on in place.
   void fill(std::size_t first) {
     const std::size_t count = tracks_.size(), end = first_ + count;
     if (!ahead_ || first < first_ || first >= end) {
@@ -122,6 +127,7 @@ class ViewLoader {
   void take(std::size_t number) {
     EncodedView view = ahead_->next();
     const std::size_t place = number % tracks_.size();
+    groups_[place] = views_.group_of(view);
     tracks_[place] = std::move(view.track);
     poses_[place] = std::move(view.pose);
     seen_[place] = std::move(view.track_seen);
@@ -130,6 +136,7 @@ class ViewLoader {
   FreshViews views_;
   double fresh_a_step_;
   std::vector<MatrixF> tracks_, poses_, seen_;
+  std::vector<std::size_t> groups_;
   std::size_t first_ = 0;
   std::optional<MadeAhead<EncodedView>> ahead_;  // last: its threads use what is above
 };
@@ -142,12 +149,13 @@ FreshViewSource::FreshViewSource(const ClipStore& clips, const TrainingSet& data
       FreshViews(clips, data.modalities, config, data.new_poses, config.seed, pieces),
       fresh_views_at_once(clips, config), config.fine_tuning);
   if (!pieces.people.without) return;
-  constexpr std::size_t kViewsOfStranger = 24;
+  constexpr std::size_t kHeldOutViews = 24;
   pieces.people = {.without = {}, .only = pieces.people.without};
-  strangers_ =
+  held_out_views_ =
       FreshViews(clips, data.modalities, config, pose_pool_for(clips, config, pieces.people),
-                 seed_of_strangers(config), pieces)
-          .make_set(0, kViewsOfStranger);
+                 held_out_seed(config), pieces)
+          .make_set(0, kHeldOutViews);
+  held_out_views_->groups.clear();  // the person's actions are drawn as they weigh already
 }
 
 FreshViewSource::~FreshViewSource() = default;

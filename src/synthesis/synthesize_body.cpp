@@ -1,14 +1,15 @@
 #include "synthesis/synthesize_body.hpp"
 
 #include <Eigen/Geometry>
-#include <numbers>
 #include <string>
+
+#include "base/numbers.hpp"
 
 namespace mcdbn::synthesis {
 namespace {
 
 Eigen::Matrix3d rotation(double angle_deg, const Eigen::Vector3d& axis) {
-  return Eigen::AngleAxisd(angle_deg * std::numbers::pi / 180, axis).toRotationMatrix();
+  return Eigen::AngleAxisd(angle_deg * kRadiansPerDegree, axis).toRotationMatrix();
 }
 
 const std::vector<Channel> kZxy{Channel::z_rotation, Channel::x_rotation, Channel::y_rotation};

@@ -3,12 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "base/numbers.hpp"
 
 namespace mcdbn::synthesis {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 /// Legs are never straighter than this fraction of their length: a knee that locks would snap.
 constexpr double kLongestReach = 0.998;
 
@@ -16,7 +16,8 @@ using Rotations = std::array<Eigen::Matrix3d, kJointCount>;  ///< parent_from_jo
 
 /// Angle between the sides `a` and `b` of a triangle whose third side is `c`, degrees.
 double triangle_angle_deg(double a, double b, double c) {
-  return std::acos(std::clamp((a * a + b * b - c * c) / (2 * a * b), -1.0, 1.0)) * kDegrees;
+  return std::acos(std::clamp((a * a + b * b - c * c) / (2 * a * b), -1.0, 1.0)) /
+         kRadiansPerDegree;
 }
 
 Eigen::Matrix3d world_from_pelvis(const Frame& frame) {

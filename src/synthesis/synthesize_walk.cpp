@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/numbers.hpp"
 #include "synthesis/synthesize_actions.hpp"
 #include "synthesis/synthesize_curves.hpp"
 
@@ -90,7 +91,6 @@ Gait::Gait(ClipSetup& setup, double last_phase)
 LegPose Gait::leg(Side side, double phase) const {
   const double cycle = foot_phase(side, phase);
   const double scale = stride_scale(phase);
-  const double radians = std::numbers::pi / 180;
   const double thigh = scale * thigh_(cycle), knee = scale * knee_(cycle), ankle = ankle_(cycle);
   const double shank = thigh - knee;
   double pitch = shank + ankle;
@@ -101,9 +101,9 @@ LegPose Gait::leg(Side side, double phase) const {
     const double ball = smooth_step(0.34, 0.48, in_cycle);
     pitch = in_cycle < kMidStance ? heel * std::max(0.0, pitch) : ball * std::min(0.0, pitch);
   }
-  return {body_.thigh * std::sin(thigh * radians) + body_.shank * std::sin(shank * radians),
-          -body_.thigh * std::cos(thigh * radians) - body_.shank * std::cos(shank * radians),
-          pitch};
+  const double thigh_rad = thigh * kRadiansPerDegree, shank_rad = shank * kRadiansPerDegree;
+  return {body_.thigh * std::sin(thigh_rad) + body_.shank * std::sin(shank_rad),
+          -body_.thigh * std::cos(thigh_rad) - body_.shank * std::cos(shank_rad), pitch};
 }
 
 double Gait::pelvis_turn_deg(double phase) const {

@@ -92,11 +92,20 @@ TEST_CASE("matrices come back from every kind of file, bit for bit") {
     write_matrix(folder / name, values.topLeftCorner(1, 1));
     CHECK(same_bits(read_matrix(folder / name), values.topLeftCorner(1, 1)));
   }
-  write_matrix(folder / "empty.npy", MatrixF(0, 4));
-  CHECK(read_matrix(folder / "empty.npy").cols() == 4);
   CHECK_FALSE(is_matrix_file("x.txt"));
   CHECK(complaint(folder / "x.txt").find("unknown kind of file") != std::string::npos);
   CHECK_THROWS_AS(write_matrix(folder / "x.txt", values), InputError);
+}
+
+TEST_CASE("matrices without a row are refused in every kind of file") {
+  const ScratchFolder folder;
+  for (const char* name : {"x.npy", "x.csv", "x.safetensors"}) {
+    CAPTURE(name);
+    write_matrix(folder / name, MatrixF(0, 4));
+    CHECK(complaint(folder / name) == ": no numbers");
+  }
+  CHECK(complaint(folder.write("flat.npy", npy_of(header_of("<f4", "(0,)"), ""))) ==
+        ": no numbers");
 }
 
 TEST_CASE("npy: every type of number, both orders, all versions") {

@@ -265,3 +265,37 @@ TEST_CASE("two outputs of a command in one place are refused, whatever they are 
   }
   CHECK(test::entries_of(folder / "") == std::set<std::string>{"link", "sub"});
 }
+
+TEST_CASE("an output may be named as a folder that is not there, by a slash at its end") {
+  const test::ScratchFolder folder;
+  const fs::path frames = folder / "frames/";
+  {
+    OutputBatch batch;
+    CHECK_NOTHROW(check_output(frames, OutputKind::file_or_folder));
+    CHECK_THROWS_WITH_AS(check_output(folder / "frames", OutputKind::file_or_folder),
+                         doctest::Contains("written twice"), InputError);
+    CHECK_THROWS_WITH_AS(check_output(folder / "none/frames/", OutputKind::file_or_folder),
+                         doctest::Contains("there is no folder"), InputError);
+    OutputFile output(frames);
+    fs::create_directory(output.temporary());
+    output.put_in_place();
+    batch.put_in_place();
+  }
+  CHECK(fs::is_directory(folder / "frames"));
+  CHECK(test::entries_of(folder / "") == std::set<std::string>{"frames"});
+}
+
+TEST_CASE("a file is not named by a slash at its end, and no folder takes its place") {
+  const test::ScratchFolder folder;
+  for (const char* name : {"new.csv/", "old.csv/"}) {
+    CAPTURE(name);
+    folder.write("old.csv", "old");
+    CHECK_THROWS_WITH_AS(check_output(folder / name), doctest::Contains("is a folder"), InputError);
+    CHECK_THROWS_WITH_AS(write_text_file(folder / name, "new"), doctest::Contains("is a folder"),
+                         InputError);
+  }
+  CHECK_THROWS_WITH_AS(check_output(folder / "old.csv/", OutputKind::file_or_folder),
+                       doctest::Contains("is no folder"), InputError);
+  CHECK(read_text_file(folder / "old.csv") == "old");
+  CHECK(test::entries_of(folder / "") == std::set<std::string>{"old.csv"});
+}

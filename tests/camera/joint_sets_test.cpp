@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "mcdbn/base/errors.hpp"
 
@@ -41,7 +44,8 @@ TEST_CASE("joint sets: every name is there once, and its other side too") {
       CHECK(other->offset.x() == -keypoint.offset.x());
       CHECK(other->offset.tail<2>() == keypoint.offset.tail<2>());
       CHECK(keypoint.offset.norm() < 0.1);
-      if (keypoint.name.find("humb") == std::string::npos) CHECK(keypoint.role.has_value());
+      if (keypoint.name.find("humb") == std::string::npos && keypoint.name != "spine")
+        CHECK(keypoint.role.has_value());
     }
     CHECK(&joint_set(set.name) == &set);
   }
@@ -63,6 +67,11 @@ TEST_CASE("joint sets: the orders of the detectors' documents") {
   CHECK(at("COCO_23", 19).name == "left_heel");
   CHECK(at("MEDIAPIPE_33", 32).name == "right_foot_index");
   CHECK(at("H36M_17", 16).role == JointRole::right_wrist);
+  CHECK(at("H36M_17", 3).role == JointRole::right_ankle);
+  // Halfway between hips and thorax: not the lowest joint of a skeleton's spine.
+  CHECK(at("H36M_17", 7).name == "spine");
+  CHECK(!at("H36M_17", 7).role);
+  CHECK(at("H36M_17", 7).halfway == std::pair{JointRole::pelvis, JointRole::neck});
 }
 
 TEST_CASE("keypoints: names in the usual spellings") {
@@ -89,4 +98,31 @@ TEST_CASE("keypoints: the left ear of a mouse is no left ear") {
   CHECK(keypoints[0].role == JointRole::head);
   CHECK(keypoints[4].role == JointRole::right_knee);
   CHECK(!keypoints[5].role);
+}
+
+TEST_CASE("keypoints: a foot is the ankle where nothing else is at the ankle, else the toes") {
+  using enum JointRole;
+  using Names = std::vector<std::string>;
+  // @return the roles of LFoot and RFoot beside those names and the usual ones
+  const auto feet = [](Names names) {
+    for (const char* name : {"RHip", "RKnee", "LHip", "LKnee", "LFoot", "RFoot"})
+      names.emplace_back(name);
+    const auto keypoints = keypoints_of(names);
+    const Keypoint &left = keypoints[names.size() - 2], &right = keypoints.back();
+    for (const Keypoint* foot : {&left, &right}) {
+      REQUIRE(foot->role);
+      CHECK(foot->offset.isZero());
+    }
+    return std::pair{*left.role, *right.role};
+  };
+  // VideoPose3D's spelling of Human3.6M's joints.
+  CHECK(feet({"Hip", "Spine", "Thorax", "Nose", "Head", "LShoulder", "LElbow", "LWrist",
+              "RShoulder", "RElbow", "RWrist"}) == std::pair{left_ankle, right_ankle});
+  CHECK(feet({"left_toes", "RBigToe"}) == std::pair{left_ankle, right_ankle});
+  CHECK(feet({"LAnkle", "RAnkle"}) == std::pair{left_toe, right_toe});
+  CHECK(feet({"LHeel", "RHeel"}) == std::pair{left_toe, right_toe});
+  CHECK(feet({"RAnkle"}) == std::pair{left_ankle, right_toe});
+  // Paws and hips alone make no human.
+  for (const Keypoint& keypoint : keypoints_of(Names{"LHip", "RHip", "LFoot", "RFoot", "tail"}))
+    CHECK(!keypoint.role);
 }

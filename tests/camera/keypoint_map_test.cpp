@@ -9,6 +9,8 @@
 #include "camera/keypoint_track.hpp"
 #include "camera/role_body.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
+#include "mcdbn/motion/humanoid.hpp"
 
 namespace keypoint_map_test {
 
@@ -143,6 +145,17 @@ TEST_CASE("keypoint map: what follows from other joints alone is no evidence") {
     keypoints.push_back(keypoint("sacrum", JointRole::pelvis, {0, 0, -0.05}));
     CHECK_FALSE(hidden("Hips"));
   }
+}
+
+TEST_CASE("keypoint map: a place that no joint carries shows none") {
+  // Human3.6M's spine is halfway up the trunk; the humanoid's `spine` is its lowest joint.
+  const Motion motion = standing_still(canonical_humanoid(), 2);
+  const auto& keypoints = joint_set("H36M_17").keypoints;
+  const Track2d seen = keypoint_track(motion, place_camera(motion, {}), keypoints);
+  const KeypointMap map(keypoints, motion.skeleton, humanoid_roles());
+  const Track2d joints = map.joints_of(seen);
+  CHECK(joints.find("neck") >= 0);
+  CHECK(joints.find("spine") < 0);
 }
 
 TEST_CASE("keypoint map: too little of a body is refused") {

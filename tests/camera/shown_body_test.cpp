@@ -53,6 +53,16 @@ TEST_CASE("shown body: joints that no frame shows do not count") {
   CHECK(frames_of_a_body(seen({})).empty());
 }
 
+TEST_CASE("shown body: ankles and toes are feet, in any frame") {
+  const Names legs{"MidHip", "RHip", "LHip", "RKnee", "LKnee"};
+  CHECK(!shows_feet(seen({legs, legs})));
+  for (const char* foot : {"LAnkle", "RAnkle", "LBigToe", "RHeel"})
+    CHECK(shows_feet(seen({legs, {foot}, legs})));
+  Track2d track = seen({{}});
+  track.keypoints.clear();
+  CHECK(!shows_feet(track));
+}
+
 TEST_CASE("shown body: without a detector's joints all columns count") {
   Track2d track = seen({{}, {"Nose"}, {}});
   track.keypoints.clear();

@@ -2,9 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "camera/keypoint_track.hpp"
+#include "camera/role_body.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/camera.hpp"
 #include "motion/synthetic_motion.hpp"
@@ -104,6 +107,34 @@ TEST_CASE("an arm is hidden from the shoulder's child down, in the middle of the
   CHECK(hide_arm(track, chain, 1, 1).empty());
   CHECK_THROWS_AS(hide_arm(track, body, -1, 1), ConfigError);
   CHECK_THROWS_AS(hide_arm(track, body, std::nan(""), 1), ConfigError);
+}
+
+TEST_CASE("an arm of a detector's track is hidden by the roles of its keypoints") {
+  const Motion motion = test::standing_still(test::role_body(), 60);
+  const Camera camera = place_camera(motion, {});
+  const Track2d whole = test::keypoint_track(motion, camera, test::coco_keypoints());
+  std::set<std::vector<std::string>> arms;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    Track2d track = whole;
+    const std::vector<std::string> hidden = hide_arm(track, motion.skeleton, 1, seed);
+    arms.insert(hidden);
+    for (int column = 0; column < track.joint_count(); ++column) {
+      const bool of_arm = std::ranges::count(hidden, track.joint_names[column]) > 0;
+      CAPTURE(track.joint_names[column]);
+      CHECK((track.confidence.col(column).array() == 0).count() == (of_arm ? 30 : 0));
+      if (of_arm) CHECK(track.x_px.col(column).segment(15, 30).array().isNaN().all());
+    }
+  }
+  CHECK(arms == std::set<std::vector<std::string>>{{"left_elbow", "left_wrist"},
+                                                   {"right_elbow", "right_wrist"}});
+  // A detector of knees alone.
+  std::vector<Keypoint> knees;
+  test::add_sides(knees, "knee", JointRole::left_knee);
+  Track2d track = test::keypoint_track(motion, camera, knees);
+  track.keypoints[1].role.reset();  // a place of which nothing is known
+  CHECK(hide_arm(track, motion.skeleton, 1, 1).empty());
+  CHECK_THROWS_AS(damage_track(track, motion.skeleton, {.hidden_s = 1}, 1), InputError);
+  damage_track(track, motion.skeleton, {.noise_px = 1}, 1);
 }
 
 TEST_CASE("damage follows the seed, and none changes nothing") {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "camera/keypoint_track.hpp"
+#include "camera/role_body.hpp"
 #include "camera/show_only.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
 
@@ -49,6 +51,16 @@ Track2d standing(int frames) {
   return track;
 }
 
+/// From that frame on so many times larger, about the hips.
+void magnify(Track2d& track, int first, int frames, double times) {
+  const int hips = track.find("MidHip");
+  for (MatrixD* values : {&track.x_px, &track.y_px})
+    for (int t = first; t < first + frames; ++t) {
+      const double centre = (*values)(t, hips);
+      values->row(t) = centre + times * (values->row(t).array() - centre);
+    }
+}
+
 }  // namespace
 
 TEST_CASE("stretches: frames that show nobody are those without any joint") {
@@ -92,6 +104,59 @@ TEST_CASE("stretches: who is suddenly elsewhere begins another") {
   track.confidence.topRows(10).setOnes();
   track.confidence.middleRows(10, 60).setZero();
   CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 90}});
+}
+
+TEST_CASE("stretches: who is suddenly of another size begins another") {
+  for (const double times : {2.5, 0.4}) {
+    CAPTURE(times);
+    Track2d track = standing(110);
+    magnify(track, 60, 50, times);
+    CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 60}, {60, 50}});
+    // The close-up shows hips and arms alone.
+    show_only(track, 60, 50,
+              {"LHip", "RHip", "RShoulder", "RElbow", "RWrist", "LShoulder", "LElbow", "LWrist"});
+    CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 60}, {60, 50}});
+    // In a second one can come near.
+    track.confidence.middleRows(45, 30).setZero();
+    CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 110}});
+    Track2d moment = standing(110);
+    magnify(moment, 60, 4, times);
+    CHECK(find_stretches(moment).stretches == std::vector<FrameRange>{{0, 110}});
+    CHECK(find_stretches(moment).strays == std::vector<FrameRange>{{60, 4}});
+  }
+}
+
+TEST_CASE("stretches: who becomes larger within a second, or wavers in size, is one") {
+  Track2d track = standing(110);
+  for (int t = 0; t < 30; ++t) magnify(track, 40 + t, 1, 1 + 3.0 * t / 30);
+  magnify(track, 70, 40, 4);
+  for (int t = 0; t < 30; t += 2) magnify(track, t, 1, 1.3);
+  CHECK(find_stretches(track).stretches == std::vector<FrameRange>{{0, 110}});
+  CHECK(find_stretches(track).strays.empty());
+}
+
+TEST_CASE("stretches: who squats or turns is as large as before") {
+  const Skeleton body = role_body();
+  Motion motion = standing_still(body, 90);
+  motion.frame_time_s = 1.0 / 30;
+  const auto turn = [&](const std::string& joint, int axis, double angle_deg) {
+    motion.channels.col(body.first_channel(body.find(joint)) + axis)
+        .tail(45)
+        .setConstant(angle_deg);
+  };
+  const auto stretches = [&] {
+    return find_stretches(keypoint_track(motion, place_camera(motion, {}), coco_keypoints()))
+        .stretches;
+  };
+  for (const std::string& side : {std::string("Left"), std::string("Right")}) {
+    turn(side + "UpLeg", 1, -110);
+    turn(side + "Leg", 1, 130);
+  }
+  CHECK(stretches() == std::vector<FrameRange>{{0, 90}});
+  motion = standing_still(body, 90);
+  motion.frame_time_s = 1.0 / 30;
+  turn("Hips", 5, 90);  // to the side
+  CHECK(stretches() == std::vector<FrameRange>{{0, 90}});
 }
 
 TEST_CASE("stretches: no runner is cut in two, and nothing where no person stays") {

@@ -47,7 +47,7 @@ std::vector<BenchRow> bench_rows() {
     for (const int n : {2, 3}) {
       mrbm["modalities"] = n;
       mrbm["visible"] = 300 * n;
-      // A direction: ten steps but for the first, which starts from zeros; the others' drive.
+      // A direction: ten steps but for the first, which starts from zeros; the others' input.
       rows.push_back({mrbm, batch * n * (6.0 * 10 - 3 + 2 * (n - 1)) * 300 * 150});
     }
     mrbm["visible"] = 600;
@@ -198,6 +198,7 @@ TEST_CASE("info: every option changes what its help describes") {
           const json second = info_of(" --person 2").at("people");
           CHECK(second == json::array({plain.at("people")[1]}));
           CHECK(info_of(" --person all") == plain);
+          CHECK(info_of(" --person largest").at("people") == json::array({plain.at("people")[0]}));
           CHECK(run_cli("info --person 3 " + track.string()).exit_code == 3);
           CHECK(run_cli("info --person tall " + track.string()).exit_code == 2);
         }},

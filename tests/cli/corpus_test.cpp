@@ -72,6 +72,7 @@ TEST_CASE("corpus: every option changes what its help describes") {
               fmt::format("{} --joint-map '{}' -o '{}'", data, map.string(), none.string()));
           CHECK(empty.exit_code == 3);
           CHECK(empty.standard_error.find(none.string() + ": not written") != std::string::npos);
+          CHECK(empty.standard_error.find("none that `mcdbn-cl train` takes") != std::string::npos);
           CHECK(!fs::exists(none));
           // A name that no clip has is a mistake.
           folder.write("map.toml", "left_knee = \"LeftLeggg\"\n");

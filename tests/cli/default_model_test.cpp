@@ -8,6 +8,8 @@
 #include "base/safetensors.hpp"
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
+#include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/motion/humanoid.hpp"
 #include "run_cli.hpp"
 
 using namespace mcdbn::test;
@@ -54,6 +56,11 @@ TEST_CASE("the default model: info, regenerate and evaluate take it and report i
   };
   CHECK(regenerate("", "a.bvh") ==
         regenerate(fmt::format("--model '{}'", shipped().string()), "b.bvh"));
+  // It was trained when all the humanoid's joints had the order Z X Y.
+  const mcdbn::Skeleton answer = mcdbn::read_bvh(folder / "a.bvh").skeleton;
+  REQUIRE(mcdbn::is_humanoid(answer));
+  for (std::size_t j = 0; j < answer.joints.size(); ++j)
+    CHECK(answer.joints[j].channels == mcdbn::canonical_humanoid().joints[j].channels);
   const CliResult evaluated =
       run_cli(fmt::format("evaluate --test '{}' --baselines none --fit none", clip));
   CAPTURE(evaluated.standard_error);

@@ -212,7 +212,7 @@ TEST_CASE("fit: an MRBM of three modalities, and one of them inferred from the o
                 " --infer b") == b.to_host());
 
   check_refused("fit" + out + machines.bits(), 2, "--machine mrbm wants --modality");
-  check_refused("fit" + out + "--modality a=" + path("a.npy"), 2, "two names or more");
+  check_refused("fit" + out + "--modality a=" + path("a.npy"), 2, "at least two");
   check_refused("fit" + out + "--modality a", 2, "--modality a: NAME=FILE is wanted");
   check_refused("fit" + out + modalities + " --gaussian w", 2, "--gaussian w: there is no such");
   check_refused(

@@ -21,6 +21,7 @@ namespace {
 
 constexpr const char* kNobody = "{\"people\": []}\n";
 constexpr const char* kBroken = "{\"people\": [\n";
+constexpr const char* kLog = "INFO: warming up\n";
 
 std::vector<json> frames_in(const std::string& lines) {
   std::vector<json> frames;
@@ -70,17 +71,17 @@ TEST_CASE("regenerate --follow: JSON frames before the first person are written 
   }
 }
 
-TEST_CASE(
-    "regenerate --follow: a broken line before the first person is one more frame of nobody") {
+TEST_CASE("regenerate --follow: broken lines before the first person are more frames of nobody") {
   if (!have_device()) return;
   const FollowScene scene;
   const std::string person = scene.detected_lines();
   const CliResult result = scene.follow(
-      "--frames json", scene.folder.write("late.jsonl", std::string(kNobody) + kNobody + kNobody +
-                                                            kBroken + person));
+      "--frames json",
+      scene.folder.write("late.jsonl", std::string(kNobody) + kNobody + kLog + kBroken + person));
   CAPTURE(result.standard_error);
   REQUIRE(result.exit_code == 0);
-  CHECK(result.standard_error.find("standard input:4:") != std::string::npos);
+  for (const char* line : {"standard input:3:", "standard input:4:"})
+    CHECK(result.standard_error.find(line) != std::string::npos);
   CHECK(result.standard_error.find("taken as a frame that shows no person") != std::string::npos);
   const std::vector<json> frames = frames_in(result.standard_output),
                           alone = frames_in(scene
@@ -121,6 +122,24 @@ TEST_CASE("regenerate --follow: a person whose image's size nothing gives is ref
   CHECK(result.exit_code == 3);
   CHECK(result.standard_error.find("error: standard input:3: ") != std::string::npos);
   CHECK(result.standard_error.find("--image-size") != std::string::npos);
+}
+
+TEST_CASE("regenerate --follow: a stop before anything came is exit code 0 and leaves no file") {
+  if (!have_device()) return;
+  const FollowScene scene;
+  const fs::path out = scene.folder / "out.bvh";
+  // The pipe can be opened for writing once the program has opened it.
+  const fs::path script = scene.folder.write(
+      "stopped.sh",
+      fmt::format("mkfifo '{0}/pipe'\n'{1}' {2} --input '{0}/pipe' -o '{3}' &\n"
+                  "program=$!\nexec 3>'{0}/pipe'\nkill -INT $program\n"
+                  "wait $program\nexit $?\n",
+                  (scene.folder / ".").string(), MCDBN_CLI, scene.call(""), out.string()));
+  const CliResult result = run_program("/bin/bash", fmt::format("'{}'", script.string()));
+  CAPTURE(result.standard_error);
+  CHECK(result.exit_code == 0);
+  CHECK(result.standard_error.find("stopped before the first frame") != std::string::npos);
+  CHECK(!fs::exists(out));
 }
 
 TEST_CASE("regenerate --follow: a pipe whose writer writes nothing ends") {

@@ -3,7 +3,13 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include "base/text_file.hpp"
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/formats/track_csv.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;
@@ -95,6 +101,86 @@ TEST_CASE("of a camera that looks steeply down it is reported what the network d
   CHECK(usual.find("warning") == std::string::npos);
   for (const char* line : {": its world is y-up (opencv)\n", " m are scaled to the motion's, "})
     CHECK(usual.find(line) != std::string::npos);
+}
+
+TEST_CASE("of a film that may be stored turned it is reported which roll sets the body upright") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const auto file = [&](const std::string& name) { return (folder / name).string(); };
+  REQUIRE(run_cli(fmt::format("project '{}' -o '{}' --write-camera '{}'",
+                              (pipeline.motion() / "walk_s02_01.bvh").string(), file("upright.csv"),
+                              file("c.yaml")))
+              .exit_code == 0);
+  const auto reported = [&](const std::string& track, const std::string& options) {
+    const CliResult result =
+        run_cli(fmt::format("regenerate --model '{}' --input '{}' -o '{}' --fit none --quiet {}",
+                            pipeline.model().string(), file(track), file("o.bvh"), options));
+    CHECK(result.exit_code == 0);
+    return result.standard_error;
+  };
+  const mcdbn::Track2d upright = mcdbn::read_track_csv(file("upright.csv"));
+  mcdbn::Track2d clockwise = upright, around = upright;
+  std::swap(clockwise.width_px, clockwise.height_px);
+  clockwise.x_px = upright.height_px - upright.y_px.array();
+  clockwise.y_px = upright.x_px;
+  around.x_px = upright.width_px - upright.x_px.array();
+  around.y_px = upright.height_px - upright.y_px.array();
+  write_track_csv(file("clockwise.csv"), clockwise);
+  write_track_csv(file("around.csv"), around);
+  CHECK(reported("upright.csv", "").find("in most frames") == std::string::npos);
+  CHECK(reported("clockwise.csv", "")
+            .find("warning: " + file("clockwise.csv") +
+                  ": in most frames the body lies across the image: set --camera-roll -90 if the "
+                  "film is stored turned, or --camera-roll 0 if the person lies there\n") !=
+        std::string::npos);
+  CHECK(reported("around.csv", "")
+            .find("warning: " + file("around.csv") +
+                  ": in most frames the body is upside down in the image: set --camera-roll 180 if "
+                  "the film is stored turned, or --camera-roll 0 if the person stands on the "
+                  "hands\n") != std::string::npos);
+  // Who gives the roll, or the camera, knows it.
+  CHECK(reported("clockwise.csv", "--camera-roll -90").find("in most frames") == std::string::npos);
+  CHECK(reported("clockwise.csv", "--camera-roll 0").find("in most frames") == std::string::npos);
+  CHECK(
+      reported("around.csv", fmt::format("--camera '{}'", file("c.yaml"))).find("in most frames") ==
+      std::string::npos);
+}
+
+TEST_CASE("it is reported from what an unknown camera's angles are found") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const auto file = [&](const char* name) { return (folder / name).string(); };
+  REQUIRE(run_cli(fmt::format("project '{}' -o '{}'",
+                              (pipeline.motion() / "walk_s02_01.bvh").string(), file("t.csv")))
+              .exit_code == 0);
+  const auto reported = [&](const std::string& options) {
+    const CliResult result =
+        run_cli(fmt::format("regenerate --model '{}' --input '{}' -o '{}' --quiet {}",
+                            pipeline.model().string(), file("t.csv"), file("o.bvh"), options));
+    CHECK(result.exit_code == 0);
+    return result.standard_error;
+  };
+  const std::string angles = "assumed to look down by ", by_feet = " (from feet on level ground), ";
+  CHECK(reported("").find(by_feet) != std::string::npos);
+  mcdbn::Track2d track = mcdbn::read_track_csv(file("t.csv"));
+  for (const char* side : {"Left", "Right"})
+    for (const char* joint : {"Foot", "ToeBase"}) {
+      const int column = track.find(std::string(side) + joint);
+      REQUIRE(column >= 0);
+      track.confidence.col(column).setZero();
+      for (mcdbn::MatrixD* values : {&track.x_px, &track.y_px})
+        values->col(column).setConstant(std::nan(""));
+    }
+  write_track_csv(file("t.csv"), track);
+  const std::string without_feet = reported("");
+  CAPTURE(without_feet);
+  CHECK(without_feet.find(" (from the posture: no foot is seen), ") != std::string::npos);
+  CHECK(without_feet.find("level ground") == std::string::npos);
+  const std::string unfitted = reported("--fit none");
+  CHECK(unfitted.find(angles) != std::string::npos);
+  CHECK(unfitted.find("(from") == std::string::npos);
 }
 
 TEST_CASE("what is odd about a skeleton's file is reported") {

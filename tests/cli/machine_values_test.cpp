@@ -99,4 +99,27 @@ TEST_CASE("fit: a machine of data that are large and not scaled can be used") {
   CHECK(code.allFinite());
 }
 
+TEST_CASE("an MRBM's modality without a row is refused by every command, as a CSV without one is") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  const auto file = [&](const char* name) { return (folder / name).string(); };
+  const auto random = mcdbn::MrbmParameters::random({{{"a", 2}, {"b", 3}}, 4}, 1.0, {7});
+  mcdbn::save_machine(file("m.safetensors"), {mcdbn::Mrbm(usual_device(), random)});
+  const std::string model = " --model " + file("m.safetensors");
+  for (const char* kind : {"npy", "csv"}) {
+    CAPTURE(kind);
+    const std::string a = file("a.") + kind, b = file("b.") + kind, words = a + ": no numbers";
+    mcdbn::write_matrix(a, MatrixF(0, 2));
+    mcdbn::write_matrix(b, MatrixF(0, 3));
+    const std::string given = " --modality a=" + a;
+    check_refused("score" + model + given + " --modality b=" + b, 3, words);
+    check_refused("transform --quiet" + model + given + " --infer b", 3, words);
+    check_refused("sample --quiet" + model + given + " --infer b", 3, words);
+    check_refused("fit --machine mrbm --hidden 4 --batch 20 --mrbm-epochs 1 --quiet -o " +
+                      file("new.safetensors") + given + " --modality b=" + b,
+                  3, words);
+  }
+  CHECK(!std::filesystem::exists(file("new.safetensors")));
+}
+
 }  // namespace machine_values_test

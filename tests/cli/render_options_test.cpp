@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <opencv2/videoio.hpp>
 
 #include "base/scratch_folder.hpp"
@@ -192,15 +193,27 @@ TEST_CASE("render --over: what it needs is named, and a camera that is scaled is
 
 TEST_CASE("render: options that would be ignored are refused") {
   const ScratchFolder folder;
+  const fs::path clip = folder.write("clip.bvh", small_bvh(4));
   const std::string call =
-      fmt::format("render '{}' -o '{}' ", folder.write("clip.bvh", small_bvh(4)).string(),
-                  (folder / "out.png").string());
+      fmt::format("render '{}' -o '{}' ", clip.string(), (folder / "out.mp4").string());
   for (const char* options :
        {"--over f.mp4 --camera c.yml --overlay", "--over f.mp4 --camera c.yml --video-fps 5",
         "--over-from 3", "--camera c.yml --orbit", "--camera c.yml --still-camera",
         "--orbit-speed 20"}) {
     CAPTURE(options);
     CHECK(run_cli(call + options).exit_code == 2);
+  }
+  // Of the other kind of output.
+  for (const auto& [output, option, other] :
+       {std::array{"out.png", "--video-fps", ".mp4"}, {"out.mp4", "--columns", ".png"}}) {
+    CAPTURE(option);
+    const fs::path file = folder / output;
+    const CliResult result =
+        run_cli(fmt::format("render '{}' -o '{}' {} 10", clip.string(), file.string(), option));
+    CHECK(result.exit_code == 2);
+    CHECK(result.standard_error.find(fmt::format("{} is for --output FILE{}", option, other)) !=
+          std::string::npos);
+    CHECK_FALSE(fs::exists(file));
   }
 }
 

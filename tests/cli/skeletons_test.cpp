@@ -54,13 +54,13 @@ const std::map<std::string, std::string> kKnees{{"LeftLeg", "spam"}, {"RightLeg"
 TEST_CASE("regenerate --skeleton: joints of unknown names are warned of, once") {
   if (!have_device()) return;
   const Renamed scene;
-  const std::string lost = ": what they do is lost";
+  const std::string lost = "; their motion is lost";
   const CliResult warned = scene.regenerate(kKnees);
   CAPTURE(warned.standard_error);
   CHECK(warned.exit_code == 0);
   const std::string words = scene.skeleton().string() +
-                            ": no joint is known to be left_knee, right_knee" + lost +
-                            "; name them with --joint-map";
+                            ": no joint has the roles left_knee, right_knee" + lost +
+                            ". Name them with --joint-map";
   const auto at = warned.standard_error.find("mcdbn-cl: warning: " + words);
   REQUIRE(at != std::string::npos);
   CHECK(warned.standard_error.find(words, at + words.size()) == std::string::npos);
@@ -94,7 +94,7 @@ TEST_CASE("regenerate --skeleton: the names of VRM and of Bandai lose nothing") 
     const CliResult result = scene.regenerate(names);
     CAPTURE(result.standard_error);
     CHECK(result.exit_code == 0);
-    CHECK(result.standard_error.find("no joint is known") == std::string::npos);
+    CHECK(result.standard_error.find("no joint has the roles") == std::string::npos);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/formats/track_file.hpp"
 #include "run_cli.hpp"
@@ -87,4 +88,46 @@ TEST_CASE("project: a skeleton's own joints are read back as in our CSV from eve
     CHECK(read.keypoints.empty());
     CHECK(same(read.x_px, wanted.x_px));
   }
+}
+
+TEST_CASE("project: a folder of frames that is not there may be named with a slash at its end") {
+  const ScratchFolder folder;
+  REQUIRE(run_cli(fmt::format("synthesize --action walk --clips 1 --seconds 1 -o '{}'",
+                              (folder / "motion").string()))
+              .exit_code == 0);
+  const auto clip = std::filesystem::directory_iterator(folder / "motion")->path();
+  const auto project = [&](const std::string& format, const std::string& name) {
+    return run_cli(fmt::format("project '{}' --like openpose --format {} -o '{}'", clip.string(),
+                               format, (folder / name).string()));
+  };
+  const CliResult frames = project("openpose", "frames/");
+  CAPTURE(frames.standard_error);
+  REQUIRE(frames.exit_code == 0);
+  CHECK(mcdbn::read_tracks(folder / "frames").joint_set == "BODY_25");
+  const CliResult table = project("csv", "track.csv/");
+  CHECK(table.exit_code == 3);
+  CHECK(table.standard_error.find("track.csv/: is a folder; name a file") != std::string::npos);
+  CHECK(entries_of(folder / "") == std::set<std::string>{"motion", "frames"});
+}
+
+TEST_CASE("project --like: a track too short to measure its noise is named") {
+  const ScratchFolder folder;
+  REQUIRE(run_cli(fmt::format("synthesize --action walk --clips 1 --seconds 1 -o '{}'",
+                              (folder / "motion").string()))
+              .exit_code == 0);
+  const auto clip = std::filesystem::directory_iterator(folder / "motion")->path();
+  const auto project = [&](const std::string& like) {
+    return run_cli(fmt::format("project '{}' --like '{}' -o '{}'", clip.string(), like,
+                               (folder / "seen.csv").string()));
+  };
+  REQUIRE(project("openpose").exit_code == 0);
+  // The comment, the header and four frames.
+  std::string text = mcdbn::read_text_file(folder / "seen.csv");
+  std::size_t end = 0;
+  for (int line = 0; line < 6; ++line) end = text.find('\n', end) + 1;
+  const auto few = folder.write("few.csv", text.substr(0, end)).string();
+  const CliResult result = project(few);
+  CHECK(result.exit_code == 3);
+  CHECK(result.standard_error.find(few + ": a track of 4 frames is too short") !=
+        std::string::npos);
 }

@@ -65,7 +65,7 @@ TEST_CASE("train --stages leaves stages out") {
   CHECK(stages("--stages both --layers 2", kTiny) == all);
 }
 
-TEST_CASE("train: flags of fine-tuning's views are refused where nothing is fine-tuned") {
+TEST_CASE("train: what is of fine-tuning's views is refused where nothing is fine-tuned") {
   const ScratchFolder folder;
   const fs::path run = folder / "run";
   folder.write("clip.bvh", small_bvh(60));
@@ -85,6 +85,9 @@ TEST_CASE("train: flags of fine-tuning's views are refused where nothing is fine
     CHECK(refusal(without + " --augment-views 3") == "mcdbn-cl: error: --augment-views" + why);
     CHECK(refusal(without + " --no-augment-mirror") == "mcdbn-cl: error: --augment-mirror" + why);
   }
+  for (const char* stages : {"--stages greedy", "--fine-tuning-steps 0"})
+    CHECK(refusal(std::string("--preset general ") + stages) ==
+          "mcdbn-cl: error: --preset general" + why);
   // A sweep of which one configuration is fine-tuned takes them; --force it never takes.
   const auto sweep = [&](const char* steps) {
     const fs::path file =
@@ -95,7 +98,7 @@ TEST_CASE("train: flags of fine-tuning's views are refused where nothing is fine
   CHECK(refusal(sweep("[0]")) == "mcdbn-cl: error: --augment-views" + why);
   CHECK(refusal(sweep("[0, 3]") + " --platform no-such-name", 4).find("no-such-name") !=
         std::string::npos);
-  CHECK(refusal(sweep("[0, 3]") + " --force").find("leave --force out") != std::string::npos);
+  CHECK(refusal(sweep("[0, 3]") + " --force").find("--force does not apply") != std::string::npos);
 }
 
 TEST_CASE("the same seed trains the same model, from the recorded config too") {

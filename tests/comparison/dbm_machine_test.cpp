@@ -82,7 +82,7 @@ TEST_CASE("multimodal DBM: conditionals are those of the energy") {
     units.joint.upload(z);
     std::array<MatrixD, 2> h;
     for (std::size_t m = 0; m < 2; ++m) {
-      machine.drive_hidden(m, units);
+      machine.set_input_from_below(m, units);
       machine.infer_hidden(m, units);
       h[m] = units.hidden[m].to_host().cast<double>();
     }

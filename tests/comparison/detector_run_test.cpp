@@ -9,6 +9,7 @@
 #include "comparison/comparison_run.hpp"
 #include "comparison/limb_keypoints.hpp"
 #include "device/every_device.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/side_swaps.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"
@@ -132,6 +133,40 @@ TEST_CASE("a detector's test run shows every method the same track, whatever els
       CHECK(others.at("mean_pose").motion.channels.row(0) !=
             others.at("mean_pose").motion.channels.row(9));
     }
+  });
+}
+
+TEST_CASE(
+    "a detector's test run hides an arm of the detector's track, or says that it shows none") {
+  const Scene scene;
+  on_every_device([&](Device& device) {
+    TestRunOptions options = scene.options();
+    const Model model = scene.model(device);
+    const auto whole = run_test(model, scene.tests, options);
+    options.damage.hidden_s = 10;  // longer than the clips
+    const auto damaged = run_test(model, scene.tests, options);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Track2d &before = whole[i].truth.track, &after = damaged[i].truth.track;
+      std::set<std::string> hidden;
+      for (int column = 0; column < before.joint_count(); ++column) {
+        const std::string& name = before.joint_names[static_cast<std::size_t>(column)];
+        CAPTURE(name);
+        REQUIRE((before.confidence.col(column).array() > 0).any());
+        if (after.confidence.col(column).isZero())
+          hidden.insert(name);
+        else
+          CHECK(same(before.x_px.col(column), after.x_px.col(column)));
+      }
+      using Names = std::set<std::string>;
+      CHECK((hidden == Names{"left_shoulder", "left_elbow", "left_wrist"} ||
+             hidden == Names{"right_shoulder", "right_elbow", "right_wrist"}));
+    }
+    std::erase_if(options.detector->keypoints, [](const Keypoint& keypoint) {
+      return keypoint.name.ends_with("shoulder") || keypoint.name.ends_with("elbow") ||
+             keypoint.name.ends_with("wrist");
+    });
+    CHECK_THROWS_WITH_AS(run_test(model, scene.tests, options),
+                         doctest::Contains("walk_s03_01.bvh: the track shows no arm"), InputError);
   });
 }
 

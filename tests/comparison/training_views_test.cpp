@@ -43,8 +43,8 @@ TEST_CASE("views of fine-tuning are made again for the baseline that learns from
     CHECK(views_for({"mean_pose", "nearest_neighbour", "ridge_window"}) == 0);
     CHECK(views_for({"mean_pose", "mlp_window"}) == 1);
 
-    const BaselineLessons nearest = lessons_of("nearest_neighbour", model),
-                          perceptron = lessons_of("mlp_window", model);
+    const BaselineTrainingData nearest = training_data_of("nearest_neighbour", model),
+                               perceptron = training_data_of("mlp_window", model);
     CHECK(nearest.tracks.size() == 1);
     CHECK(nearest.view_tracks.empty());
     CHECK(perceptron.tracks == nearest.tracks);

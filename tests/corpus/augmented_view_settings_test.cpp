@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/random_sequence.hpp"
+#include "base/random_streams.hpp"
 #include "camera/track_noise.hpp"
 #include "corpus/no_augmentation.hpp"
 #include "mcdbn/corpus/augmentation.hpp"
@@ -133,9 +135,9 @@ void check_camera_and_track(const AugmentedView& view, const AugmentationSetting
   CHECK(view.camera.fy_px == camera.fy_px);
   Track2d track = project_motion(view.motion, camera);
   add_pixel_noise(track, 2.0 * share(key, 4) * settings.noise_px * figure_px(track) / 200.0,
-                  mixed_seed({key.seed, key.step}));
+                  mixed_seed({key.seed, key.step, key.stream}));
   if (share(key, 7) < settings.missing)
-    hide_limbs(track, view.motion.skeleton, mixed_seed({key.seed, key.step}));
+    hide_limbs(track, view.motion.skeleton, mixed_seed({key.seed, key.step, key.stream}));
   REQUIRE(track.x_px.rows() == view.track.x_px.rows());
   const MatrixD x = view.track.x_px - track.x_px, y = view.track.y_px - track.y_px;
   CHECK(x.array().isNaN().cast<int>().sum() == track.x_px.array().isNaN().cast<int>().sum());
@@ -247,6 +249,38 @@ TEST_CASE("the largest noise of all is none too large for a view") {
   const Motion raw = walk();
   for (std::uint32_t step = 0; step < 100; ++step)
     CHECK_NOTHROW(view_of(raw, settings, key_of(step)));
+}
+
+TEST_CASE("views of one number that are made for two purposes have nothing drawn in common") {
+  AugmentationSettings noisy = nothing(), hiding = nothing(), detected = nothing();
+  noisy.noise_px = 3.0;
+  hiding.missing = 1.0;
+  detected.detector = 1.0;
+  const Motion raw = walk();
+  int compared = 0, hidden_alike = 0;
+  for (std::uint32_t step = 0; step < 12; ++step) {
+    const auto both = [&](const AugmentationSettings& settings) {
+      return std::pair{view_of(raw, settings, {900, step, random_streams::kScalingViews, 0}),
+                       view_of(raw, settings, {900, step, random_streams::kAugmentedViews, 0})};
+    };
+    const auto noisy_views = both(noisy), hiding_views = both(hiding), seen = both(detected);
+    if (noisy_views.first.motion.frames() != noisy_views.second.motion.frames()) continue;
+    ++compared;
+    const auto noise = [](const AugmentedView& view) {
+      return MatrixD(view.track.x_px - project_motion(view.motion, view.camera).x_px);
+    };
+    const MatrixD one = noise(noisy_views.first), other = noise(noisy_views.second);
+    // The correlation of n independent draws has a deviation of 1 / sqrt(n); five of them.
+    CHECK(std::abs(one.cwiseProduct(other).sum()) <
+          5 / std::sqrt(static_cast<double>(one.size())) * one.norm() * other.norm());
+    hidden_alike +=
+        same_numbers(hiding_views.first.track.confidence, hiding_views.second.track.confidence);
+    const Eigen::Matrix3d turn =
+        seen.first.camera.camera_from_world * seen.second.camera.camera_from_world.transpose();
+    CHECK(Eigen::AngleAxisd(turn).angle() > 0.01);
+  }
+  CHECK(compared > 0);
+  CHECK(hidden_alike < compared);
 }
 
 TEST_CASE("a view's speed is within the setting of the clip's, either way") {

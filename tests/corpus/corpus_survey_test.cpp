@@ -33,7 +33,7 @@ std::string text_of(const std::vector<ClipProblem>& problems, Kind kind) {
 }
 
 std::vector<ClipProblem> problems_of(const Motion& motion) {
-  return motion_problems(motion, humanoid_roles(), {});
+  return motion_problems(motion, humanoid_roles());
 }
 
 }  // namespace
@@ -72,7 +72,7 @@ TEST_CASE("a survey: names of a joint map that no clip has are reported") {
   const TrainingFiles walks({{1, 1}, {2, 1}});
   const std::vector<ListedClip> clips{walks.files()[0], walks.files()[1]};
   std::vector<std::string> notices;
-  survey(clips, {}, {{JointRole::left_knee, "LeftLeggg"}, {JointRole::head, "Neck"}}, &notices);
+  survey(clips, {{JointRole::left_knee, "LeftLeggg"}, {JointRole::head, "Neck"}}, &notices);
   CHECK(notices ==
         std::vector<std::string>{"the joint map's left_knee is 'LeftLeggg', and no clip has a "
                                  "joint of that name"});

@@ -1,6 +1,7 @@
 // Views hold the new poses, and gravity's error, that settings ask for.
 #include <doctest/doctest.h>
 
+#include "base/random_streams.hpp"
 #include "corpus/augmented_views.hpp"
 #include "corpus/humanoid_clips.hpp"
 #include "corpus/new_poses.hpp"
@@ -34,6 +35,23 @@ TEST_CASE("a view with a pool has new poses before it is seen") {
   CHECK(view.motion.channels != plain.motion.channels);
   CHECK((view.track.x_px - project_motion(view.motion, view.camera).x_px).cwiseAbs().maxCoeff() <
         1e-9);
+}
+
+TEST_CASE("views of one number that are made for two purposes have other new poses") {
+  const auto clips = two_clips();
+  const PosePool pool(clips, kFps);
+  for (double AugmentationSettings::*share :
+       {&AugmentationSettings::limbs_exchanged, &AugmentationSettings::limbs_turned,
+        &AugmentationSettings::arms_anywhere, &AugmentationSettings::leaning,
+        &AugmentationSettings::turning_round}) {
+    AugmentationSettings settings = nothing();
+    settings.*share = 1;
+    const auto made_for = [&](std::uint16_t stream) {
+      return with_new_poses(clips[0].motion, settings, pool, {4, 2, stream, 0}).channels;
+    };
+    CHECK(made_for(random_streams::kScalingViews) == made_for(random_streams::kScalingViews));
+    CHECK(made_for(random_streams::kScalingViews) != made_for(random_streams::kAugmentedViews));
+  }
 }
 
 TEST_CASE("training sets and views are made with them, and without them as before") {

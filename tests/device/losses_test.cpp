@@ -76,6 +76,33 @@ TEST_CASE("squared error and cross-entropy at the model's sizes") {
   });
 }
 
+TEST_CASE("small: a factor scales the differences of its column") {
+  on_every_device([](Device& device) {
+    constexpr std::size_t kRows = 7, kColumns = 5;
+    const MatrixF x = random_matrix(kRows, kColumns, 3), y = random_matrix(kRows, kColumns, 4);
+    // Powers of two, so that scaling rounds nothing.
+    MatrixF factor(1, kColumns);
+    factor << 2.0F, 0.5F, 1.0F, 8.0F, 0.25F;
+    const auto scaled = [&](const MatrixF& of) {
+      return MatrixF((of.array().rowwise() * factor.row(0).array()).matrix());
+    };
+    const auto on_device = [&](const MatrixF& host) { return Matrix::from_host(device, host); };
+    const Matrix of_columns = on_device(factor), ones = on_device(MatrixF::Ones(1, kColumns));
+    LossAccumulator losses(device, 4, kRows);
+    losses.add_squared_error(0, on_device(x), on_device(y), 0.5F, &of_columns);
+    losses.add_squared_error(1, on_device(scaled(x)), on_device(scaled(y)), 0.5F);
+    losses.add_squared_error(2, on_device(x), on_device(y), 0.5F, &ones);
+    losses.add_squared_error(3, on_device(x), on_device(y), 0.5F);
+    const auto sums = losses.read_and_reset();
+    CHECK(sums[0] == sums[1]);
+    CHECK(sums[2] == sums[3]);
+    CHECK(sums[0] != sums[3]);
+    const Matrix narrow = on_device(MatrixF::Ones(1, kColumns - 1));
+    CHECK_THROWS_AS(losses.add_squared_error(0, on_device(x), on_device(y), 1.0F, &narrow),
+                    ShapeError);
+  });
+}
+
 TEST_CASE("small: a NaN in target or prediction shows in the loss") {
   on_every_device([](Device& device) {
     MatrixF bad = MatrixF::Constant(3, 5, 0.5F);

@@ -32,6 +32,11 @@ DeviceInfo some_gpu() {
   return info;
 }
 
+/// The same work for all candidates.
+TunedWork all_by(const TunedTime& time_s) {
+  return {time_s, time_s};
+}
+
 }  // namespace
 
 TEST_CASE("tuner: whichever candidate is the fastest is found, on a CPU and on a GPU") {
@@ -40,7 +45,8 @@ TEST_CASE("tuner: whichever candidate is the fastest is found, on a CPU and on a
     for (const Tuning& favourite : tuning_candidates(info, usual)) {
       std::vector<std::string> notices;
       CHECK(fastest_tuning(
-                info, usual, [&](const Tuning& tuning) { return tuning == favourite ? 1.0 : 2.0; },
+                info, usual,
+                all_by([&](const Tuning& tuning) { return tuning == favourite ? 1.0 : 2.0; }),
                 [&](const std::string& notice) { notices.push_back(notice); }) == favourite);
       for (std::size_t i = 0; i < notices.size(); ++i)  // each is another
         CHECK(std::ranges::count(notices, notices[i]) == 1);
@@ -51,17 +57,16 @@ TEST_CASE("tuner: whichever candidate is the fastest is found, on a CPU and on a
 TEST_CASE("tuner: the winners of one parameter after another are put together") {
   const Tuning usual = default_tuning(some_cpu());
   std::vector<std::string> notices;
-  const Tuning found = fastest_tuning(
-      some_cpu(), usual,
-      [](const Tuning& tuning) {
-        // Each of these helps by itself; eight rows only beside a narrow vector.
-        double time_s = 10;
-        if (tuning.vector_width == 8) time_s -= 1;
-        if (tuning.largest_rows == 8 && tuning.vector_width == 8) time_s -= 2;
-        if (tuning.update_rows == 4) time_s -= 1;
-        return time_s;
-      },
-      [&](const std::string& notice) { notices.push_back(notice); });
+  const Tuning found =
+      fastest_tuning(some_cpu(), usual, all_by([](const Tuning& tuning) {
+                       // Each of these helps by itself; eight rows only beside a narrow vector.
+                       double time_s = 10;
+                       if (tuning.vector_width == 8) time_s -= 1;
+                       if (tuning.largest_rows == 8 && tuning.vector_width == 8) time_s -= 2;
+                       if (tuning.update_rows == 4) time_s -= 1;
+                       return time_s;
+                     }),
+                     [&](const std::string& notice) { notices.push_back(notice); });
   Tuning want = usual;
   want.vector_width = want.largest_rows = 8;
   want.update_rows = 4;
@@ -72,9 +77,9 @@ TEST_CASE("tuner: the winners of one parameter after another are put together") 
 
 TEST_CASE("tuner: a gain that noise could make changes nothing") {
   const auto tuned = [](double gain) {
-    return fastest_tuning(some_cpu(), default_tuning(some_cpu()), [=](const Tuning& tuning) {
-      return tuning.update_rows == 4 ? 1.0 - gain : 1.0;
-    });
+    return fastest_tuning(some_cpu(), default_tuning(some_cpu()), all_by([=](const Tuning& tuning) {
+                            return tuning.update_rows == 4 ? 1.0 - gain : 1.0;
+                          }));
   };
   CHECK(tuned(0.02) == default_tuning(some_cpu()));
   CHECK(tuned(0.04).update_rows == 4);
@@ -83,12 +88,32 @@ TEST_CASE("tuner: a gain that noise could make changes nothing") {
 TEST_CASE("tuner: two runs of five that something disturbed decide nothing") {
   int runs = 0;
   const Tuning found =
-      fastest_tuning(some_cpu(), default_tuning(some_cpu()), [&](const Tuning& tuning) {
-        // Each rival's five runs alternate with the best's: of the best's, two are slow.
-        const int pair = runs++ / 2 % 5;
-        return tuning == default_tuning(some_cpu()) && pair < 2 ? 2.0 : 1.0;
-      });
+      fastest_tuning(some_cpu(), default_tuning(some_cpu()), all_by([&](const Tuning& tuning) {
+                       // Each rival's five runs alternate with the best's: of the best's, two are
+                       // slow.
+                       const int pair = runs++ / 2 % 5;
+                       return tuning == default_tuning(some_cpu()) && pair < 2 ? 2.0 : 1.0;
+                     }));
   CHECK(found == default_tuning(some_cpu()));
+}
+
+TEST_CASE("tuner: products choose the parameters of products, mini-batches all others") {
+  const Tuning usual = default_tuning(some_cpu());
+  const int other = usual.product_columns == 1 ? 2 : 1;
+  // Each kind of work likes a change that the other does not do.
+  const auto likes = [&](bool columns) {
+    return [=](const Tuning& tuning) {
+      const bool liked = columns ? tuning.product_columns == other : tuning.update_rows == 4;
+      return liked ? 1.0 : 2.0;
+    };
+  };
+  Tuning both = usual;
+  both.product_columns = other;
+  both.update_rows = 4;
+  CHECK(fastest_tuning(some_cpu(), usual,
+                       {.products_s = likes(true), .minibatches_s = likes(false)}) == both);
+  CHECK(fastest_tuning(some_cpu(), usual,
+                       {.products_s = likes(false), .minibatches_s = likes(true)}) == usual);
 }
 
 TEST_CASE("tuner: what was found is set on the device and stored for the next time") {
@@ -100,18 +125,31 @@ TEST_CASE("tuner: what was found is set on the device and stored for the next ti
     const Tuning start = for_units_of_8_floats(default_tuning(device.info()));
     const auto candidates = tuning_candidates(device.info(), start);
     const Tuning& favourite = candidates.back();
-    tune(
-        device, start,
-        [&](const Tuning& tuning) {
-          CHECK(device.tuning() == tuning);  // the work is measured with it
-          return tuning == favourite ? 1.0 : 2.0;
-        },
-        0.0);
+    const TunedWork work = all_by([&](const Tuning& tuning) {
+      CHECK(device.tuning() == tuning);  // the work is measured with it
+      return tuning == favourite ? 1.0 : 2.0;
+    });
+    CHECK(tune(device, start, work, 0.0));
     Tuning found = device.tuning();
     CHECK(load_tuning(device.info()) == found);
     constexpr std::int64_t k256 = 256 * 256 * 256;
     CHECK((found.clblast_from == 0 || found.clblast_from == k256 ||
            found.clblast_from == 8 * k256 || found.clblast_from == 64 * k256));
+    found.clblast_from = favourite.clblast_from;
+    CHECK(found == favourite);
+    device.set_tuning(usual);
+  });
+}
+
+TEST_CASE("tuner: where the cache cannot be written it says so; the device is tuned all the same") {
+  const ScratchFolder folder;
+  const ScopedVariable cache("XDG_CACHE_HOME", folder.write("file", "").string());
+  on_every_device([](Device& device) {
+    const Tuning usual = device.tuning(), start = default_tuning(device.info());
+    const Tuning favourite = tuning_candidates(device.info(), start).back();
+    const TunedTime time_s = [&](const Tuning& tuning) { return tuning == favourite ? 1.0 : 2.0; };
+    CHECK_FALSE(tune(device, start, all_by(time_s), 0.0));
+    Tuning found = device.tuning();
     found.clblast_from = favourite.clblast_from;
     CHECK(found == favourite);
     device.set_tuning(usual);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "clips.hpp"
 #include "evaluation/bone_length.hpp"
 #include "evaluation/foot_slide.hpp"
 #include "evaluation/orientation_error.hpp"
@@ -80,11 +79,22 @@ TEST_CASE("bone_length_spread_mm: zero for a rigid body, by hand for a stretchin
   MatrixD positions(2, 9);
   positions << 0, 0, 0, 300, 400, 0, 300, 400, 100,  //
       1, 2, 3, 1, 2, 503, 1, 102, 503;               // turned and moved
-  CHECK(bone_length_spread_mm(positions, skeleton) < 1e-9);
+  CHECK(bone_length_spread_mm(positions, skeleton, 0) < 1e-9);
   positions(1, 7) = 142;  // the second bone is 100 mm, then 140 mm
-  CHECK(bone_length_spread_mm(positions, skeleton) == doctest::Approx(20.0 / 2));
-  CHECK(bone_length_spread_mm(positions.leftCols(3), chain({"Hips"})) == 0);
-  CHECK_THROWS_AS(bone_length_spread_mm(positions.leftCols(6), skeleton), ShapeError);
+  CHECK(bone_length_spread_mm(positions, skeleton, 0) == doctest::Approx(20.0 / 2));
+  CHECK(bone_length_spread_mm(positions.leftCols(3), chain({"Hips"}), 0) == 0);
+  CHECK_THROWS_AS(bone_length_spread_mm(positions.leftCols(6), skeleton, 0), ShapeError);
+}
+
+TEST_CASE("bone_length_spread_mm: the way to the root is no bone") {
+  const Skeleton skeleton = chain({"scene", "reference", "Hips", "Knee", "Foot"});
+  MatrixD positions(2, 15);
+  positions << 0, 0, 0, 50, 0, 0, 0, 0, 0, 300, 400, 0, 300, 400, 100,  //
+      0, 0, 0, 80, 9, 0, 1, 2, 3, 1, 2, 503, 1, 142, 503;
+  // The shank is 100 mm, then 140 mm; the reference and the hips travel.
+  CHECK(bone_length_spread_mm(positions, skeleton, 2) == doctest::Approx(20.0 / 2));
+  CHECK(bone_length_spread_mm(positions.leftCols(9), chain({"scene", "reference", "Hips"}), 2) ==
+        0);
 }
 
 TEST_CASE("diversity_mm: mean over pairs of samples") {
@@ -95,18 +105,6 @@ TEST_CASE("diversity_mm: mean over pairs of samples") {
   CHECK(diversity_mm({a, b, c}) == doctest::Approx((5.0 + 20 + 15) / 3));
   CHECK(diversity_mm({a, a}) == 0);
   CHECK(std::isnan(diversity_mm({a})));
-}
-
-TEST_CASE("best_of: the nearest sample, with all of its errors") {
-  const MatrixD truth = test::random_clip(20, 12, 200, 1);
-  std::vector<MatrixD> samples;
-  for (const double deviation_mm : {40.0, 15.0, 60.0})
-    samples.push_back(truth + test::random_clip(20, 12, deviation_mm, 2));
-  const BestSample best = best_of(truth, samples, 30);
-  CHECK(best.index == 1);
-  CHECK(best.error.mpjpe_mm == joint_error(truth, samples[1], 30).mpjpe_mm);
-  CHECK(best.error.mpjpe_mm < joint_error(truth, samples[0], 30).mpjpe_mm);
-  CHECK_THROWS_AS(best_of(truth, {}, 30), ShapeError);
 }
 
 TEST_CASE("mpjae_deg: by hand; of turns that move no joint, too") {

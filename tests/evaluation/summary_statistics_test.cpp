@@ -23,21 +23,21 @@ TEST_CASE("summarize: by hand") {
   CHECK(summary.histogram.counts == std::vector<int>{1, 5, 0, 1});
   CHECK(summary.mode == doctest::Approx(4));
   CHECK(summary.histogram.bin_width() == doctest::Approx(2));
-  CHECK(summarize({2, 1, 10, 3}).median == doctest::Approx(2.5));
+  CHECK(summarize({2, 1, 10, 3}, 20).median == doctest::Approx(2.5));
 }
 
 TEST_CASE("summarize: nothing, one value, equal values") {
-  const SummaryStatistics none = summarize({NAN});
+  const SummaryStatistics none = summarize({NAN}, 20);
   CHECK(none.count == 0);
   CHECK(none.left_out == 1);
   CHECK(std::isnan(none.mean));
   CHECK(std::isnan(none.minimum));
   CHECK(none.histogram.counts.empty());
-  const SummaryStatistics one = summarize({0.7});
+  const SummaryStatistics one = summarize({0.7}, 20);
   CHECK(one.mode == doctest::Approx(0.7));
   CHECK(one.median == 0.7);
   CHECK(std::isnan(one.standard_deviation));
-  CHECK(summarize({0.7, 0.7, 0.7}).standard_deviation == doctest::Approx(0));
+  CHECK(summarize({0.7, 0.7, 0.7}, 20).standard_deviation == doctest::Approx(0));
 }
 
 TEST_CASE("histogram_of: every value within the range is in the bin around it") {

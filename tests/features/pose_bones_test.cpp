@@ -6,6 +6,7 @@
 
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"
+#include "motion/synthetic_motion.hpp"
 
 using namespace mcdbn;
 
@@ -42,4 +43,25 @@ TEST_CASE("turned levers add up to where forward kinematics puts the joints") {
       CHECK(nearest < 1e-9);
     }
   }
+}
+
+TEST_CASE("what stands above the root is no bone, also where joint 0 turns and travels") {
+  Motion motion = test::swinging(test::small_body_below_still_root(), 20);
+  // A joint between the two, and a scene that turns.
+  Skeleton& skeleton = motion.skeleton;
+  for (Joint& joint : skeleton.joints)
+    if (joint.parent >= 0) ++joint.parent;
+  skeleton.joints.insert(skeleton.joints.begin() + 1,
+                         test::make_joint("Reference", 0, {50, 0, 20}, {}));
+  skeleton.joints[2].parent = 1;
+  for (int t = 0; t < 20; ++t) {
+    motion.channels(t, 0) = 2.0 * t;
+    motion.channels(t, skeleton.first_channel(0) + 5) = 3.0 * t;
+  }
+  const PoseFeatures features = PoseFeatures::fit({&motion});
+  REQUIRE(features.root() == skeleton.find("Hips"));
+  REQUIRE(features.joints().front() == 0);
+  const auto bones = pose_bones(features);
+  CHECK(!bones.empty());
+  for (const PoseBone& bone : bones) CHECK(bone.joint > features.root());
 }

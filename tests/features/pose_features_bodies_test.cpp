@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <vector>
+
 #include "mcdbn/camera/camera.hpp"
 #include "mcdbn/features/pose_features.hpp"
 #include "motion/synthetic_motion.hpp"
@@ -80,4 +82,29 @@ TEST_CASE("pose features: position channels of all frames of all clips make the 
   const PoseFeatures swapped = PoseFeatures::fit({&second, &first});
   CHECK(std::abs(swapped.fixed_channels()[column] -
                  (second.skeleton.joints[joint].offset[0] + 0.3 + 0.8 * 0.5)) < 1e-9);
+}
+
+TEST_CASE("pose features: a joint above the root that travels in one clip takes no clip's path") {
+  const Motion usual = swinging(small_body_below_still_root(), 30);
+  // The same path of the hips, as Bandai has it in four clips: what goes ahead is the joint above.
+  Motion above = usual;
+  const int world = usual.skeleton.first_channel(0),
+            hips = usual.skeleton.first_channel(usual.skeleton.find("Hips"));
+  above.channels.col(world + 2) = usual.channels.col(hips + 2);
+  above.channels.col(hips + 2).setZero();
+  REQUIRE(joint_positions(above).rightCols(42).isApprox(joint_positions(usual).rightCols(42)));
+  const PoseFeatures features = PoseFeatures::fit({&usual, &above});
+  CHECK(features.skeleton().joints[features.root()].name == "Hips");
+  const MatrixD want = features.encode(usual, kBodiesCamera);
+  CHECK(want.rightCols<3>().cwiseAbs().maxCoeff() > 0.1);
+  for (const Motion* clip : std::vector<const Motion*>{&usual, &above}) {
+    CHECK((features.encode(*clip, kBodiesCamera) - want).cwiseAbs().maxCoeff() < 1e-9);
+    const MatrixD places = joint_positions(*clip);
+    const Motion back =
+        features.decode(want, kBodiesCamera, clip->skeleton, clip->fps(),
+                        places.middleCols<3>(3 * static_cast<Eigen::Index>(features.root())));
+    // Of the body; the joint above it stays where it was on average.
+    CHECK((joint_positions(back) - places).rightCols(42).cwiseAbs().maxCoeff() < 1e-9);
+    CHECK(back.channels.col(world + 2).maxCoeff() == back.channels.col(world + 2).minCoeff());
+  }
 }

@@ -66,17 +66,17 @@ TEST_CASE("standardizer: JSON keeps every bit, and damage is noticed") {
   const MatrixD all = example();
   const Standardizer scaling = Standardizer::fit({&all});
   const nlohmann::json json = scaling.to_json();
-  const Standardizer copy = Standardizer::from_json(nlohmann::json::parse(json.dump()));
+  const Standardizer copy = Standardizer::from_json(nlohmann::json::parse(json.dump()), "scaling");
   CHECK(copy.mean() == scaling.mean());
   CHECK(copy.deviation() == scaling.deviation());
   CHECK(copy.kept_columns() == scaling.kept_columns());
   nlohmann::json damaged = json;
   damaged["kept"] = {0, 7};
-  CHECK_THROWS_AS(Standardizer::from_json(damaged), InputError);
+  CHECK_THROWS_AS(Standardizer::from_json(damaged, "scaling"), InputError);
   damaged = json;
   damaged["mean"].erase(0);
-  CHECK_THROWS_AS(Standardizer::from_json(damaged), InputError);
+  CHECK_THROWS_AS(Standardizer::from_json(damaged, "scaling"), InputError);
   damaged = json;
   damaged["deviation"] = "much";
-  CHECK_THROWS_AS(Standardizer::from_json(damaged), InputError);
+  CHECK_THROWS_AS(Standardizer::from_json(damaged, "scaling"), InputError);
 }

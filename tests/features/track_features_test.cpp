@@ -245,10 +245,10 @@ TEST_CASE("track features: names are checked, JSON keeps them") {
   CHECK_THROWS_AS(TrackFeatures({"Hand"}, "Pelvis").encode(still_track()), InputError);
   CHECK_THROWS_AS(TrackFeatures({"Hand", "Foot", "Hand"}, "Hips"), InputError);
   const TrackFeatures copy =
-      TrackFeatures::from_json(nlohmann::json::parse(kFeatures.to_json().dump()));
+      TrackFeatures::from_json(nlohmann::json::parse(kFeatures.to_json().dump()), "track");
   CHECK(copy.joint_names() == kFeatures.joint_names());
   CHECK(copy.root_name() == "Hips");
-  CHECK_THROWS_AS(TrackFeatures::from_json(nlohmann::json{{"joints", 3}}), InputError);
+  CHECK_THROWS_AS(TrackFeatures::from_json(nlohmann::json{{"joints", 3}}, "track"), InputError);
 }
 
 TEST_CASE("track features: real walks have no gaps and a size that moves slowly") {

@@ -33,12 +33,13 @@ ClipEvidence evidence_of(double speed_m_s, int frames) {
           track_rays(names, project_motion(motion, camera), camera), camera};
 }
 
-double deviation_deg(double speed_m_s, int frames) {
+double deviation_deg(double speed_m_s, int frames, double bent_legs = 0) {
   TrackFitSettings settings;
   settings.balance_deg = 4;
   settings.balance_speed_m_s = 2;
+  settings.balance_bent_legs = 0.1;
   const ClipEvidence evidence = evidence_of(speed_m_s, frames);
-  const ExpectedLean lean = evidence.balanced(evidence.clip.up, settings);
+  const ExpectedLean lean = evidence.balanced({evidence.clip.up, bent_legs}, settings);
   DOCTEST_CHECK(std::abs(lean.pitch) < 1e-9);
   DOCTEST_CHECK(lean.pitch_deviation == lean.roll_deviation);
   return lean.pitch_deviation / kRadiansPerDegree;
@@ -54,6 +55,12 @@ TEST_CASE("balance: who moves fast leans, so it is less certain; in short clips,
     DOCTEST_CHECK(deviation_deg(4, frames) == doctest::Approx(20));
   }
   DOCTEST_CHECK(deviation_deg(4, 1) == doctest::Approx(4));
+}
+
+TEST_CASE("balance: who sits or squats has the feet elsewhere, so it is less certain") {
+  DOCTEST_CHECK(deviation_deg(0, 10, 0.1) == doctest::Approx(8));
+  DOCTEST_CHECK(deviation_deg(0, 10, 0.3) == doctest::Approx(40));
+  DOCTEST_CHECK(deviation_deg(2, 10, 0.1) == doctest::Approx(16));
 }
 
 }  // namespace balance_test

@@ -1,5 +1,5 @@
-// A clip of several windows: the middle one gives what they have in common, and where the others
-// begin. CHECK is glog's here, as in terms_test.cpp.
+// A clip of several windows: the one that shows most gives what they have in common, and where the
+// others begin. CHECK is glog's here, as in terms_test.cpp.
 
 #include <doctest/doctest.h>
 
@@ -48,6 +48,13 @@ PosteriorClip large_body(bool body_unknown, bool lens_unknown, Eigen::Index fram
     clip.seen.push_back(seen);
   }
   return clip;
+}
+
+/// Joints of those frames that are not seen: all of them, or the first.
+void hide(PosteriorClip& clip, Eigen::Index first, Eigen::Index end, std::size_t joints = 2) {
+  for (Eigen::Index t = first; t < end; ++t)
+    for (std::size_t joint = 0; joint < joints; ++joint)
+      clip.seen[static_cast<std::size_t>(t)][joint].confidence = 0;
 }
 
 PosteriorPoint solved(const PosteriorClip& clip, const PosteriorPoint& from,
@@ -109,6 +116,41 @@ TEST_CASE("long clip: the other windows take what the middle one finds, and begi
       for (const std::size_t i : {0U, 1U, 3U})
         check_own_frames(whole, windows[i], solved(clip, from, windows[i], false));
     }
+}
+
+TEST_CASE("long clip: the window that shows the most joints, of several the one in the middle") {
+  const std::vector<ClipWindow> windows = windows_of(kFrames);  // of 280, 310, 310 and 280 frames
+  DOCTEST_REQUIRE(windows.size() == 4);
+  const PosteriorClip clip = large_body(true, true);
+  DOCTEST_CHECK(most_seen(clip, windows) == 2);
+  PosteriorClip changed = clip;
+  hide(changed, windows[2].end() - 1, windows[2].end(), 1);  // one joint in one frame
+  DOCTEST_CHECK(most_seen(changed, windows) == 1);
+  changed = clip;
+  hide(changed, 0, windows[3].first, 1);
+  DOCTEST_CHECK(most_seen(changed, windows) == 3);
+  changed = clip;
+  hide(changed, windows[1].first, windows[2].end());
+  DOCTEST_CHECK(most_seen(changed, windows) == 3);  // it and the first show as many
+  hide(changed, 0, kFrames);
+  DOCTEST_CHECK(most_seen(changed, windows) == 2);
+  for (const Eigen::Index frames : {10, 400})  // one window and two
+    DOCTEST_CHECK(most_seen(large_body(true, true, frames), windows_of(frames)) ==
+                  windows_of(frames).size() - 1);
+}
+
+TEST_CASE("long clip: the window in the middle determines nothing if it shows nobody") {
+  const std::vector<ClipWindow> windows = windows_of(kFrames);
+  DOCTEST_REQUIRE(windows.size() == 4);
+  PosteriorClip clip = large_body(true, true);
+  hide(clip, windows[2].first, windows[2].end());
+  const PosteriorPoint zero = PosteriorPoint::zero(clip),
+                       first = solved(clip, zero, windows[0], true);
+  DOCTEST_REQUIRE(first.log_lengths.cwiseAbs().minCoeff() > 1e-6);  // nothing seen would leave 0
+  const PosteriorPoint whole =
+      most_likely(clip, kNoise, {}, zero, SharedUnknowns::to_be_found, kGain);
+  DOCTEST_CHECK(whole.log_lengths == first.log_lengths);
+  DOCTEST_CHECK(whole.log_focal == first.log_focal);
 }
 
 TEST_CASE("long clip: what was found already stays, and every window is solved with it") {

@@ -231,6 +231,21 @@ TEST_CASE("posterior draws: in a long clip frames of two windows deviate as othe
   CHECK(with_length(370) < -0.15);
 }
 
+TEST_CASE("posterior draws: a window that shows nobody does not determine the body") {
+  constexpr Eigen::Index kFrames = 400, kDraws = 20;
+  const std::vector<ClipWindow> windows = windows_of(kFrames);
+  REQUIRE(windows.size() == 2);
+  const auto until_hidden = [&](Eigen::Index frames) {
+    PosteriorClip clip = clip_of(frames, true);
+    for (Eigen::Index t = windows[1].first; t < frames; ++t)
+      clip.seen[static_cast<std::size_t>(t)][0].confidence = 0;
+    return clip;
+  };
+  const MatrixD whole = drawn(until_hidden(kFrames), {}, kDraws).rightCols(kTurns),
+                alone = drawn(until_hidden(windows[0].frames), {}, kDraws).rightCols(kTurns);
+  CHECK((whole - alone).cwiseAbs().maxCoeff() < 1e-9);
+}
+
 TEST_CASE("posterior draws: what follows from the body is the same in frames of two windows") {
   constexpr Eigen::Index kFrames = 400, kDraws = 100;
   const std::vector<ClipWindow> windows = windows_of(kFrames);

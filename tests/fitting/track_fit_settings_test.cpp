@@ -37,6 +37,7 @@ TEST_CASE("track fit settings: every one has its default, its own name and its o
       {"roll", [](S& s) { return at(s.roll_deg); }, "8"},
       {"balance", [](S& s) { return at(s.balance_deg); }, "5"},
       {"balance-speed", [](S& s) { return at(s.balance_speed_m_s); }, "1.5"},
+      {"balance-bent-legs", [](S& s) { return at(s.balance_bent_legs); }, "0.2"},
       {"focal", [](S& s) { return at(s.focal); }, "0.1"},
       {"roughly", [](S& s) { return at(s.roughly_s); }, "0.1"},
       {"solutions", [](S& s) { return at(s.solutions); }, "5"},
@@ -70,7 +71,8 @@ TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves s
                            "arm-proportions",
                            "leg-proportions",
                            "part-proportions",
-                           "balance-speed"})
+                           "balance-speed",
+                           "balance-bent-legs"})
     for (const double value : {0.0, -1.0, kNan})
       check_refused<TrackFitSettings>(name, value, "above 0");
   check_refused<TrackFitSettings>("roughly", 0, "above 0");

@@ -34,8 +34,10 @@ std::string camera_yaml(const std::string& from, const std::string& to) {
 TEST_CASE("camera files: what is written is read, in every format of OpenCV") {
   const test::ScratchFolder folder;
   const Camera camera = odd_camera();
-  for (const char* name : {"camera.yml", "camera.yaml", "camera.xml", "camera.json"}) {
+  for (const char* name : {"camera.yml", "camera.yaml", "camera.xml", "camera.json", "CAMERA.YML",
+                           "CAMERA.Xml", "CAMERA.JSON"}) {
     CAPTURE(name);
+    CHECK(has_camera_ending(name));
     write_camera(folder / name, camera);
     const Camera back = read_camera(folder / name);
     CHECK(back.camera_from_world == camera.camera_from_world);
@@ -48,7 +50,10 @@ TEST_CASE("camera files: what is written is read, in every format of OpenCV") {
     CHECK(back.width_px == 1280);
     CHECK(back.height_px == 720);
   }
-  CHECK_THROWS_AS(write_camera(folder / "camera.png", camera), InputError);
+  for (const char* name : {"camera.png", "camera"}) {
+    CHECK_FALSE(has_camera_ending(name));
+    CHECK_THROWS_AS(write_camera(folder / name, camera), InputError);
+  }
 }
 
 TEST_CASE("camera files: a rotation vector and plain lists are read") {

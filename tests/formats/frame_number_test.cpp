@@ -94,6 +94,21 @@ TEST_CASE("frame numbers: names that have none are left out with a notice, doubl
                        doctest::Contains("no .json files"), InputError);
 }
 
+TEST_CASE("frame numbers: a folder's format is that of its frames, not of other files among them") {
+  const ScratchFolder folder;
+  for (const std::string sample : {"frame_0007_keypoints.json", "mmpose_image.json"})
+    for (const char* content : {R"({"fps": 30})", "words"}) {
+      CAPTURE(sample);
+      CAPTURE(content);
+      const auto frames = folder_of(sample, folder, "frames", {"f_1.json", "f_2.json"});
+      std::ofstream(frames / "a_notes.json") << content;
+      const TrackReading reading = read_tracks(frames);
+      CHECK(reading.format == sample_called(sample).format);
+      CHECK(reading.people.front().frames() == 2);
+      CHECK(reports(reading, "a_notes.json has no frame number and is left out"));
+    }
+}
+
 TEST_CASE("COCO's flags: visible, hidden and not labelled") {
   const ScratchFolder folder;
   const LayoutSample& sample = sample_called("annotations.json");

@@ -44,6 +44,17 @@ double swing_of(JointRole role) {
   }
 }
 
+/// Where the walker's place is, in body heights: to the left, up, and before the body at that phase
+/// of a step.
+Eigen::Vector3d place_in_walker(const Keypoint& keypoint, double phase) {
+  const auto joint = [&](JointRole role) {
+    const Eigen::Vector2d at = place_in_figure(role);
+    return Eigen::Vector3d(at.x(), at.y(), phase * swing_of(role));
+  };
+  if (keypoint.role) return joint(*keypoint.role) + keypoint.offset;
+  return (joint(keypoint.halfway->first) + joint(keypoint.halfway->second)) / 2;
+}
+
 struct View {
   double azimuth_deg = 0;
   ImageSize image{1920, 1080};
@@ -61,11 +72,9 @@ json walker(const std::string& set, const View& view, const Choice& is_seen) {
         person.push_back({0, 0, 0});
         continue;
       }
-      const Eigen::Vector2d at = place_in_figure(*keypoint.role);
-      const double left = at.x() + keypoint.offset.x(), up = at.y() + keypoint.offset.y(),
-                   forward = phase * swing_of(*keypoint.role) + keypoint.offset.z();
-      const double x = 300 + 500 * (left * std::cos(azimuth) + forward * std::sin(azimuth)),
-                   y = 550 - 500 * up;
+      const Eigen::Vector3d at = place_in_walker(keypoint, phase);
+      const double x = 300 + 500 * (at.x() * std::cos(azimuth) + at.z() * std::sin(azimuth)),
+                   y = 550 - 500 * at.y();
       person.push_back({view.shares ? x / view.image.width_px : x,
                         view.shares ? y / view.image.height_px : y, 0.8});
     }

@@ -134,6 +134,25 @@ TEST_CASE("track CSV: confidence 0 means missing, an empty confidence means 1") 
   CHECK(track.confidence(1, 0) == 1);
 }
 
+TEST_CASE("track CSV: x = y = 0 means missing, one of them alone does not") {
+  const test::ScratchFolder folder;
+  const std::filesystem::path file =
+      folder.write("a.csv", kHeader + "0,0,1\n0.0,-0,\n0,4,1\n3,0,0.5\n");
+  for (const Track2d& track : {read_track_csv(file), read_track(file)}) {
+    REQUIRE(track.frames() == 4);
+    for (const int frame : {0, 1}) {
+      CHECK(std::isnan(track.x_px(frame, 0)));
+      CHECK(std::isnan(track.y_px(frame, 0)));
+      CHECK(track.confidence(frame, 0) == 0);
+    }
+    CHECK(track.x_px(2, 0) == 0);
+    CHECK(track.y_px(2, 0) == 4);
+    CHECK(track.confidence(2, 0) == 1);
+    CHECK(track.y_px(3, 0) == 0);
+    CHECK(track.confidence(3, 0) == 0.5);
+  }
+}
+
 TEST_CASE("track CSV: what is wrong is named with its file and line") {
   const test::ScratchFolder folder;
   struct Case {

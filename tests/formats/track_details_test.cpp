@@ -96,16 +96,35 @@ TEST_CASE("track details: who is seen for half a second, or a tenth of a short f
 
 TEST_CASE("track details: third numbers are confidences unless one of them is below 0") {
   const ScratchFolder folder;
-  const auto of = [&](double last) {
+  const auto of = [&](const json& last) {
     json frame = json::array();
     for (int joint = 0; joint < 17; ++joint)
-      frame.push_back({200 + 10.0 * joint, 100.0 + joint, joint == 16 ? last : 0.25});
+      frame.push_back({200 + 10.0 * joint, 100.0 + joint, joint == 16 ? last : json(0.25)});
     return read_track(folder.write("lists.json", json::array({frame, frame}).dump()));
   };
   CHECK(of(0.75).confidence(0, 0) == 0.25);
   CHECK(of(0.75).confidence(1, 16) == 0.75);
   CHECK(of(-0.75).confidence(0, 0) == 1);
   CHECK(of(-0.75).confidence(1, 16) == 1);
+  // One that is not known is no depth, and does not make depths of the others.
+  CHECK(of(nullptr).confidence(0, 0) == 0.25);
+  CHECK(of(nullptr).confidence(1, 16) == 1);
+}
+
+TEST_CASE("track details: a landmark's confidence that is null is 1 in lists of numbers, too") {
+  const ScratchFolder folder;
+  json frame = json::array();
+  for (int joint = 0; joint < 17; ++joint)
+    frame.push_back({200 + 10.0 * joint, 100.0, -0.1, joint == 16 ? json() : json(0.25)});
+  const std::string with_null = json::array({frame}).dump();
+  std::string with_nan = with_null;  // as Python writes it
+  with_nan.replace(with_nan.find("null"), 4, "NaN");
+  for (const std::string& text : {with_null, with_nan}) {
+    const Track2d track = read_track(folder.write("lists.json", text));
+    CHECK(track.confidence(0, 0) == 0.25);
+    CHECK(track.confidence(0, 16) == 1);
+    CHECK(track.x_px(0, 16) == 360);
+  }
 }
 
 TEST_CASE("track details: third numbers are those of their frames, in whatever order these stand") {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "base/scratch_folder.hpp"
@@ -147,6 +148,40 @@ TEST_CASE("layouts: a folder of images in the first of which no person was found
   CHECK((reading.people.front().confidence.row(0).array() == 0).all());
   CHECK((reading.people.front().confidence.row(1).array() > 0).all());
   CHECK((reading.people.front().confidence.row(3).array() == 0).all());
+}
+
+TEST_CASE("layouts: a folder of what rtmlib answers of each image, two people in it") {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "images");
+  const auto sample = std::ranges::find(layout_samples(), "rtmlib.json", &LayoutSample::name);
+  const auto frames = nlohmann::json::parse(sample->text);
+  const TrackReading film = read_tracks(folder.write("film.json", sample->text), {.person = "all"});
+  REQUIRE(film.people.size() == 2);
+  for (const bool batched : {false, true}) {
+    CAPTURE(batched);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      nlohmann::json image = frames[i];
+      image.erase("frame");
+      if (batched)  // of one image
+        for (const char* key : {"keypoints", "scores"})
+          image[key] = nlohmann::json::array({frames[i][key]});
+      std::ofstream(folder / "images" / fmt::format("f{}.json", i)) << image.dump();
+    }
+    const TrackReading reading = read_tracks(folder / "images", {.person = "all"});
+    CHECK(reading.format == "mmpose");
+    REQUIRE(reading.people.size() == 2);
+    for (std::size_t person = 0; person < 2; ++person) {
+      CHECK(reading.people[person].x_px == film.people[person].x_px);
+      CHECK(reading.people[person].y_px == film.people[person].y_px);
+    }
+  }
+  // A batch of two images is no file of one.
+  nlohmann::json two = frames[0];
+  for (const char* key : {"keypoints", "scores"})
+    two[key] = nlohmann::json::array({frames[0][key], frames[1][key]});
+  std::ofstream(folder / "images/f0.json") << two.dump();
+  CHECK_THROWS_WITH_AS(read_tracks(folder / "images"), doctest::Contains("not of one image"),
+                       InputError);
 }
 
 TEST_CASE("layouts: faces and hands that are left out are reported") {

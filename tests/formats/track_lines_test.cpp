@@ -220,3 +220,81 @@ TEST_CASE("track lines: what has to be given is asked for") {
   CHECK(frame->y_px[0] == 0.5 * 720);
   CHECK(frame->confidence[1] == 1);
 }
+
+TEST_CASE(
+    "track lines: after a first line of JSON all others are JSON, before anybody comes, too") {
+  for (const char* first : {"[]", "null"}) {
+    CAPTURE(first);
+    TrackLines lines("pipe", of_image());
+    CHECK(!lines.read(""));
+    const auto begin = lines.read(first);
+    REQUIRE(begin);
+    CHECK(begin->joints() == 0);
+    CHECK(message_of(lines, "INFO: warming up").starts_with("pipe:3:"));
+    CHECK(message_of(lines, "None").starts_with("pipe:4:"));
+    const auto nobody = lines.read("null");
+    REQUIRE(nobody);
+    CHECK(nobody->joints() == 0);
+    const auto somebody = lines.read(people_line({300}));
+    REQUIRE(somebody);
+    REQUIRE(somebody->joints() == 17);
+    CHECK(somebody->x_px[0] == 300);
+  }
+}
+
+TEST_CASE("track lines: COCO's and AlphaPose's lists of a frame's people") {
+  const auto entry = [](const nlohmann::json& image, double at_px, double size) {
+    nlohmann::json numbers = nlohmann::json::array();
+    for (int joint = 0; joint < 17; ++joint)
+      for (const double value : {at_px + size * (joint % 3), 100 + size * joint, 0.5})
+        numbers.push_back(value);
+    return nlohmann::json{{"image_id", image}, {"category_id", 1}, {"keypoints", numbers}};
+  };
+  for (const bool alphapose : {false, true})
+    for (const bool named : {false, true}) {
+      CAPTURE(alphapose);
+      CAPTURE(named);
+      TrackReadOptions options = of_image();
+      if (named) options.format = alphapose ? "alphapose" : "coco";
+      TrackLines lines("pipe", options);
+      const auto image_id = [&](int frame) -> nlohmann::json {
+        if (alphapose) return fmt::format("{}.jpg", frame);
+        return frame;
+      };
+      for (int frame = 0; frame < 4; ++frame) {
+        const nlohmann::json image = image_id(frame);
+        nlohmann::json people = nlohmann::json::array();
+        people.push_back(entry(image, 300 + frame, 12));
+        // Someone smaller, listed first now and then, or not there.
+        if (frame < 3) people.insert(people.begin() + frame % 2, entry(image, 700, 6));
+        const auto seen = lines.read(people.dump());
+        REQUIRE(seen);
+        REQUIRE(seen->joints() == 17);
+        CHECK(seen->x_px[0] == 300 + frame);
+        CHECK(seen->y_px[16] == 100 + 12 * 16);
+        CHECK(seen->confidence[0] == 0.5);
+        CHECK(lines.read("[]")->confidence.sum() == 0);
+      }
+      nlohmann::json two = nlohmann::json::array();
+      for (const int frame : {8, 9}) two.push_back(entry(image_id(frame), 300, 12));
+      CHECK(message_of(lines, two.dump()).find("more than one frame in a line") !=
+            std::string::npos);
+    }
+}
+
+TEST_CASE("track lines: a line may be all that MMPose writes of an image") {
+  nlohmann::json instance = nlohmann::json::parse(people_line({300}));
+  for (const char* key : {"keypoints", "scores"}) {
+    const nlohmann::json first = instance[key][0];
+    instance[key] = first;
+  }
+  const nlohmann::json image{{"meta_info", {{"dataset_name", "coco"}}},
+                             {"instance_info", nlohmann::json::array({instance})}};
+  TrackLines lines("pipe", of_image());
+  for (int frame = 0; frame < 2; ++frame) {
+    const auto seen = lines.read(image.dump());
+    REQUIRE(seen);
+    REQUIRE(seen->joints() == 17);
+    CHECK(seen->x_px[1] == 310);
+  }
+}

@@ -115,10 +115,12 @@ void read_all_of_checkpoint(const fs::path& path) {
   const fs::path again = path.string() + ".again";
   write_checkpoint(again, content);
   const CheckpointContent same = read_checkpoint(again);
-  require(same.over.size() == content.over.size() && same.running == content.running &&
-              same.done == content.done && same.now.numbers == content.now.numbers &&
-              same.now.matrices.size() == content.now.matrices.size() &&
-              same.more.numbers == content.more.numbers,
+  require(same.finished_stages.size() == content.finished_stages.size() &&
+              same.running_stage == content.running_stage &&
+              same.done_minibatches == content.done_minibatches &&
+              same.running_state.numbers == content.running_state.numbers &&
+              same.running_state.matrices.size() == content.running_state.matrices.size() &&
+              same.extra_state.numbers == content.extra_state.numbers,
           "a checkpoint that reads otherwise once it is written");
 }
 

@@ -16,11 +16,11 @@ namespace {
 
 CheckpointContent example() {
   CheckpointContent content;
-  content.over["track.0"] = {{{"best_loss", 0.5}}, {{"W", {{2, 1}, {1, 2}}}}};
-  content.running = "pose.0";
-  content.done = 12;
-  content.now = {{{"optimizer.steps", 12}, {"fresh", true}}, {{"W", {{1, 2}, {3, -4}}}}};
-  content.more.numbers = {{"clips.low", 4294967295U}};
+  content.finished_stages["track.0"] = {{{"best_loss", 0.5}}, {{"W", {{2, 1}, {1, 2}}}}};
+  content.running_stage = "pose.0";
+  content.done_minibatches = 12;
+  content.running_state = {{{"optimizer.steps", 12}, {"fresh", true}}, {{"W", {{1, 2}, {3, -4}}}}};
+  content.extra_state.numbers = {{"clips.low", 4294967295U}};
   return content;
 }
 
@@ -62,17 +62,18 @@ TEST_CASE("a checkpoint's file holds everything") {
   const CheckpointContent wanted = example();
   write_checkpoint(folder / "c", wanted);
   const CheckpointContent got = read_checkpoint(folder / "c");
-  CHECK(got.running == "pose.0");
-  for (const TrainingState::Content& part : {got.now, got.more, got.over.at("track.0")})
+  CHECK(got.running_stage == "pose.0");
+  for (const TrainingState::Content& part :
+       {got.running_state, got.extra_state, got.finished_stages.at("track.0")})
     CHECK(part.file == (folder / "c").string());
-  CHECK(got.done == 12);
-  CHECK(got.now.numbers == wanted.now.numbers);
-  CHECK(got.now.matrices.at("W").shape == std::vector<std::size_t>{1, 2});
-  CHECK(got.now.matrices.at("W").values == std::vector<float>{3, -4});
-  CHECK(got.more.numbers == wanted.more.numbers);
-  REQUIRE(got.over.size() == 1);
-  CHECK(got.over.at("track.0").numbers == wanted.over.at("track.0").numbers);
-  CHECK(got.over.at("track.0").matrices.at("W").values == std::vector<float>{1, 2});
+  CHECK(got.done_minibatches == 12);
+  CHECK(got.running_state.numbers == wanted.running_state.numbers);
+  CHECK(got.running_state.matrices.at("W").shape == std::vector<std::size_t>{1, 2});
+  CHECK(got.running_state.matrices.at("W").values == std::vector<float>{3, -4});
+  CHECK(got.extra_state.numbers == wanted.extra_state.numbers);
+  REQUIRE(got.finished_stages.size() == 1);
+  CHECK(got.finished_stages.at("track.0").numbers == wanted.finished_stages.at("track.0").numbers);
+  CHECK(got.finished_stages.at("track.0").matrices.at("W").values == std::vector<float>{1, 2});
 }
 
 TEST_CASE("a checkpoint's numbers are believed no more than a model's") {

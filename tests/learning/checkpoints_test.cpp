@@ -65,7 +65,7 @@ class KilledTraining {
     std::size_t written = 0, count = 0;
     Checkpoints::Options options;
     options.folder = folder_;
-    options.more = [&](TrainingState& state) {
+    options.extra_state = [&](TrainingState& state) {
       if (!state.restores()) count = lines.size();
       state.number("lines", count);
       if (!state.restores() && after > 0 && ++written > after) throw Killed{};
@@ -194,7 +194,7 @@ TEST_CASE("a greedy training that is killed ends with the same bits, whatever it
 
 TEST_CASE("fine-tuning that is killed ends with the same bits, what was kept of it too") {
   const MatrixSource source = small_source();
-  const MatrixSource strangers({{"track", tiny_clips(3, 700)}, {"pose", tiny_clips(5, 800)}});
+  const MatrixSource held_out_clips({{"track", tiny_clips(3, 700)}, {"pose", tiny_clips(5, 800)}});
   LearningSettings settings = small_settings();
   settings.fine_tuning.steps = 160;
   settings.fine_tuning.windows = 3;
@@ -205,12 +205,13 @@ TEST_CASE("fine-tuning that is killed ends with the same bits, what was kept of 
   };
   on_every_device([&](Device& device) {
     const Mcdbn start = train_greedy(device, source, settings);
-    for (const SequenceSource* judges : {static_cast<const SequenceSource*>(nullptr),
-                                         static_cast<const SequenceSource*>(&strangers)}) {
-      CAPTURE(judges != nullptr);
+    for (const SequenceSource* held_out_source :
+         {static_cast<const SequenceSource*>(nullptr),
+          static_cast<const SequenceSource*>(&held_out_clips)}) {
+      CAPTURE(held_out_source != nullptr);
       check_killed(
           [&](const EpochObserver& observer, Checkpoints* checkpoints) {
-            return fine_tune(device, start, source, judges, settings, squares, observer,
+            return fine_tune(device, start, source, held_out_source, settings, squares, observer,
                              checkpoints)
                 .network;
           },
@@ -218,8 +219,8 @@ TEST_CASE("fine-tuning that is killed ends with the same bits, what was kept of 
     }
     check_killed(
         [&](const EpochObserver& observer, Checkpoints* checkpoints) {
-          return fine_tune(device, start, ChangingSource(), &strangers, settings, squares, observer,
-                           checkpoints)
+          return fine_tune(device, start, ChangingSource(), &held_out_clips, settings, squares,
+                           observer, checkpoints)
               .network;
         },
         10);

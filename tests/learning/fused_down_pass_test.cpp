@@ -19,7 +19,7 @@ namespace {
 
 struct Case {
   CrbmShape shape;
-  Below below;
+  InputKind input_kind;
   SequenceWindows windows;
   float kept_share = 1.0F;
 };
@@ -27,23 +27,24 @@ struct Case {
 /// Every kind of unit; sizes that fill no vector and no tile, a history longer than what follows
 /// it.
 const std::vector<Case> kCases = {
-    {{5, 3, 2, VisibleKind::gaussian}, Below::data, {3, 7, 2, 3}},
-    {{17, 4, 3, VisibleKind::gaussian}, Below::data, {7, 6, 4, 5}},
-    {{33, 2, 1, VisibleKind::binary}, Below::data, {5, 5, 2, 2}},
-    {{19, 3, 4, VisibleKind::binary}, Below::code, {5, 7, 5, 6}},
-    {{3, 3, 2, VisibleKind::binary, 1, 2}, Below::code, {2, 9, 3, 4}, 0.75F}};
+    {{5, 3, 2, VisibleKind::gaussian}, InputKind::data, {3, 7, 2, 3}},
+    {{17, 4, 3, VisibleKind::gaussian}, InputKind::data, {7, 6, 4, 5}},
+    {{33, 2, 1, VisibleKind::binary}, InputKind::data, {5, 5, 2, 2}},
+    {{19, 3, 4, VisibleKind::binary}, InputKind::code, {5, 7, 5, 6}},
+    {{3, 3, 2, VisibleKind::binary, 1, 2}, InputKind::code, {2, 9, 3, 4}, 0.75F}};
 
 /// Numbers as in training, all of the same every time.
 struct Problem {
   explicit Problem(const Case& test)
       : rows(test.windows.rows()),
-        drive(random_matrix(test.windows.count * (test.windows.frames - test.windows.first),
-                            test.shape.visible, 1)),
+        input_from_above(
+            random_matrix(test.windows.count * (test.windows.frames - test.windows.first),
+                          test.shape.visible, 1)),
         states(random_matrix(rows, test.shape.visible, 2, 0.4F)),
         errors(random_matrix(rows, test.shape.visible, 3)),
         A(random_layer(test.shape, 4).A) {}
   std::size_t rows;
-  MatrixF drive, states, errors, A;
+  MatrixF input_from_above, states, errors, A;
 };
 
 struct Passed {
@@ -55,7 +56,7 @@ struct Passed {
 struct OnDevice {
   OnDevice(Device& device, const Case& test, const Problem& problem)
       : parameters(device, Crbm::parameter_shapes(test.shape)),
-        layer(parameters, parameters, CrbmParameters::zeros(test.shape), test.below) {
+        layer(parameters, parameters, CrbmParameters::zeros(test.shape), test.input_kind) {
     CrbmParameters all = random_layer(test.shape, 4);
     all.A = problem.A;
     all.write(parameters);
@@ -69,13 +70,13 @@ struct OnDevice {
 Passed passed(Device& device, const Case& test, std::optional<RowTile> tile) {
   const Problem problem(test);
   const OnDevice own(device, test, problem);
-  const auto pass = tile ? FusedDownPass(own.layer, test.below, test.windows, *tile)
-                         : FusedDownPass::of(own.layer, test.below, test.windows).value();
+  const auto pass = tile ? FusedDownPass(own.layer, test.input_kind, test.windows, *tile)
+                         : FusedDownPass::of(own.layer, test.input_kind, test.windows).value();
   const Matrix states = Matrix::from_host(device, problem.states);
   const Matrix errors = Matrix::from_host(device, problem.errors);
   pass.backward(states, errors, test.kept_share);
-  const Matrix drive = Matrix::from_host(device, problem.drive);
-  pass.forward(drive, states);
+  const Matrix input_from_above = Matrix::from_host(device, problem.input_from_above);
+  pass.forward(input_from_above, states);
   return {states.to_host(), errors.to_host()};
 }
 
@@ -104,12 +105,12 @@ void check_forward(const Case& test, const MatrixD& got) {
       CHECK(got.row(at) == problem.states.row(at).cast<double>());
       continue;
     }
-    const RowVectorD drive =
-        problem.drive
+    const RowVectorD input_from_above =
+        problem.input_from_above
             .row(static_cast<Eigen::Index>(window * (windows.frames - windows.first) + frame -
                                            windows.first))
             .cast<double>();
-    Sum sum{drive, drive.cwiseAbs()};
+    Sum sum{input_from_above, input_from_above.cwiseAbs()};
     for (std::size_t q = 0; q < order; ++q)
       sum.add(got.row(at - static_cast<Eigen::Index>(order - q)),
               problem.A.middleRows(static_cast<Eigen::Index>(q * v), static_cast<Eigen::Index>(v))
@@ -119,7 +120,7 @@ void check_forward(const Case& test, const MatrixD& got) {
       const RowVectorD p = (1.0 + (-want.array()).exp()).inverse().matrix();
       bound = 0.25 * bound + reference::kSigmoidError * kRoundoff * p;
       want = p;
-      if (test.below == Below::code) {
+      if (test.input_kind == InputKind::code) {
         want.array() -= 0.5;
         bound.array() += kRoundoff;
       }
@@ -153,7 +154,7 @@ void check_backward(const Case& test, const MatrixD& got) {
     RowVectorD slope = RowVectorD::Ones(static_cast<Eigen::Index>(v));
     const RowVectorD y = problem.states.row(at).cast<double>();
     const double kept = test.kept_share;
-    if (test.below == Below::code)
+    if (test.input_kind == InputKind::code)
       slope = ((0.25 - (kept * y.array()).square()) / kept).matrix();
     else if (test.shape.kind == VisibleKind::binary)
       slope = (y.array() * (1.0 - y.array())).matrix();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <optional>
 
 #include "learning/divergence_guard.hpp"
 #include "learning/greedy_scene.hpp"
@@ -68,6 +69,22 @@ MatrixF waves(Eigen::Index frames, Eigen::Index dimension) {
       values(t, d) = std::sqrt(2.0F) *
                      std::sin(0.2F * static_cast<float>(t) * (1.0F + 0.1F * static_cast<float>(d)) +
                               static_cast<float>(d));
+  return values;
+}
+
+/// Rows of variance 1: two causes of ±1, each in four columns, and noise on every column.
+MatrixF noisy_causes(Eigen::Index rows, double noise) {
+  constexpr Eigen::Index kColumns = 8, kOfCause = 4;
+  const RandomKey key{.seed = 3};
+  MatrixF values(rows, kColumns);
+  for (Eigen::Index r = 0; r < rows; ++r)
+    for (Eigen::Index c = 0; c < kColumns; ++c) {
+      const auto row = static_cast<std::uint32_t>(r), column = static_cast<std::uint32_t>(c);
+      const auto first = static_cast<std::uint32_t>(c / kOfCause * kOfCause);
+      const double cause = random_uniform({.seed = 4}, row, first) < 0.5F ? -1.0 : 1.0;
+      values(r, c) = static_cast<float>((cause + noise * random_normal(key, row, column)) /
+                                        std::sqrt(1 + noise * noise));
+    }
   return values;
 }
 
@@ -142,26 +159,26 @@ TEST_CASE("the paper's preset at rates that do not diverge learns what the other
 }
 
 TEST_CASE("the greedy training names the modality, the kind of layer and the settings to lower") {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   GreedyScene scene = scene_of_different_sizes();
-  scene.tracks.back()(5, 1) = kNan;
+  scene.tracks.back()(5, 1) = 1e30F;  // whose square is infinite
   on_every_device([&](Device& device) {
     const Divergence track = divergence_of(
         [&](const EpochObserver& observer) { train_on_device(device, scene, observer); });
     INFO(track.message);
     CHECK(contains(track.message, "in stage track.0 at epoch 1: the loss is "));
-    CHECK(contains(track.message, "nan; lower `gaussian.rate` (now 0.03)"));
+    CHECK_FALSE(std::isfinite(track.last_loss));
+    CHECK(contains(track.message, "; lower `gaussian.rate` (now 0.03)"));
 
     const LearningSettings settings = settings_of(scene.plan);
-    MatrixF codes = waves(20, 4).cwiseAbs() / 2;
-    codes(7, 2) = kNan;
-    const CrbmShape shape{4, 4, 2, VisibleKind::binary};
+    const MatrixF codes = waves(20, 4).cwiseAbs() / 2;
+    CrbmParameters start = CrbmParameters::random({4, 4, 2, VisibleKind::binary}, 0.1, {});
+    start.a(0, 2) = std::numeric_limits<float>::quiet_NaN();
     const Divergence binary = divergence_of([&](const EpochObserver& observer) {
-      train_crbm(device, Sequences::from_host(device, {codes}),
-                 CrbmParameters::random(shape, 0.1, {}), settings.binary, settings, 1, observer,
-                 "upper");
+      train_crbm(device, Sequences::from_host(device, {codes}), start, settings.binary, settings, 1,
+                 observer, "upper");
     });
     INFO(binary.message);
+    CHECK_FALSE(std::isfinite(binary.last_loss));
     CHECK(contains(binary.message, "in stage upper at epoch 1: the loss is "));
     CHECK(contains(binary.message,
                    "; lower `binary.rate` (now 0.2), `binary.rate-A` (0.07), `binary.rate-B` (0.1) "
@@ -205,6 +222,32 @@ TEST_CASE("a Gaussian RBM whose deviation diverges is stopped, and the message n
     INFO(divergence.message);
     CHECK(contains(divergence.message, "`gaussian.deviation-rate` (100)"));
     CHECK_FALSE(contains(divergence.message, "rate-A"));
+  });
+}
+
+TEST_CASE("a deviation that shrinks to that of the noise is no divergence: the loss falls to it") {
+  constexpr double kNoise = 0.1;
+  LearningSettings settings;
+  settings.batch = 20;
+  settings.least_batches = 1;
+  settings.gaussian.gibbs_steps = 1;
+  settings.gaussian.rate = settings.gaussian.deviation_rate = 0.02;
+  settings.gaussian.epochs = 120;
+  on_every_device([&](Device& device) {
+    std::vector<double> losses;
+    const Sequences rows = Sequences::from_host(device, {noisy_causes(200, kNoise)});
+    const auto train = [&] {
+      return train_crbm(device, rows,
+                        CrbmParameters::random({8, 4, 0, VisibleKind::gaussian}, 0.01, {.seed = 1}),
+                        settings.gaussian, settings, 0,
+                        [&](const EpochReport& report) { losses.push_back(report.loss); });
+    };
+    std::optional<Crbm> crbm;
+    REQUIRE_NOTHROW(crbm.emplace(train()));
+    // Over the deviation the error would rise from a tenth to nearly 1.
+    CHECK(crbm->visible_deviation.to_host().maxCoeff() < 2 * kNoise);
+    CHECK(losses.front() > 0.8);
+    CHECK(losses.back() < 2 * kNoise * kNoise);
   });
 }
 

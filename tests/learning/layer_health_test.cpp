@@ -71,6 +71,17 @@ TEST_CASE("crbm_health: windows of order + 1 frames are enough for the hidden un
   CHECK(!health.free_run_error);
 }
 
+TEST_CASE("crbm_health: the free run's error is in the data's units, whatever the deviation") {
+  CrbmParameters parameters = zero_crbm(VisibleKind::gaussian);
+  parameters.visible_deviation.row(0) << 0.5F, 2, 1;
+  // Units that are 0 answer 0 in the data's units, too.
+  CHECK(crbm_health(parameters, windows_of(3)).free_run_error.value() == doctest::Approx(9));
+  // Units that are 1 answer the deviation.
+  parameters.a.setOnes();
+  CHECK(crbm_health(parameters, windows_of(3)).free_run_error.value() ==
+        doctest::Approx((2.5 * 2.5 + 1 * 1 + 2 * 2) / 3));
+}
+
 TEST_CASE("crbm_health: binary units, and no window at all") {
   CrbmParameters parameters = zero_crbm(VisibleKind::binary);
   CHECK(crbm_health(parameters, windows_of(0.5F)).free_run_error.value() == doctest::Approx(0));

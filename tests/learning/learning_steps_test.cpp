@@ -193,20 +193,20 @@ MrbmWanted wanted(const MrbmScene& scene) {
   for (MatrixD& weights : decaying.weights) weights.setOnes();
   const MatrixD decays = decaying.flattened().transpose();
   MatrixD mean = 0 * decays, square = 0 * decays;
-  const reference::MeanFieldOptions options{kMeanFieldSteps, false};
   for (std::size_t step = 0; step < kSteps; ++step) {
     const auto batch = scene.batch(step);
     std::array<double, 2> losses{};
     for (int present = 0; present < 2; ++present) {
-      const auto trace =
-          reference::mean_field(want.model, static_cast<std::size_t>(1 - present), batch, options);
+      const auto trace = reference::mean_field(want.model, static_cast<std::size_t>(1 - present),
+                                               batch, kMeanFieldSteps);
       losses[1 - present] =
           reference::cross_entropy_of_sigmoid(batch[1 - present], trace.missing_input) /
           static_cast<double>(batch[1 - present].size());
     }
     want.losses.push_back(losses);
-    const MatrixD gradient =
-        reference::multi_prediction(want.model, batch, options).gradient.flattened().transpose();
+    const MatrixD gradient = reference::multi_prediction(want.model, batch, kMeanFieldSteps)
+                                 .gradient.flattened()
+                                 .transpose();
     UpdateRule rule = adam_rule(step);
     MatrixD parameters = want.model.flattened().transpose();
     const MatrixD shrunk =

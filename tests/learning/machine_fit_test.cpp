@@ -209,12 +209,12 @@ TEST_CASE("fit: values that the units cannot take are refused before anything is
     CHECK_NOTHROW(fit(ends, kBinary));
     ends(6, 1) = 1.25F;
     CHECK_THROWS_WITH_AS(fit(ends, kBinary),
-                         "data: row 27, column 2 is 1.25; binary units need values from 0 to 1 "
-                         "(Gaussian ones take any)",
+                         "layer.0: row 27, column 2 is 1.25; binary units need values from 0 to 1 "
+                         "(Gaussian units take any)",
                          InputError);
     CHECK_THROWS_WITH_AS(fit_both(ends, kBinary),
                          "right: row 7, column 2 is 1.25; binary units need values from 0 to 1 "
-                         "(Gaussian ones take any)",
+                         "(Gaussian units take any)",
                          InputError);
     CHECK_NOTHROW(fit(ends, kGaussian));
   });

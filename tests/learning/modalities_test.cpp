@@ -142,19 +142,18 @@ TEST_CASE("multi-prediction of four modalities at odd sizes, fused and composed"
 TEST_CASE("reference: multi-prediction of Gaussian modalities is the gradient of its loss") {
   const Problem problem({{{3, kGaussian}, {4, kBinary}, {2, kGaussian}}, 3, 4, 3});
   const reference::Mrbm model = in_double(problem.start);
-  const reference::MeanFieldOptions options{3, false};
+  constexpr int kSteps = 3;
   const auto numeric = reference::finite_difference(
       [&](const Eigen::VectorXd& x) {
-        return reference::multi_prediction(model.with_parameters(x), problem.batch, options).loss;
+        return reference::multi_prediction(model.with_parameters(x), problem.batch, kSteps).loss;
       },
       model.flattened());
-  const auto exact =
-      reference::multi_prediction(model, problem.batch, options).gradient.flattened();
+  const auto exact = reference::multi_prediction(model, problem.batch, kSteps).gradient.flattened();
   CHECK((numeric - exact).cwiseAbs().maxCoeff() < 1e-8);
 }
 
 TEST_CASE("the unrolled pass of three modalities, one binary: each is predicted from the others") {
-  constexpr SequenceWindows kWindows{.count = 2, .frames = 7, .first = 3, .lead = 4};
+  constexpr SequenceWindows kWindows{.count = 2, .frames = 7, .first = 3, .judged_from = 4};
   constexpr std::size_t kMeanFieldSteps = 2;
   const std::array<std::size_t, 3> visible{3, 4, 2}, hidden{4, 3, 5}, order{2, 1, 3};
   const std::array<VisibleKind, 3> kind{kGaussian, kBinary, kGaussian};
@@ -186,12 +185,12 @@ TEST_CASE("the unrolled pass of three modalities, one binary: each is predicted 
       for (const MatrixF& all : frames) values.push_back(window(all, i));
       return reference::joint_prediction(with, absent, values, 3, kMeanFieldSteps);
     };
-    // Σ of the squares of the frames from `lead` on.
+    // Σ of the squares of the frames from `judged_from` on.
     const auto loss = [&](const Eigen::VectorXd& flat) {
       double sum = 0;
       for (std::size_t i = 0; i < kWindows.count; ++i)
         sum += 0.5 * predicted(model.with_parameters(flat), i)
-                         .bottomRows(kWindows.frames - kWindows.lead)
+                         .bottomRows(kWindows.frames - kWindows.judged_from)
                          .squaredNorm();
       return sum;
     };
@@ -216,7 +215,7 @@ TEST_CASE("the unrolled pass of three modalities, one binary: each is predicted 
       MatrixF error = MatrixF::Zero(got.rows(), got.cols());
       for (std::size_t i = 0; i < kWindows.count; ++i) {
         const auto first = static_cast<Eigen::Index>(i * kWindows.frames);
-        const auto judged = static_cast<Eigen::Index>(kWindows.frames - kWindows.lead);
+        const auto judged = static_cast<Eigen::Index>(kWindows.frames - kWindows.judged_from);
         const MatrixD difference =
             got.middleRows(first + 3, 4).cast<double>() - predicted(model, i).bottomRows(4);
         CHECK(difference.cwiseAbs().maxCoeff() < 1e-4);

@@ -43,7 +43,7 @@ class Scene {
                                                shape_.steps);
   }
   std::vector<MatrixD> batch() const { return {codes[0].cast<double>(), codes[1].cast<double>()}; }
-  reference::MeanFieldOptions options() const { return {shape_.steps, false}; }
+  int steps() const { return shape_.steps; }
 
   struct Trained {
     MrbmParameters gradients, parameters;
@@ -111,7 +111,7 @@ TEST_CASE("the bounded gradients and losses are the plain reference's") {
     const Scene scene(shape);
     const auto [bounded, losses] = scene.bounded();
     const auto [loss, plain] =
-        reference::multi_prediction(scene.model(), scene.batch(), scene.options());
+        reference::multi_prediction(scene.model(), scene.batch(), scene.steps());
     for (std::size_t m = 0; m < 2; ++m) {
       CHECK((bounded.weights[m].value - plain.weights[m]).cwiseAbs().maxCoeff() < 1e-12);
       CHECK((bounded.visible_bias[m].value - plain.visible_bias[m]).cwiseAbs().maxCoeff() < 1e-12);
@@ -129,7 +129,7 @@ TEST_CASE("small: multi-prediction gradients on the device agree with finite dif
   const reference::Mrbm model = scene.model();
   const Eigen::VectorXd numeric = reference::finite_difference(
       [&](const Eigen::VectorXd& x) {
-        return reference::multi_prediction(model.with_parameters(x), scene.batch(), scene.options())
+        return reference::multi_prediction(model.with_parameters(x), scene.batch(), scene.steps())
             .loss;
       },
       model.flattened());

@@ -16,7 +16,7 @@ using namespace mcdbn::test;
 
 namespace {
 
-constexpr SequenceWindows kWindows{.count = 2, .frames = 8, .first = 4, .lead = 5};
+constexpr SequenceWindows kWindows{.count = 2, .frames = 8, .first = 4, .judged_from = 5};
 constexpr std::size_t kMeanFieldSteps = 3;
 constexpr std::array<std::size_t, 2> kVisible{3, 5};
 
@@ -111,8 +111,8 @@ TEST_CASE("small: fine-tuning sees data over the units' deviations and predicts 
     MatrixF error = MatrixF::Zero(static_cast<Eigen::Index>(kWindows.rows()),
                                   static_cast<Eigen::Index>(kVisible[absent]));
     for (std::size_t i = 0; i < kWindows.count; ++i) {
-      const std::size_t judged = kWindows.frames - kWindows.lead;
-      error.middleRows(static_cast<Eigen::Index>(i * kWindows.frames + kWindows.lead),
+      const std::size_t judged = kWindows.frames - kWindows.judged_from;
+      error.middleRows(static_cast<Eigen::Index>(i * kWindows.frames + kWindows.judged_from),
                        static_cast<Eigen::Index>(judged)) =
           random_matrix(judged, kVisible[absent], 30 + static_cast<unsigned>(i));
     }

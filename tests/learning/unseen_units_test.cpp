@@ -186,9 +186,9 @@ TEST_CASE("small: CD learns what a machine does that has only the units that wer
 
 TEST_CASE("small: the squared loss is the mean over what was seen of the frames that are judged") {
   for (const auto& [windows, dimension] :
-       {std::pair{SequenceWindows{.count = 3, .frames = 7, .first = 1, .lead = 2}, 5},
-        std::pair{SequenceWindows{.count = 1, .frames = 9, .first = 3, .lead = 4}, 17},
-        std::pair{SequenceWindows{.count = 5, .frames = 3, .first = 0, .lead = 0}, 1}}) {
+       {std::pair{SequenceWindows{.count = 3, .frames = 7, .first = 1, .judged_from = 2}, 5},
+        std::pair{SequenceWindows{.count = 1, .frames = 9, .first = 3, .judged_from = 4}, 17},
+        std::pair{SequenceWindows{.count = 5, .frames = 3, .first = 0, .judged_from = 0}, 1}}) {
     CAPTURE(dimension);
     const auto columns = static_cast<std::size_t>(dimension);
     const MatrixF prediction = random_matrix(windows.rows(), columns, 1),
@@ -196,7 +196,8 @@ TEST_CASE("small: the squared loss is the mean over what was seen of the frames 
     const MatrixF seen = some_seen(prediction.rows(), prediction.cols());
     MatrixD counts = seen.cast<double>();
     for (std::size_t row = 0; row < windows.rows(); ++row)
-      if (row % windows.frames < windows.lead) counts.row(static_cast<Eigen::Index>(row)).setZero();
+      if (row % windows.frames < windows.judged_from)
+        counts.row(static_cast<Eigen::Index>(row)).setZero();
     const MatrixD difference =
         counts.cwiseProduct(prediction.cast<double>() - target.cast<double>());
     const double weight = 1.75, loss = weight * difference.squaredNorm() / counts.sum();

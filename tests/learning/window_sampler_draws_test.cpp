@@ -13,7 +13,7 @@ using namespace mcdbn;
 
 namespace {
 
-constexpr SequenceWindows kWindows{.count = 40, .frames = 9, .first = 2, .lead = 4};
+constexpr SequenceWindows kWindows{.count = 40, .frames = 9, .first = 2, .judged_from = 4};
 constexpr Eigen::Index kJudged = 5;
 
 struct Clips {
@@ -58,7 +58,7 @@ std::vector<std::int32_t> rows_in_reference(const Clips& clips, const LearningSe
   const reference::DrawnWindows drawn = reference::drawn_windows(
       data,
       {static_cast<Eigen::Index>(kWindows.count), static_cast<Eigen::Index>(kWindows.frames),
-       static_cast<Eigen::Index>(kWindows.first), static_cast<Eigen::Index>(kWindows.lead)},
+       static_cast<Eigen::Index>(kWindows.first), static_cast<Eigen::Index>(kWindows.judged_from)},
       same, step);
   std::vector<std::int32_t> rows;
   for (const MatrixD* block : {&drawn.pose, &drawn.track})
@@ -73,7 +73,7 @@ std::vector<std::int32_t> first_judged(const Clips& clips, const LearningSetting
   for (std::size_t step = 0; step < 100; ++step) {
     const auto rows = rows_of(clips, config, step);
     for (std::size_t i = 0; i < kWindows.count; ++i)
-      starts.push_back(rows[i * kWindows.frames + kWindows.lead]);
+      starts.push_back(rows[i * kWindows.frames + kWindows.judged_from]);
   }
   return starts;
 }
@@ -100,7 +100,7 @@ TEST_CASE("windows are others in every mini-batch, for every seed and at every p
   CHECK(first != rows_of(kClips, settings(0.5, 4), 0));
   std::set<std::int32_t> starts;
   for (std::size_t i = 0; i < kWindows.count; ++i)
-    starts.insert(first[i * kWindows.frames + kWindows.lead]);
+    starts.insert(first[i * kWindows.frames + kWindows.judged_from]);
   CHECK(starts.size() > 10);
 }
 

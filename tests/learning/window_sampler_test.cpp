@@ -21,7 +21,7 @@ SynchronizedClips three_clips() {
   return {{{"track", tracks}, {"pose", poses}}, people};
 }
 
-constexpr SequenceWindows kWindows{.count = 50, .frames = 12, .first = 4, .lead = 6};
+constexpr SequenceWindows kWindows{.count = 50, .frames = 12, .first = 4, .judged_from = 6};
 
 LearningSettings settings_with(double people_power) {
   LearningSettings settings;
@@ -37,7 +37,7 @@ double share_of_second(double people_power) {
   for (std::size_t step = 0; step < 40; ++step) {
     const auto rows = sampler.rows(step);
     for (std::size_t i = 0; i < kWindows.count; ++i, ++all)
-      second += rows[i * kWindows.frames + kWindows.lead] >= 100;
+      second += rows[i * kWindows.frames + kWindows.judged_from] >= 100;
   }
   return second / all;
 }
@@ -53,7 +53,7 @@ TEST_CASE("windows go frame by frame within one clip, 2D the look-ahead later") 
     for (std::size_t i = 0; i < kWindows.count; ++i) {
       const std::int32_t* pose = &rows[i * kWindows.frames];
       const std::int32_t* track = pose + kWindows.rows();
-      const auto judged = pose[kWindows.lead];
+      const auto judged = pose[kWindows.judged_from];
       first_judged.insert(judged);
       const std::int32_t begin = judged < 60    ? 0
                                  : judged < 100 ? 60

@@ -41,7 +41,7 @@ Mcdbn example_network(Device& device) {
   network.cdbns[0].layers.emplace_back(device, one);
   network.cdbns[1].layers.emplace_back(device, two);
   network.sampling = {
-      .gibbs_steps = 4, .mrbm_gibbs_steps = 2, .steady = true, .scale = 0.75, .always = true};
+      .gibbs_steps = 4, .mrbm_gibbs_steps = 2, .steady = true, .scale = 0.75, .sampled = true};
   network.fills_gaps = false;
   network.deviation = AnswerDeviation{random_matrix(3, 4, 5), random_matrix(1, 4, 6)};
   return network;
@@ -165,7 +165,7 @@ TEST_CASE("small: an MCDBN comes back from its file whole: how it samples, how f
     CHECK(got.sampling.mrbm_gibbs_steps == 2);
     CHECK(got.sampling.steady);
     CHECK(got.sampling.scale == 0.75);
-    CHECK(got.sampling.always);
+    CHECK(got.sampling.sampled);
     REQUIRE(got.deviation);
     CHECK(got.deviation->C == network.deviation->C);
     CHECK(got.deviation->c == network.deviation->c);
@@ -183,7 +183,7 @@ TEST_CASE("small: an MCDBN comes back from its file whole: how it samples, how f
     CHECK(plain.sampling.gibbs_steps == SamplingRule{}.gibbs_steps);
     CHECK(plain.sampling.mrbm_gibbs_steps == 0);
     CHECK(plain.sampling.scale == 1.0);
-    CHECK_FALSE(plain.sampling.always);
+    CHECK_FALSE(plain.sampling.sampled);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "device/every_device.hpp"
+#include "machines/cdbn_decoder.hpp"
 #include "machines/random_crbm.hpp"
 #include "machines/sequence_completion.hpp"
 #include "mcdbn/machines/energy.hpp"
@@ -75,6 +76,15 @@ TEST_CASE("small: deviations of Gaussian units scale what goes in and what comes
                                       settings))));
         CHECK(complete_sequence(machines.with, given) ==
               times(complete_sequence(machines.without, over(given))));
+        // The history of the first frame is the training mean.
+        const Matrix code = machines.with.up_pass(data).values;
+        const auto decoded = [&](const Cdbn& cdbn, bool fused) {
+          CdbnDecoder decoder(cdbn, code, 1);
+          decoder.decode(order, 9, {}, fused);
+          return MatrixF(decoder.visible().to_host().bottomRows(9 - static_cast<int>(order)));
+        };
+        for (const bool fused : {true, false})
+          CHECK(decoded(machines.with, fused) == times(decoded(machines.without, fused)));
         if (order > 0) continue;
         CHECK(sample(machines.with, data.values, settings).to_host() ==
               times(sample(machines.without, own.values, settings).to_host()));

@@ -99,11 +99,11 @@ Bounded pose_code(const Network& network, const Bounded& track_code, const DrawR
   RandomKey key{rule.seed, rule.steady ? 0U : step, kMrbmStream, 0};
   const MrbmParameters& p = network.mrbm;
   const Bounded W = exact(p.W[1]);
-  const Sum drive = Sum().add_product(track_code, exact(p.W[0])).add_row(exact(p.b));
+  const Sum present_input = Sum().add_product(track_code, exact(p.W[0])).add_row(exact(p.b));
   Bounded units = Bounded::exact(MatrixD::Zero(track_code.value.rows(), p.W[1].rows())), means;
   for (std::size_t k = 0; k < steps; ++k) {
     const Bounded hidden =
-        drawn(sigmoid(Sum(drive).add_product(units, W).result()), kind, share, key);
+        drawn(sigmoid(Sum(present_input).add_product(units, W).result()), kind, share, key);
     ++key.phase;
     means = sigmoid(Sum().add_product(hidden, W.transposed()).add_row(exact(p.a[1])).result());
     units = drawn(means, kind, share, key);

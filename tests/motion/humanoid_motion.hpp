@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "mcdbn/motion/humanoid.hpp"
@@ -44,6 +46,22 @@ inline Motion moving_humanoid(int frames = 60) {
     }
   }
   return motion;
+}
+
+/// The same with every joint turning by Z X Y, as the humanoid once did.
+inline Motion on_former_orders(const Motion& motion) {
+  Motion result = motion;
+  for (int j = 0; j < motion.skeleton.joint_count(); ++j) {
+    const Joint& was = motion.skeleton.joints[static_cast<std::size_t>(j)];
+    Joint& now = result.skeleton.joints[static_cast<std::size_t>(j)];
+    std::copy_n(std::array{Channel::z_rotation, Channel::x_rotation, Channel::y_rotation}.begin(),
+                3, now.channels.end() - 3);
+    const int first = motion.skeleton.first_channel(j);
+    for (int t = 0; t < motion.frames(); ++t)
+      set_local_rotation(now, local_rotation(was, motion.channels.row(t).data() + first), nullptr,
+                         result.channels.row(t).data() + first);
+  }
+  return result;
 }
 
 /// World orientations of all joints of a frame, one beside another.

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "mcdbn/formats/bvh.hpp"
@@ -13,8 +14,8 @@ using namespace mcdbn;
 
 namespace {
 
-/// Two arms on a spine. `straight`: the arms rest to both sides; else every bone rests along +x, as
-/// Bandai's do, and only the sides' positions at the shoulders differ.
+/// Two arms on a spine. `straight`: the arms rest to both sides; else every bone rests along +x,
+/// and only the sides' positions at the shoulders differ.
 Motion two_armed(bool straight) {
   const auto joint = [](const char* name, int parent, Eigen::Vector3d offset, bool root = false) {
     Joint result;
@@ -87,21 +88,28 @@ TEST_CASE("a mirrored body of both sides alike turns every joint as the mirror s
   CHECK(other->channels.middleCols(1, 2) == motion.channels.middleCols(1, 2));
 }
 
-TEST_CASE("mirrored joints whose bones all rest along x are reflected along their own y") {
-  const Motion motion = two_armed(false);
-  const auto other = mirrored(motion);
-  REQUIRE(other);
-  const Eigen::Vector3d mirror(-1, 1, 1), bones(1, -1, 1);
+TEST_CASE("mirrored joints whose bones all rest along x are reflected as suits the motion") {
+  const Eigen::Vector3d mirror(-1, 1, 1);
   const std::vector<int> opposite{0, 3, 4, 1, 2};
-  for (const int t : {0, 7, 19}) {
-    const WorldPose before = forward_kinematics(motion.skeleton, motion.channels.row(t));
-    const WorldPose after = forward_kinematics(motion.skeleton, other->channels.row(t));
-    for (int j = 0; j < 5; ++j) {  // the hands, which have no bone, as their arms
-      CAPTURE(j);
-      const Eigen::Vector3d own = j == 0 ? mirror : bones;
-      const Eigen::Matrix3d want =
-          mirror.asDiagonal() * before.world_from_joint[opposite[j]] * own.asDiagonal();
-      CHECK((after.world_from_joint[j] - want).cwiseAbs().maxCoeff() < 1e-12);
+  // Half a turn about z or y brings the right arm to the right. With the mirror that is a
+  // reflection along y or z.
+  for (const auto& [channel, bones] :
+       {std::pair(0, Eigen::Vector3d(1, -1, 1)), std::pair(2, Eigen::Vector3d(1, 1, -1))}) {
+    CAPTURE(channel);
+    Motion motion = two_armed(false);
+    motion.channels.col(motion.skeleton.first_channel(3) + channel).array() += 180.0;
+    const auto other = mirrored(motion);
+    REQUIRE(other);
+    for (const int t : {0, 7, 19}) {
+      const WorldPose before = forward_kinematics(motion.skeleton, motion.channels.row(t));
+      const WorldPose after = forward_kinematics(motion.skeleton, other->channels.row(t));
+      for (int j = 0; j < 5; ++j) {  // the hands, which have no bone, as their arms
+        CAPTURE(j);
+        const Eigen::Vector3d own = j == 0 ? mirror : bones;
+        const Eigen::Matrix3d want =
+            mirror.asDiagonal() * before.world_from_joint[opposite[j]] * own.asDiagonal();
+        CHECK((after.world_from_joint[j] - want).cwiseAbs().maxCoeff() < 1e-12);
+      }
     }
   }
 }

@@ -105,6 +105,20 @@ TEST_CASE("other body: bones grow as asked, both sides alike, and turn as before
   }
 }
 
+TEST_CASE("other body: the whole path grows, also what a joint above the hips travels") {
+  Motion before = swinging(two_sided(true), 20);
+  for (int t = 0; t < 20; ++t) before.channels(t, 2) = 12.0 * t;  // World's z
+  const int root = before.skeleton.find("Hips");
+  REQUIRE(moving_root({&before}) == root);
+  Motion after = before;
+  scale_bones(after, [](int joint) { return 1 + 0.1 * joint; });
+  const double taller = body_height(after.skeleton) / body_height(before.skeleton);
+  CHECK(taller > 1.1);
+  const MatrixD places = joint_positions(before).middleCols(3 * root, 3),
+                others = joint_positions(after).middleCols(3 * root, 3);
+  CHECK((others - taller * places).cwiseAbs().maxCoeff() < 1e-9);
+}
+
 TEST_CASE("other body: height makes all bones longer, proportions each by itself") {
   const Motion motion = swinging(two_sided(false), 2);
   const int shin = motion.skeleton.find("LeftLeg"), foot = motion.skeleton.find("LeftFoot");

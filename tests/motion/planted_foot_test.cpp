@@ -10,9 +10,9 @@ TEST_CASE("planted foot: low and slow, up to both limits") {
   CHECK(foot.holds(-0.01, 0));
   CHECK_FALSE(foot.holds(0.0401, 0));
   CHECK_FALSE(foot.holds(0, 0.401));
-  CHECK(foot.surely(0, 0) == 1);
-  CHECK(foot.surely(0.04, 0) == doctest::Approx(std::exp(-0.5)));
-  CHECK(foot.surely(0.08, 0.4) == doctest::Approx(std::exp(-2.5)));
+  CHECK(foot.confidence(0, 0) == 1);
+  CHECK(foot.confidence(0.04, 0) == doctest::Approx(std::exp(-0.5)));
+  CHECK(foot.confidence(0.08, 0.4) == doctest::Approx(std::exp(-2.5)));
 }
 
 TEST_CASE("planted foot: what training, the fit and evaluation take for one") {

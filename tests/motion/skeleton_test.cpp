@@ -175,16 +175,34 @@ TEST_CASE("joints with fewer rotation channels take the nearest rotation they ca
   }
 }
 
-TEST_CASE("the moving root is the first on the chain that travels") {
+TEST_CASE("the moving root is the last on the chain that travels in any clip") {
   Motion clip{arm(), 0.1, MatrixD::Zero(3, 10)};
   CHECK(moving_root({&clip}) == 0);  // nothing travels
   clip.channels(1, 3) = 90;          // turning is not travelling
+  CHECK(moving_root({&clip}) == 0);
+  Motion root_travels = clip, both_travel = clip;
   clip.channels(2, 9) = 1;
   CHECK(moving_root({&clip}) == 2);
-  clip.channels(2, 1) = 1;
-  CHECK(moving_root({&clip}) == 0);
+  root_travels.channels(2, 1) = 1;
+  CHECK(moving_root({&root_travels}) == 0);
+  both_travel.channels(2, 1) = both_travel.channels(2, 9) = 1;
+  CHECK(moving_root({&both_travel}) == 2);
+  // A single clip whose root travels does not take the other clips' path away.
+  CHECK(moving_root({&root_travels, &clip}) == 2);
+  CHECK(moving_root({&clip, &root_travels}) == 2);
   const Motion still{arm(), 0.1, MatrixD::Zero(3, 10)};
-  CHECK(moving_root({&still, &clip}) == 0);
+  CHECK(moving_root({&still, &root_travels}) == 0);
+}
+
+TEST_CASE("Bandai's body is carried by the hips, also with clips whose joint_Root travels") {
+  const std::string set = "bandai/set1/dataset-1_walk-back_";
+  if (!test::have_shared_data(set + "normal_001.bvh", "the moving root of Bandai's clips")) return;
+  const Motion usual = read_bvh(test::shared_data() / (set + "active_001.bvh")),
+               travelling = read_bvh(test::shared_data() / (set + "normal_001.bvh"));
+  const int hips = usual.skeleton.find("Hips");
+  CHECK(moving_root({&usual}) == hips);
+  CHECK(moving_root({&usual, &travelling}) == hips);
+  CHECK(moving_root({&travelling}) == hips);
 }
 
 TEST_CASE("rest height") {

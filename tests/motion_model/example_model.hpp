@@ -35,7 +35,7 @@ struct ExampleModel {
     for (const CrbmParameters& p : track) network.cdbns[0].layers.emplace_back(device, p);
     for (const CrbmParameters& p : pose) network.cdbns[1].layers.emplace_back(device, p);
     network.sampling = {
-        .gibbs_steps = 5, .mrbm_gibbs_steps = 3, .steady = true, .scale = 0.7, .always = true};
+        .gibbs_steps = 5, .mrbm_gibbs_steps = 3, .steady = true, .scale = 0.7, .sampled = true};
     network.fills_gaps = false;
     return {std::move(network),
             modalities(),

@@ -61,7 +61,7 @@ class FineTuningCase {
   }
 
   TrainedNetwork train(Device& device, const EpochObserver& observer = {}) const {
-    return fine_tune(device, start(device), views, config, observer);
+    return fine_tune_on_views(device, start(device), views, config, observer);
   }
   Mcdbn start(Device& device) const {
     return on_device(device, parameters, config.look_ahead, kOtherMeanFieldSteps);

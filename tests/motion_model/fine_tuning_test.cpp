@@ -93,15 +93,15 @@ TEST_CASE("fine-tuning lowers its loss, and the same seed gives the same bits") 
       losses.push_back(report.loss);
     };
     const Mcdbn start = run.start(device);
-    const Mcdbn once = fine_tune(device, start, views, run.config, observer).network;
+    const Mcdbn once = fine_tune_on_views(device, start, views, run.config, observer).network;
     REQUIRE(losses.size() == 2);
     CHECK(losses[1] < losses[0]);
     CHECK(once.mean_field_steps == run.config.fine_tuning.mean_field_steps);
     CHECK(once.look_ahead == run.config.look_ahead);
-    CHECK(same_bits(once, fine_tune(device, start, views, run.config).network));
+    CHECK(same_bits(once, fine_tune_on_views(device, start, views, run.config).network));
     TrainingConfig other = run.config;
     other.seed = 2;
-    CHECK_FALSE(same_bits(once, fine_tune(device, start, views, other).network));
+    CHECK_FALSE(same_bits(once, fine_tune_on_views(device, start, views, other).network));
   });
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("one of several people is held out, and nothing is learnt from them") 
       losses.push_back(*report.held_out_loss);
     };
     const Mcdbn start = run.start(device);
-    const TrainedNetwork trained = fine_tune(device, start, views, run.config, observer);
+    const TrainedNetwork trained = fine_tune_on_views(device, start, views, run.config, observer);
     REQUIRE(trained.early_stopping);
     REQUIRE(losses.size() == 3);
     CHECK(trained.early_stopping->loss == losses.back());
@@ -131,11 +131,12 @@ TEST_CASE("one of several people is held out, and nothing is learnt from them") 
     CHECK(trained.early_stopping->held_out == clip_names(views_of(views, *person)));
     // So small a run gets better to its end, which is then what it is without that person.
     REQUIRE(losses[2] < losses[1]);
-    CHECK(same_bits(trained.network, fine_tune(device, start, others, run.config).network));
+    CHECK(
+        same_bits(trained.network, fine_tune_on_views(device, start, others, run.config).network));
 
     TrainingConfig everybody = run.config;
     everybody.hold_out_among = 5;
-    CHECK_FALSE(fine_tune(device, start, views, everybody).early_stopping);
+    CHECK_FALSE(fine_tune_on_views(device, start, views, everybody).early_stopping);
   });
 }
 
@@ -150,8 +151,8 @@ TEST_CASE("parameters of before the person held out fared worse are kept") {
     if (views.people[i] == person) views.poses[i] *= -1.0F;
   on_every_device([&](Device& device) {
     std::size_t reports = 0;
-    const TrainedNetwork trained = fine_tune(device, run.start(device), views, run.config,
-                                             [&](const EpochReport&) { ++reports; });
+    const TrainedNetwork trained = fine_tune_on_views(device, run.start(device), views, run.config,
+                                                      [&](const EpochReport&) { ++reports; });
     REQUIRE(trained.early_stopping);
     CHECK(trained.early_stopping->steps < 25 * reports);
     CHECK(25 * reports < run.config.fine_tuning.steps);
@@ -165,7 +166,7 @@ TEST_CASE("an observer stops fine-tuning, and windows need their histories") {
   on_every_device([&](Device& device) {
     const Mcdbn start = run.start(device);
     const auto stop = [](const EpochReport&) { throw InputError("enough"); };
-    CHECK_THROWS_AS(fine_tune(device, start, views, run.config, stop), InputError);
+    CHECK_THROWS_AS(fine_tune_on_views(device, start, views, run.config, stop), InputError);
     UnrolledNetwork network(device, start, run.config.fine_tuning.mean_field_steps);
     CHECK_THROWS_AS(UnrolledPass(network, 1, {4, 10, 3, 5}), ShapeError);
     CHECK_THROWS_AS(UnrolledPass(network, 1, {4, 10, 4, 10}), ShapeError);

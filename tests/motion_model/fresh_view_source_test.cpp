@@ -2,8 +2,14 @@
 // number.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "corpus/fresh_views.hpp"
 #include "corpus/training_files.hpp"
+#include "learning/clip_weights.hpp"
 #include "learning/small_network.hpp"
+#include "mcdbn/learning/greedy_schedule.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
 
 namespace fresh_view_source_test {
@@ -57,8 +63,7 @@ TEST_CASE("the views of a mini-batch are the same whatever came before it") {
   const FreshViewSource steps(scene.clips, scene.data, scene.config);
   const std::size_t count = steps.sequences().count();
   CHECK(count == fresh_views_at_once(scene.clips, scene.config));
-  CHECK(count == 8);                        // four of each clip, which is one piece
-  CHECK(steps.sequences().groups.empty());  // they are drawn as people and actions weigh already
+  CHECK(count == 8);  // four of each clip, which is one piece
   CHECK_NOTHROW(steps.sequences().check());
   std::vector<std::vector<MatrixF>> seen{contents(steps)};
   for (std::size_t step = 1; step < 40; ++step) {
@@ -80,6 +85,61 @@ TEST_CASE("the views of a mini-batch are the same whatever came before it") {
   }
 }
 
+TEST_CASE("people that fresh views are drawn from by one power are weighed for another") {
+  const Scene scene;
+  // Each clip is another person's.
+  const double first_s = scene.clips.record(0).seconds(),
+               second_s = scene.clips.record(1).seconds();
+  REQUIRE(first_s > 1.2 * second_s);
+  for (const double drawn : {0.0, 0.5, 1.0}) {
+    CAPTURE(drawn);
+    TrainingConfig config = scene.config;
+    config.fine_tuning.people_power = drawn;
+    config.augment.views = 10;
+    const FreshViewSource source(scene.clips, scene.data, config);
+    source.renew(20);  // some of the first views have given way
+    const FreshViews views(scene.clips, scene.data.modalities, config, scene.data.new_poses,
+                           config.seed,
+                           {.frames = frames_of_pieces(config), .groups_power = drawn});
+    const SynchronizedClips clips = source.sequences();
+    for (const double power : {0.0, 0.5, 1.0}) {
+      CAPTURE(power);
+      const std::vector<double> weights = clip_weights(clips, power);
+      REQUIRE(weights.size() == clips.count());
+      int of_first = 0;
+      for (std::size_t number = 10; number < 10 + clips.count(); ++number) {
+        const std::size_t place = number % clips.count();
+        const EncodedView view = views.make(number);
+        REQUIRE(clips.modalities[kPose].clips[place] == view.pose);
+        of_first += view.clip == 0;
+        // A person's views are drawn as frames^drawn: this is left of frames^power.
+        const double seconds = view.clip == 0 ? first_s : second_s;
+        CHECK(weights[place] == doctest::Approx(std::pow(seconds * config.fps, power - drawn)));
+      }
+      CHECK(of_first > 0);
+      CHECK(of_first < static_cast<int>(clips.count()));
+    }
+  }
+}
+
+TEST_CASE("the greedy stages on fresh views weigh people by their own power") {
+  const Scene scene;
+  LearningSettings settings;
+  settings.hidden = settings.mrbm_hidden = 4;
+  settings.order = settings.look_ahead = 1;
+  settings.gaussian.epochs = 1;
+  settings.gaussian.gibbs_steps = 1;
+  settings.least_batches = 2;
+  const FreshViewSource views(scene.clips, scene.data, scene.config);
+  on_every_device([&](Device& device) {
+    const auto trained = [&](double power) {
+      settings.people_power = power;
+      return train_greedy(device, views, settings).cdbns[kPose].layers[0].W.to_host();
+    };
+    CHECK(trained(1.0) != trained(0.0));
+  });
+}
+
 TEST_CASE("fresh views are learnt from where they are asked for") {
   const Scene scene;
   TrainingConfig config = scene.config;
@@ -97,17 +157,33 @@ TEST_CASE("fresh views are learnt from where they are asked for") {
 TEST_CASE("of several people one is held out of them, and judges by the same views always") {
   const Scene scene;
   TrainingConfig config = scene.config;
-  CHECK_FALSE(FreshViewSource(scene.clips, scene.data, config).strangers());
+  CHECK_FALSE(FreshViewSource(scene.clips, scene.data, config).held_out_views());
   config.hold_out_among = 2;
   const FreshViewSource source(scene.clips, scene.data, config),
       again(scene.clips, scene.data, config);
-  REQUIRE(source.strangers());
-  const TrainingSet& strangers = *source.strangers();
-  for (const TrainingClip& clip : strangers.clips)
+  REQUIRE(source.held_out_views());
+  const TrainingSet& held_out_views = *source.held_out_views();
+  for (const TrainingClip& clip : held_out_views.clips)
     CHECK(clip.path == scene.clips.record(1).clip.path);  // the person with the least data
-  REQUIRE(strangers.poses.size() == again.strangers()->poses.size());
-  CHECK(strangers.poses[3] == again.strangers()->poses[3]);
-  CHECK(strangers.tracks[3] == again.strangers()->tracks[3]);
+  REQUIRE(held_out_views.poses.size() == again.held_out_views()->poses.size());
+  CHECK(held_out_views.poses[3] == again.held_out_views()->poses[3]);
+  CHECK(held_out_views.tracks[3] == again.held_out_views()->tracks[3]);
+}
+
+TEST_CASE("views of the person held out come as the actions weigh, and are not weighed again") {
+  const TrainingFiles walks{
+      {{1, 1, 30.0, 2.0}, {1, 2, 30.0, 2.0}, {2, 1, 30.0, 1.8}, {2, 2, 30.0, 1.0}}};
+  std::vector<LoadedClip> clips = load_clips(walks.files());
+  for (std::size_t i = 0; i < clips.size(); ++i) clips[i].action = i % 2 == 0 ? "walk" : "stroll";
+  TrainingConfig config = Scene::settings();
+  config.hold_out_among = 2;
+  config.fine_tuning.people_power = 0;
+  const ClipStore store(std::move(clips));
+  const FreshViewSource source(store, make_training_set(store, config), config);
+  REQUIRE(source.held_out_views());
+  const std::vector<double> weights =
+      clip_weights(ClipSource(*source.held_out_views()).sequences(), 0);
+  CHECK(std::ranges::count(weights, weights.front()) == static_cast<int>(weights.size()));
 }
 
 }  // namespace fresh_view_source_test

@@ -77,7 +77,7 @@ struct Scene {
 };
 
 void check_bends(const Scene& scene, const SequenceSource& source,
-                 const std::optional<TrainingSet>& strangers) {
+                 const std::optional<TrainingSet>& held_out_views) {
   const auto near = [](double deg, double wanted_deg) { return std::abs(deg - wanted_deg) < 0.5; };
   int of_one = 0, of_other = 0;
   for (const double deg : scene.bends_deg(source.sequences().modalities[kPose].clips)) {
@@ -87,9 +87,9 @@ void check_bends(const Scene& scene, const SequenceSource& source,
   }
   CHECK(of_one > 0);
   CHECK(of_other > 0);
-  REQUIRE(strangers);
-  REQUIRE(!strangers->poses.empty());
-  for (const double deg : scene.bends_deg(strangers->poses)) CHECK(near(deg, kStranger_deg));
+  REQUIRE(held_out_views);
+  REQUIRE(!held_out_views->poses.empty());
+  for (const double deg : scene.bends_deg(held_out_views->poses)) CHECK(near(deg, kStranger_deg));
 }
 
 }  // namespace
@@ -98,23 +98,23 @@ TEST_CASE(
     "views made beforehand have no limbs of the person held out, whose views have no others") {
   const Scene scene;
   const ViewSource views(scene.clips, scene.data, scene.config);
-  check_bends(scene, views, views.strangers());
+  check_bends(scene, views, views.held_out_views());
   CHECK(views.sequences().count() == 2 * 8);
-  CHECK(views.strangers()->poses.size() == 8);
+  CHECK(views.held_out_views()->poses.size() == 8);
 }
 
 TEST_CASE("fresh views have no limbs of the person held out, whose views have no others") {
   Scene scene;
   scene.config.fine_tuning.view_uses = 12;
   const FreshViewSource views(scene.clips, scene.data, scene.config);
-  check_bends(scene, views, views.strangers());
+  check_bends(scene, views, views.held_out_views());
 }
 
 TEST_CASE("views of which nobody is held out are of everybody") {
   Scene scene;
   scene.config.hold_out_among = 0;
   const ViewSource views(scene.clips, scene.data, scene.config);
-  CHECK_FALSE(views.strangers());
+  CHECK_FALSE(views.held_out_views());
   CHECK(views.sequences().count() == 3 * 8);
 }
 

@@ -2,11 +2,16 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstdint>
 
 #include "base/interruption.hpp"
+#include "camera/detector_track.hpp"
 #include "device/every_device.hpp"
+#include "fitting/usual_body.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
+#include "mcdbn/motion/humanoid.hpp"
 #include "motion/body_size.hpp"
 #include "motion_model/live_scene.hpp"
 
@@ -60,6 +65,37 @@ TEST_CASE("live: what comes before anybody is known without the track's joints")
                     ConfigError);
     placement.skeleton->joints[3].name = "Other";
     CHECK_THROWS_AS(LiveRegeneration::before_anybody(model, placement), ConfigError);
+  });
+}
+
+TEST_CASE("live: before a detector shows anybody the body is the one that its fit begins with") {
+  Motion motion{canonical_humanoid(), 1.0 / 30, {}};
+  motion.channels = MatrixD::Zero(24, motion.skeleton.channel_count());
+  motion.channels.col(1).setConstant(95);
+  for (int t = 0; t < motion.frames(); ++t)
+    for (Eigen::Index c = 3; c < motion.channels.cols(); ++c)
+      motion.channels(t, c) = 8 * std::sin(0.3 * t + static_cast<double>(c));
+  const Modalities modalities = modalities_of({motion}, {});
+  Track2d track = project_keypoints(motion, humanoid_roles(), joint_set("BODY_25").keypoints,
+                                    place_camera(motion, {}));
+  hide(track, 0, track.frames());
+  on_every_device([&](Device& device) {
+    const Model model{quiet_network(device, modalities), modalities, {}, {}};
+    const Motion before = LiveRegeneration::before_anybody(model, {});
+    LiveRegeneration live(model, track, {});
+    const Motion got = followed(live, track);
+    const Skeleton usual = usual_body(canonical_humanoid());
+    bool differs = false;
+    for (std::size_t joint = 0; joint < usual.joints.size(); ++joint) {
+      const Eigen::Vector3d& offset = before.skeleton.joints[joint].offset;
+      CHECK(offset == usual.joints[joint].offset);
+      CHECK(offset == got.skeleton.joints[joint].offset);
+      differs = differs || offset != motion.skeleton.joints[joint].offset;
+    }
+    CHECK(differs);
+    const MatrixD places = joint_positions(got), expected = joint_positions(before);
+    for (int t = 0; t < got.frames(); ++t)
+      CHECK((places.row(t) - expected).norm() < 1e-6 * file_units_per_metre(before.skeleton));
   });
 }
 

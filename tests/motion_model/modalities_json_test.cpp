@@ -2,8 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include "corpus/humanoid_clips.hpp"
 #include "features/clip_modalities.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/formats/bvh.hpp"
 #include "motion/synthetic_motion.hpp"
 
 namespace modalities_json_test {
@@ -39,6 +41,30 @@ TEST_CASE("pose features: JSON keeps every bit, and damage is noticed") {
   nlohmann::json damaged = json;
   damaged["joints"].push_back(99);
   CHECK_THROWS_AS(pose_features_from({damaged, "file"}), InputError);
+}
+
+TEST_CASE("pose features: a model of the humanoid with Z X Y answers the same, with new orders") {
+  const Motion motion = humanoid_clip(50, 100, 30).motion;  // elbows and knees have no feature
+  const PoseFeatures features = PoseFeatures::fit({&motion});
+  REQUIRE(features.joints().size() < 19);
+  const Motion fixed = on_former_orders({features.skeleton(), 1.0 / 30, features.fixed_channels()});
+  nlohmann::json json = pose_features_json(features);
+  const nlohmann::json was = json;
+  json["skeleton"] = bvh_header_text(fixed.skeleton);
+  json["constant_channels"] =
+      std::vector<double>(fixed.channels.data(), fixed.channels.data() + fixed.channels.size());
+  REQUIRE(json["skeleton"] != was["skeleton"]);
+  const Motion former = on_former_orders(motion);
+  for (const PoseFeatures& other :
+       {pose_features_from({json, "file"}), PoseFeatures::fit({&former, &motion})}) {
+    CHECK(pose_features_json(other)["skeleton"] == was["skeleton"]);
+    CHECK(is_humanoid(other.skeleton()));
+    CHECK(other.joints() == features.joints());
+    CHECK((other.encode(former, kCamera) - features.encode(motion, kCamera)).norm() < 1e-9);
+    for (const Motion* own : {&motion, &former})
+      CHECK(largest_difference(there_and_back(other, *own), there_and_back(features, motion)) <
+            1e-9);
+  }
 }
 
 TEST_CASE("modalities: JSON keeps the level view; a file that does not give it has none") {

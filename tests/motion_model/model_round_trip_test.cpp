@@ -75,7 +75,7 @@ void check_same(const Model& got, const Model& want, const ExampleModel& example
   CHECK(got.network.sampling.gibbs_steps == want.network.sampling.gibbs_steps);
   CHECK(got.network.sampling.mrbm_gibbs_steps == want.network.sampling.mrbm_gibbs_steps);
   CHECK(got.network.sampling.steady == want.network.sampling.steady);
-  CHECK(got.network.sampling.always == want.network.sampling.always);
+  CHECK(got.network.sampling.sampled == want.network.sampling.sampled);
   CHECK(got.network.sampling.scale == want.network.sampling.scale);
   CHECK(got.network.fills_gaps == want.network.fills_gaps);
   check_modalities(got.modalities, want.modalities);

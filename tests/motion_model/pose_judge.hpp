@@ -16,10 +16,10 @@ class PoseJudge {
   reference::Judgement operator()(const reference::WindowLayout& layout, const MatrixD& prediction,
                                   const MatrixD& target) const {
     // Judged frames alone, window behind window.
-    const Eigen::Index judged = layout.frames - layout.lead;
+    const Eigen::Index judged = layout.frames - layout.judged_from;
     MatrixD got(layout.count * judged, prediction.cols()), want = got;
     for (Eigen::Index i = 0; i < layout.count; ++i) {
-      const Eigen::Index from = i * layout.frames + layout.lead;
+      const Eigen::Index from = i * layout.frames + layout.judged_from;
       got.middleRows(i * judged, judged) = prediction.middleRows(from, judged);
       want.middleRows(i * judged, judged) = target.middleRows(from, judged);
     }
@@ -28,7 +28,7 @@ class PoseJudge {
     reference::Judgement result{terms(got, truth, judged).sum(),
                                 MatrixD::Zero(prediction.rows(), prediction.cols())};
     for (Eigen::Index i = 0; i < layout.count; ++i)
-      result.error.middleRows(i * layout.frames + layout.lead, judged) =
+      result.error.middleRows(i * layout.frames + layout.judged_from, judged) =
           error.middleRows(i * judged, judged);
     return result;
   }

@@ -15,6 +15,7 @@
 #include "motion/body_size.hpp"
 #include "motion/resample.hpp"
 #include "motion_model/clip_scene.hpp"
+#include "motion_model/several_answers.hpp"
 
 namespace regenerate_clip_test {
 
@@ -195,6 +196,32 @@ TEST_CASE("regenerate_clip: a pose that does not match what the camera shows is 
         .eval();
   };
   CHECK(largest(depth(root).matrix() - depth(wanted).matrix()) < body_height(scene.clip.skeleton));
+}
+
+TEST_CASE("regenerate_clip: the camera that the first answer finds sees the others, too") {
+  Scene scene(30.0);
+  scene.modalities.level_view = true;  // the camera's angles and focal length are unknown, too
+  const Modalities& m = scene.modalities;
+  const MatrixF truth = m.encode_pose(scene.clip, scene.camera.camera_from_world);
+  const PoseAnswer single = [&](const MatrixF&) { return PosePrior(truth); };
+  for (const bool fitted : {false, true}) {
+    CAPTURE(fitted);
+    ClipPlacement placement;
+    if (!fitted) placement.fit.reset();
+    TrackFindings found;
+    const auto got = regenerate_clip(m, scene.track, placement, single, several(single, 2), &found);
+    REQUIRE(got.size() == 2);
+    // As if it were the only one, and that camera were known.
+    placement.camera = found.camera;
+    const PoseAnswers second = [&](const MatrixF& features) {
+      return std::vector{several(single, 2)(features).back()};
+    };
+    const auto alone = regenerate_clip(m, scene.track, placement, single, second).front();
+    CHECK(got[1].channels == alone.channels);
+    CHECK(got[1].channels != got[0].channels);
+    for (std::size_t joint = 0; joint < alone.skeleton.joints.size(); ++joint)
+      CHECK(got[1].skeleton.joints[joint].offset == alone.skeleton.joints[joint].offset);
+  }
 }
 
 TEST_CASE("gaps are filled in two rounds, each from the answer to the round before") {

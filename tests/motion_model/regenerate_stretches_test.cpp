@@ -2,8 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
+#include "base/numbers.hpp"
 #include "camera/detector_track.hpp"
 #include "camera/show_only.hpp"
 #include "features/clip_modalities.hpp"
@@ -79,6 +82,45 @@ TEST_CASE("regenerate stretches: each is as if it were alone") {
       CHECK(got[i].channels.middleRows(range.first, range.frames) == alone[i].channels);
   }
   CHECK(got[0].channels != got[1].channels);
+}
+
+TEST_CASE("regenerate stretches: angles go on from the nearest turn of the frame before") {
+  constexpr double kTurn_deg = 9;  // from frame to frame: more than a whole turn before the jump
+  Scene scene;
+  const Joint& root = scene.clip.skeleton.joints[0];
+  for (int t = 0; t < kFrames; ++t) {
+    double* const channels = scene.clip.channels.row(t).data();
+    const Eigen::AngleAxisd turn(t * kTurn_deg * kRadiansPerDegree, Eigen::Vector3d::UnitY());
+    set_local_rotation(root, turn * local_rotation(root, channels),
+                       t > 0 ? scene.clip.channels.row(t - 1).data() : nullptr, channels);
+  }
+  scene.modalities = modalities_of({scene.clip}, {});
+  scene.track = Scene::jumping(project_motion(scene.clip, scene.camera));
+  scene.known.fit.reset();  // the answer as it is: the truth
+  const MatrixF pose = scene.modalities.encode_pose(scene.clip, scene.camera.camera_from_world);
+  const auto regenerated = [&](int first, int frames, TrackFindings* findings = nullptr) {
+    const auto single = [&](const MatrixF& features) -> PosePrior {
+      return MatrixF(features.rows() == kFirst ? pose.topRows(kFirst)
+                                               : pose.bottomRows(features.rows()));
+    };
+    return regenerate_clip(scene.modalities, some_frames(scene.track, first, frames), scene.known,
+                           single, several(single, 1), findings)
+        .front();
+  };
+  TrackFindings found;
+  const Motion got = regenerated(0, kFrames, &found),
+               second = regenerated(kFirst, kFrames - kFirst);
+  REQUIRE(found.stretches.stretches == std::vector<FrameRange>{{0, kFirst}, {kFirst, 30}});
+  const auto angles = [](const Motion& motion, int frame, int frames) {
+    return motion.channels.block(frame, 3, frames, motion.channels.cols() - 3).array().eval();
+  };
+  CHECK(angles(got, 0, kFirst).abs().maxCoeff() > 360);
+  CHECK((angles(got, kFirst, 1) - angles(got, kFirst - 1, 1)).abs().maxCoeff() <= 180);
+  const auto more = (angles(got, kFirst, 30) - angles(second, 0, 30)).eval();
+  CHECK(more.abs().maxCoeff() > 359);
+  for (Eigen::Index t = 0; t < more.rows(); ++t)
+    for (Eigen::Index c = 0; c < more.cols(); ++c)
+      CHECK(std::abs(std::remainder(more(t, c), 360)) < 1e-9);
 }
 
 TEST_CASE("regenerate stretches: they have the body and the camera of the longest") {

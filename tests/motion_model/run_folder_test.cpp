@@ -118,7 +118,7 @@ TEST_CASE("what a training that never began wrote is taken back, what was learnt
   {
     RunFolder run = RunFolder::begin(folder / "", odd_config(), kClips, true);
     folder.write("unfinished/metrics.jsonl", "");  // opened, and no epoch came
-    CHECK(run.take_back());
+    CHECK(run.discard_if_untrained());
   }
   CHECK(test::entries_of(folder / "") == std::set<std::string>{"model.safetensors"});
   for (const char* learnt : {"metrics.jsonl", "checkpoint.safetensors",
@@ -126,11 +126,11 @@ TEST_CASE("what a training that never began wrote is taken back, what was learnt
     CAPTURE(learnt);
     RunFolder run = RunFolder::begin(folder / "", odd_config(), kClips, true);
     folder.write(std::string("unfinished/") + learnt, "x");
-    CHECK(!run.take_back());
+    CHECK(!run.discard_if_untrained());
     CHECK(fs::exists(folder / "unfinished/run.json"));
   }
   RunFolder::begin(folder / "", odd_config(), kClips, true);
-  CHECK(!RunFolder::resume(folder / "").take_back());  // another command's
+  CHECK(!RunFolder::resume(folder / "").discard_if_untrained());  // another command's
   CHECK(fs::exists(folder / "unfinished/run.json"));
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "base/numbers.hpp"
+#include "camera/show_only.hpp"
 #include "features/clip_modalities.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
@@ -175,7 +176,27 @@ TEST_CASE("track parts: each is as if it were alone, and fades into the next") {
   }
 }
 
-TEST_CASE("track parts: they have the body and the camera of the first") {
+TEST_CASE("track parts: they have the body and the camera of the one that shows most of a body") {
+  const SlowWalk scene;
+  constexpr int kSeen = 20, kLast = SlowWalk::kFrames - SlowWalk::kSecond,
+                kRest = SlowWalk::kFrames - SlowWalk::kFirstEnd;
+  Track2d late = scene.track;
+  show_only(late, kSeen, SlowWalk::kSecond - kSeen, {});
+  TrackFindings found, of_last;
+  const auto got = scene.regenerated(late, {}, &found);
+  REQUIRE(found.stretches.stretches == std::vector<FrameRange>{{0, SlowWalk::kFrames}});
+  const auto last = scene.regenerated(some_frames(late, SlowWalk::kSecond, kLast), {}, &of_last);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(apart_cm(frames_of(got[i], SlowWalk::kFirstEnd, kRest),
+                   frames_of(last[i], kLast - kRest, kRest)) < 1e-9);
+    for (std::size_t joint = 0; joint < got[i].skeleton.joints.size(); ++joint)
+      CHECK(got[i].skeleton.joints[joint].offset == last[i].skeleton.joints[joint].offset);
+  }
+  CHECK(found.camera.fx_px == of_last.camera.fx_px);
+  CHECK(found.camera.translation == of_last.camera.translation);
+}
+
+TEST_CASE("track parts: where all show a body, its camera and body are those of the longest") {
   const SlowWalk scene;
   TrackFindings found, of_first;
   const auto got = scene.regenerated(scene.track, {}, &found);

@@ -121,7 +121,8 @@ TEST_CASE("fine-tuning goes on from what the greedy stages made of its start and
     const TrainingSet views = small.views(small.config);
     const Mcdbn start = small.start(device, small.config);
     const Mcdbn greedy = train_greedy(device, ClipSource(views), small.config, {}, &start);
-    CHECK(same_network(trained.network, fine_tune(device, greedy, views, small.config).network));
+    CHECK(same_network(trained.network,
+                       fine_tune_on_views(device, greedy, views, small.config).network));
     CHECK_FALSE(trained.network.fills_gaps);
     CHECK(trained.network.mean_field_steps == 2);
     CHECK(stages_of(reports) ==
@@ -135,7 +136,7 @@ TEST_CASE("fine-tuning goes on from what the greedy stages made of its start and
     reports.clear();
     const TrainedNetwork without =
         small.train(device, alone, [&](const EpochReport& report) { reports.push_back(report); });
-    CHECK(same_network(without.network, fine_tune(device, start, views, alone).network));
+    CHECK(same_network(without.network, fine_tune_on_views(device, start, views, alone).network));
     CHECK_FALSE(same_network(without.network, trained.network));
     CHECK(stages_of(reports) == std::vector<std::string>{"fine-tuning"});
     check_progress_rises(reports);
@@ -209,22 +210,23 @@ TEST_CASE("what fresh views teach, stage by stage") {
     const FreshViewSource views(clips, small.data, small.config);
     const Mcdbn start = small.start(device, small.config);
     const Mcdbn greedy = train_greedy(device, views, small.config, {}, &start);
-    const ClipSource judges(*views.strangers());
-    const FineTuned tuned = fine_tune(
-        device, greedy, views, &judges, small.config, [&](Device& where, const SequenceWindows& w) {
-          return std::make_unique<PoseLoss>(where, small.data.modalities, w,
-                                            small.config.pose_loss);
-        });
+    const ClipSource held_out_source(*views.held_out_views());
+    const FineTuned tuned =
+        fine_tune(device, greedy, views, &held_out_source, small.config,
+                  [&](Device& where, const SequenceWindows& w) {
+                    return std::make_unique<PoseLoss>(where, small.data.modalities, w,
+                                                      small.config.pose_loss);
+                  });
     CHECK(same_network(trained.network, tuned.network));
     REQUIRE(trained.early_stopping);
     CHECK(trained.early_stopping->held_out == std::vector<std::string>{"walk_2_1.bvh"});
-    REQUIRE(reports.back().waited);
-    CHECK(*reports.back().waited >= 0);
-    CHECK(*reports.back().waited <= 1);
+    REQUIRE(reports.back().waiting_share);
+    CHECK(*reports.back().waiting_share >= 0);
+    CHECK(*reports.back().waiting_share <= 1);
     // How sure it is it learns from views that it did not learn from.
     REQUIRE(trained.network.deviation);
     views.renew(small.config.fine_tuning.steps + views.lifetime());
-    const SynchronizedClips unseen = judges.sequences();
+    const SynchronizedClips unseen = held_out_source.sequences();
     CHECK(trained.network.deviation->C ==
           learnt_deviation(tuned.network, views.sequences(), &unseen).C);
     CHECK(trained.network.deviation->c ==
@@ -280,7 +282,7 @@ TEST_CASE("the person held out has no part in the greedy start either") {
     const Mcdbn start = small.start(device, small.config);
     const auto from = [&](const TrainingSet& greedy_views) {
       const Mcdbn greedy = train_greedy(device, ClipSource(greedy_views), small.config, {}, &start);
-      return fine_tune(device, greedy, views, small.config).network;
+      return fine_tune_on_views(device, greedy, views, small.config).network;
     };
     CHECK(same_network(trained.network, from(others)));
     CHECK_FALSE(same_network(trained.network, from(views)));
@@ -300,7 +302,7 @@ TEST_CASE("a run's seed reaches its views, its start, its greedy stages and its 
                           const TrainingConfig& tuned_config) {
       const Mcdbn greedy =
           train_greedy(device, ClipSource(greedy_views), greedy_config, {}, &greedy_start);
-      return fine_tune(device, greedy, tuned_views, tuned_config).network;
+      return fine_tune_on_views(device, greedy, tuned_views, tuned_config).network;
     };
     CHECK(same_network(trained.network, from(views, start, other, views, other)));
     // Were any of them the old seed's, the result would be another.

@@ -62,7 +62,7 @@ struct SmallNetwork {
 /// planted, 0 where it is not. @return [judged frames − 1 x 3], metres
 MatrixD planted_steps(const SmallFigure& figure, double planted_below_m_s,
                       const MatrixD& prediction, const MatrixD& target) {
-  const auto steps = static_cast<Eigen::Index>(kWindows.frames - kWindows.lead) - 1;
+  const auto steps = static_cast<Eigen::Index>(kWindows.frames - kWindows.judged_from) - 1;
   const double fps = figure.modalities().fps;
   const auto taken = [&](const MatrixD& pose) {
     const MatrixD foot = figure.foot_m(pose).bottomRows(steps + 1);
@@ -80,7 +80,7 @@ MatrixD planted_steps(const SmallFigure& figure, double planted_below_m_s,
 /// layer's own decoding and forward kinematics.
 double loss_in_double(const SmallFigure& figure, const PoseLossWeights& weights, int absent,
                       const MatrixD& prediction, const MatrixD& target) {
-  const auto judged = static_cast<Eigen::Index>(kWindows.frames - kWindows.lead);
+  const auto judged = static_cast<Eigen::Index>(kWindows.frames - kWindows.judged_from);
   const MatrixD difference = (prediction - target).bottomRows(judged);
   double loss = weights.features * difference.array().square().mean();
   if (absent == 0) return loss;
@@ -195,7 +195,7 @@ reference::DropOut drawn_for(const SmallNetwork& small, std::size_t present, std
 
 TEST_CASE("centered parameters come back as they were") {
   const CrbmParameters own = layer(6, 7, VisibleKind::binary, 3);
-  const CrbmParameters back = uncentered(centered(own, Below::code), Below::code);
+  const CrbmParameters back = uncentered(centered(own, InputKind::code), InputKind::code);
   CHECK((back.a - own.a).cwiseAbs().maxCoeff() < 1e-5F);
   CHECK((back.b - own.b).cwiseAbs().maxCoeff() < 1e-5F);
   CHECK((back.visible_mean - own.visible_mean).cwiseAbs().maxCoeff() < 1e-6F);
@@ -278,7 +278,7 @@ TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
            .squaredNorm()
            .array() > 0)
           .count();
-  REQUIRE((planted > 0 && planted + 1 < static_cast<int>(kWindows.frames - kWindows.lead)));
+  REQUIRE((planted > 0 && planted + 1 < static_cast<int>(kWindows.frames - kWindows.judged_from)));
   for (const auto& [present, kept, fused] : kVariants) {
     CAPTURE(kept);
     CAPTURE(fused);

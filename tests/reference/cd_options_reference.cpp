@@ -57,7 +57,9 @@ void CdTraining::step(const CrbmBatch& given, const CdOptions& options, const Ch
     if (k < options.gibbs_steps || options.persistent) hidden = drawn(probability, k);
   }
   particles = hidden;
-  loss = (batch.visible - visible).squaredNorm() / static_cast<double>(batch.visible.size());
+  MatrixD error = batch.visible - visible;
+  error.array().rowwise() *= deviation.array();
+  loss = error.squaredNorm() / static_cast<double>(batch.visible.size());
 
   if (options.deviation_rate > 0) {
     const MatrixD reconstruction =

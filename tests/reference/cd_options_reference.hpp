@@ -37,7 +37,7 @@ struct CdTraining {
   MatrixD particles;          ///< hidden units of persistent chains [batch x H]
   Crbm fast;                  ///< fast parts of W, a and b
   Crbm gradient;              ///< of the last step, uphill
-  double loss = 0;            ///< of the last step
+  double loss = 0;            ///< of the last step, in the data's units
   double closest_draw = 1.0;  ///< smallest |p − u| of all draws so far
 
  private:

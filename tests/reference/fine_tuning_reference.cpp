@@ -30,8 +30,8 @@ WindowLayout layout_of(const UnrolledModel& model, const FineTuningSettings& set
   WindowLayout layout;
   layout.count = static_cast<Eigen::Index>(settings.windows);
   layout.first = std::max(total_order(model.stacks[0]), total_order(model.stacks[1]));
-  layout.lead = layout.first + static_cast<Eigen::Index>(settings.settle_frames);
-  layout.frames = layout.lead + static_cast<Eigen::Index>(settings.window_frames);
+  layout.judged_from = layout.first + static_cast<Eigen::Index>(settings.settle_frames);
+  layout.frames = layout.judged_from + static_cast<Eigen::Index>(settings.window_frames);
   return layout;
 }
 
@@ -71,9 +71,9 @@ Judgement mean_squared(const WindowLayout& layout, const MatrixD& prediction, co
                        double weight) {
   Judgement judged{0, MatrixD::Zero(prediction.rows(), prediction.cols())};
   const double count =
-      static_cast<double>(layout.count * (layout.frames - layout.lead) * prediction.cols());
+      static_cast<double>(layout.count * (layout.frames - layout.judged_from) * prediction.cols());
   for (Eigen::Index row = 0; row < prediction.rows(); ++row) {
-    if (row % layout.frames < layout.lead) continue;
+    if (row % layout.frames < layout.judged_from) continue;
     const RowVectorD difference = prediction.row(row) - target.row(row);
     judged.loss += weight * difference.squaredNorm() / count;
     judged.error.row(row) = 2.0 * weight / count * difference;
@@ -91,13 +91,14 @@ DrawnWindows drawn_windows(const FineTuningData& data, const WindowLayout& layou
     const std::size_t clip =
         drawn_clip(data, settings.people_power, double{random_uniform(key, row, 0)});
     const Eigen::Index frames = data.poses[clip].rows();
-    const Eigen::Index starts = std::max<Eigen::Index>(frames - (layout.frames - layout.lead), 0);
+    const Eigen::Index starts =
+        std::max<Eigen::Index>(frames - (layout.frames - layout.judged_from), 0);
     Eigen::Index first_judged = 0;
     if (random_uniform(key, row, 1) >= 0.1F)
       first_judged = static_cast<Eigen::Index>(
           std::floor(static_cast<double>(starts + 1) * double{random_uniform(key, row, 2)}));
     for (Eigen::Index t = 0; t < layout.frames; ++t) {
-      const Eigen::Index frame = first_judged - layout.lead + t;
+      const Eigen::Index frame = first_judged - layout.judged_from + t;
       const auto within = [&](Eigen::Index at) {
         return std::clamp<Eigen::Index>(at, 0, frames - 1);
       };

@@ -24,9 +24,9 @@ struct FineTuningData {
 };
 
 /// How the windows of a mini-batch lie, behind one another: `frames` each, predicted from `first`
-/// on, judged from `lead` on.
+/// on, judged from `judged_from` on.
 struct WindowLayout {
-  Eigen::Index count = 0, frames = 0, first = 0, lead = 0;
+  Eigen::Index count = 0, frames = 0, first = 0, judged_from = 0;
 };
 
 /// A loss on the windows of a mini-batch and its derivative by the prediction.

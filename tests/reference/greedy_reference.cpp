@@ -182,13 +182,13 @@ Mrbm small_weights(const GreedyPlan& plan, const GreedyCode& track, const Greedy
 
 GreedyStage train_mrbm(const GreedyPlan& plan, const GreedyCode& track, const GreedyCode& pose,
                        Mrbm& mrbm) {
-  const MeanFieldOptions options{plan.mrbm.mean_field_steps, false};
+  const int steps = plan.mrbm.mean_field_steps;
   const auto losses_of = [&](const std::vector<MatrixD>& batch) {
     double sum = 0;
     for (int present = 0; present < 2; ++present) {
       const MatrixD& target = batch[1 - present];
       const MeanFieldTrace trace =
-          mean_field(mrbm, static_cast<std::size_t>(1 - present), batch, options);
+          mean_field(mrbm, static_cast<std::size_t>(1 - present), batch, steps);
       sum += cross_entropy_of_sigmoid(target, trace.missing_input) /
              static_cast<double>(target.size());
     }
@@ -211,7 +211,7 @@ GreedyStage train_mrbm(const GreedyPlan& plan, const GreedyCode& track, const Gr
       const std::vector<MatrixD> batch{rows_of(track, windows, plan.look_ahead),
                                        rows_of(pose, windows, 0)};
       loss += losses_of(batch) / batches.count();
-      const Eigen::VectorXd gradient = multi_prediction(mrbm, batch, options).gradient.flattened();
+      const Eigen::VectorXd gradient = multi_prediction(mrbm, batch, steps).gradient.flattened();
       // Flat in the first half, then in a line to a fiftieth.
       const double progress = static_cast<double>(step) / (plan.mrbm.epochs * batches.count());
       UpdateRule rule{.momentum = 0.9F, .weight_decay = 0, .beta2 = 0.999F, .epsilon = 1e-8F};

@@ -47,21 +47,17 @@ std::vector<Bounded> bounded_chain(const Mrbm& model, const std::vector<bool>& p
                                    const std::vector<MatrixD>& values, const ClampedChain& chain,
                                    const PassDraws& uniform, const PassDraws& normal) {
   const std::size_t modalities = present.size();
-  Sum from_present;  // where nothing is present, b alone
+  Sum present_input;  // where nothing is present, b alone
   for (std::size_t m = 0; m < modalities; ++m)
-    from_present.add_product(Bounded::exact(present[m] ? values[m] : MatrixD(0.0 * values[m])),
-                             Bounded::exact(model.weights[m]));
-  Sum drive = from_present;
-  drive.add_row(Bounded::exact(model.hidden_bias));
+    present_input.add_product(Bounded::exact(present[m] ? values[m] : MatrixD(0.0 * values[m])),
+                              Bounded::exact(model.weights[m]));
+  present_input.add_row(Bounded::exact(model.hidden_bias));
   std::vector<Bounded> units(modalities), means(modalities);
   int pass = 0;
   for (int step = 0; step < chain.steps; ++step) {
-    Sum input = drive;
-    for (std::size_t m = 0; m < modalities; ++m) {
+    Sum input = present_input;
+    for (std::size_t m = 0; m < modalities; ++m)
       if (!present[m] && step > 0) input.add_product(units[m], Bounded::exact(model.weights[m]));
-      if (present[m] && step == 0 && chain.double_first_pass)
-        input.add_product(Bounded::exact(values[m]), Bounded::exact(model.weights[m]));
-    }
     const Bounded hidden = drawn(sigmoid(input.result()), chain, uniform, pass++);
     for (std::size_t m = 0; m < modalities; ++m) {
       if (present[m]) continue;
@@ -91,15 +87,15 @@ HiddenStates enumerate_hidden(const Mrbm& model, int present, const RowVectorD& 
   const int absent = 1 - present;
   const MatrixD& W = model.weights[absent];
   const MatrixD hidden = all_states(W.cols()), visible = all_states(W.rows());
-  const RowVectorD drive = values * model.weights[present] + model.hidden_bias;
+  const RowVectorD present_input = values * model.weights[present] + model.hidden_bias;
   const MatrixD absent_input = plus_row(hidden * W.transpose(), model.visible_bias[absent]);
   HiddenStates result;
-  result.start = state_probabilities(sigmoid(MatrixD(drive)));
+  result.start = state_probabilities(sigmoid(MatrixD(present_input)));
   result.absent = sigmoid(absent_input);
   result.transition = state_probabilities(result.absent) *
-                      state_probabilities(sigmoid(plus_row(visible * W, drive)));
+                      state_probabilities(sigmoid(plus_row(visible * W, present_input)));
   // The absent units sum out of exp(−E): each leaves 1 + exp(what it takes).
-  const Eigen::VectorXd unnormalized = (hidden * drive.transpose()).array().exp() *
+  const Eigen::VectorXd unnormalized = (hidden * present_input.transpose()).array().exp() *
                                        (1.0 + absent_input.array().exp()).rowwise().prod();
   result.stationary = unnormalized.transpose() / unnormalized.sum();
   return result;

@@ -10,8 +10,7 @@ namespace mcdbn::reference {
 struct ClampedChain {
   int steps = 1;
   double temperature = 0.0;  ///< 0 mean field, 1 sampled, between: p + temperature · (draw − p)
-  bool double_first_pass = false;
-  bool concrete = false;  ///< draws are σ(logit p + logit u)
+  bool concrete = false;     ///< draws are σ(logit p + logit u)
 };
 
 /// Numbers for the draws of pass 0, 1, …: of each step the hidden units, then every absent

@@ -11,7 +11,7 @@ struct Direction {
   Bounded by_hidden, by_values;  ///< of the absent modality's weights: the errors with the hidden
                                  ///< units, the values with the hidden units' errors
   Bounded visible_bias;          ///< the absent modality's
-  Bounded drive_error;           ///< at the input of the hidden units, Σ over the passes
+  Bounded present_input_error;   ///< at the input of the hidden units, Σ over the passes
   Bounded loss;
 };
 
@@ -21,11 +21,12 @@ bool is_gaussian(const BoundedMrbm& model, std::size_t m) {
 
 /// What the present modalities give the hidden units. Stored, as it does not change; the absent
 /// modality's products go on from there.
-Bounded drive_of(const BoundedMrbm& model, std::size_t missing, const std::vector<MatrixD>& batch) {
-  Sum drive;
+Bounded present_input_of(const BoundedMrbm& model, std::size_t missing,
+                         const std::vector<MatrixD>& batch) {
+  Sum present_input;
   for (std::size_t m = 0; m < batch.size(); ++m)
-    if (m != missing) drive.add_product(Bounded::exact(batch[m]), model.weights[m]);
-  return drive.add_row(model.hidden_bias).result();
+    if (m != missing) present_input.add_product(Bounded::exact(batch[m]), model.weights[m]);
+  return present_input.add_row(model.hidden_bias).result();
 }
 
 Bounded half_squares(const Bounded& target, const Bounded& prediction) {
@@ -42,12 +43,12 @@ Direction direction(const BoundedMrbm& model, std::size_t missing,
   const bool gaussian = is_gaussian(model, missing);
   const Bounded& W = model.weights[missing];
   const Bounded target = Bounded::exact(batch[missing]);
-  const Bounded drive = drive_of(model, missing, batch);
+  const Bounded present_input = present_input_of(model, missing, batch);
   std::vector<Bounded> hidden;
   std::vector<Bounded> visible{
       Bounded::exact(MatrixD::Zero(target.value.rows(), target.value.cols()))};
   for (int pass = 0; pass < steps; ++pass) {
-    hidden.push_back(sigmoid(Sum().add(drive).add_product(visible.back(), W).result()));
+    hidden.push_back(sigmoid(Sum().add(present_input).add_product(visible.back(), W).result()));
     const Bounded input = Sum()
                               .add_product(hidden.back(), W.transposed())
                               .add_row(model.visible_bias[missing])
@@ -55,7 +56,7 @@ Direction direction(const BoundedMrbm& model, std::size_t missing,
     visible.push_back(gaussian ? input : sigmoid(input));
   }
 
-  Sum by_hidden, by_values, visible_bias, drive_error;
+  Sum by_hidden, by_values, visible_bias, present_input_error;
   Bounded visible_error =
       divided(visible.back() - target, static_cast<double>(target.value.rows()));
   for (auto pass = static_cast<std::size_t>(steps); pass-- > 0;) {
@@ -63,14 +64,14 @@ Direction direction(const BoundedMrbm& model, std::size_t missing,
     by_hidden.add_product(visible_error.transposed(), hidden[pass]);
     by_values.add_product(visible[pass].transposed(), hidden_error);
     visible_bias.add_column_sum(visible_error);
-    drive_error.add(hidden_error);
+    present_input_error.add(hidden_error);
     visible_error = product(hidden_error, W.transposed());
     if (!gaussian) visible_error = times(visible_error, sigmoid_gradient(visible[pass]));
   }
   const Bounded loss =
       gaussian ? half_squares(target, visible.back()) : cross_entropy(target, visible.back());
-  return {by_hidden.result(), by_values.result(), visible_bias.result(), drive_error.result(),
-          divided(loss, static_cast<double>(target.value.size()))};
+  return {by_hidden.result(), by_values.result(), visible_bias.result(),
+          present_input_error.result(), divided(loss, static_cast<double>(target.value.size()))};
 }
 
 }  // namespace
@@ -102,7 +103,7 @@ BoundedMultiPrediction bounded_multi_prediction(const BoundedMrbm& model,
   BoundedMultiPrediction result;
   for (std::size_t m = 0; m < batch.size(); ++m) {
     directions.push_back(direction(model, m, batch, steps));
-    hidden_bias.add_column_sum(directions[m].drive_error);
+    hidden_bias.add_column_sum(directions[m].present_input_error);
     result.gradient.visible_bias.push_back(directions[m].visible_bias);
     result.losses.push_back(directions[m].loss);
   }
@@ -111,7 +112,8 @@ BoundedMultiPrediction bounded_multi_prediction(const BoundedMrbm& model,
     weights.add(directions[m].by_hidden).add(directions[m].by_values);
     for (std::size_t other = 0; other < batch.size(); ++other)
       if (other != m)
-        weights.add(product(Bounded::exact(batch[m]).transposed(), directions[other].drive_error));
+        weights.add(
+            product(Bounded::exact(batch[m]).transposed(), directions[other].present_input_error));
     result.gradient.weights.push_back(weights.result());
   }
   result.gradient.hidden_bias = hidden_bias.result();

@@ -7,10 +7,6 @@
 namespace mcdbn::reference {
 namespace {
 
-double present_weight(const MeanFieldOptions& options, int pass) {
-  return options.double_first_pass && pass == 0 ? 2.0 : 1.0;
-}
-
 MatrixD sigmoid_gradient(const MatrixD& y) {
   return y.array() * (1.0 - y.array());
 }
@@ -23,13 +19,13 @@ MatrixD through_units(const Mrbm& model, std::size_t m, const MatrixD& error,
 
 /// Adds one direction's loss and gradient, both summed over the batch.
 void add_direction(const Mrbm& model, std::size_t missing, const std::vector<MatrixD>& batch,
-                   const MeanFieldOptions& options, MultiPrediction& sum) {
+                   int steps, MultiPrediction& sum) {
   const MatrixD& target = batch[missing];
-  const MeanFieldTrace trace = mean_field(model, missing, batch, options);
+  const MeanFieldTrace trace = mean_field(model, missing, batch, steps);
   sum.loss += prediction_loss(model, missing, target, trace.missing_input);
 
   MatrixD visible_delta = trace.missing.back() - target;  // before eq 33's units, of either kind
-  for (int pass = options.steps - 1; pass >= 0; --pass) {
+  for (int pass = steps - 1; pass >= 0; --pass) {
     const MatrixD& hidden = trace.hidden[pass];
     const MatrixD& before = trace.missing[pass];
     const MatrixD hidden_delta =
@@ -37,9 +33,7 @@ void add_direction(const Mrbm& model, std::size_t missing, const std::vector<Mat
     sum.gradient.weights[missing] +=
         visible_delta.transpose() * hidden + before.transpose() * hidden_delta;
     for (std::size_t m = 0; m < batch.size(); ++m)
-      if (m != missing)
-        sum.gradient.weights[m] +=
-            present_weight(options, pass) * batch[m].transpose() * hidden_delta;
+      if (m != missing) sum.gradient.weights[m] += batch[m].transpose() * hidden_delta;
     sum.gradient.visible_bias[missing] += visible_delta.colwise().sum();
     sum.gradient.hidden_bias += hidden_delta.colwise().sum();
     visible_delta =
@@ -79,17 +73,16 @@ Mrbm Mrbm::with_parameters(const Eigen::VectorXd& flat) const {
 }
 
 MeanFieldTrace mean_field(const Mrbm& model, std::size_t missing, const std::vector<MatrixD>& batch,
-                          const MeanFieldOptions& options) {
+                          int steps) {
   const Eigen::Index rows = batch[missing == 0 ? 1 : 0].rows();
   MatrixD from_present = MatrixD::Zero(rows, model.hidden_bias.size());
   for (std::size_t m = 0; m < batch.size(); ++m)
     if (m != missing) from_present += batch[m] * model.weights[m];
   MeanFieldTrace trace;
   trace.missing.push_back(MatrixD::Zero(rows, model.weights[missing].rows()));
-  for (int pass = 0; pass < options.steps; ++pass) {
-    const MatrixD hidden_input = plus_row(present_weight(options, pass) * from_present +
-                                              trace.missing.back() * model.weights[missing],
-                                          model.hidden_bias);
+  for (int pass = 0; pass < steps; ++pass) {
+    const MatrixD hidden_input =
+        plus_row(from_present + trace.missing.back() * model.weights[missing], model.hidden_bias);
     trace.hidden.push_back(sigmoid(hidden_input));
     trace.missing_input = plus_row(trace.hidden.back() * model.weights[missing].transpose(),
                                    model.visible_bias[missing]);
@@ -105,11 +98,10 @@ double prediction_loss(const Mrbm& model, std::size_t missing, const MatrixD& ta
                                     : cross_entropy_of_sigmoid(target, input);
 }
 
-MultiPrediction multi_prediction(const Mrbm& model, const std::vector<MatrixD>& batch,
-                                 const MeanFieldOptions& options) {
+MultiPrediction multi_prediction(const Mrbm& model, const std::vector<MatrixD>& batch, int steps) {
   MultiPrediction sum;
   sum.gradient = model.with_parameters(Eigen::VectorXd::Zero(model.flattened().size()));
-  for (std::size_t m = 0; m < batch.size(); ++m) add_direction(model, m, batch, options, sum);
+  for (std::size_t m = 0; m < batch.size(); ++m) add_direction(model, m, batch, steps, sum);
   const double scale = 1.0 / static_cast<double>(batch[0].rows());
   sum.loss *= scale;
   sum.gradient = model.with_parameters(scale * sum.gradient.flattened());

@@ -22,11 +22,6 @@ struct Mrbm {
   Mrbm with_parameters(const Eigen::VectorXd& flat) const;
 };
 
-struct MeanFieldOptions {
-  int steps = 5;                   ///< passes of eq 32 and 33
-  bool double_first_pass = false;  ///< twice the present modalities while the other is still zero
-};
-
 /// What every pass computed, kept for the way back.
 struct MeanFieldTrace {
   std::vector<MatrixD> hidden;   ///< ĥ after pass 1 … steps [batch x K] (eq 32)
@@ -36,8 +31,9 @@ struct MeanFieldTrace {
 
 /// Mean-field inference of the modality `missing` from all others, eq 32 and 33.
 /// @param batch of each modality [batch x D_m]; that of the missing one is not read
+/// @param steps passes of eq 32 and 33
 MeanFieldTrace mean_field(const Mrbm& model, std::size_t missing, const std::vector<MatrixD>& batch,
-                          const MeanFieldOptions& options = {});
+                          int steps);
 /// −log p(target | what its units took) but for a constant, summed over all: cross-entropy, or half
 /// the squared error of Gaussian units.
 double prediction_loss(const Mrbm& model, std::size_t missing, const MatrixD& target,
@@ -51,7 +47,6 @@ struct MultiPrediction {
 
 /// Multi-prediction training of eq 42: the loss of each modality predicted from the others, summed
 /// over all directions and units, back-propagated through the unrolled mean field.
-MultiPrediction multi_prediction(const Mrbm& model, const std::vector<MatrixD>& batch,
-                                 const MeanFieldOptions& options = {});
+MultiPrediction multi_prediction(const Mrbm& model, const std::vector<MatrixD>& batch, int steps);
 
 }  // namespace mcdbn::reference

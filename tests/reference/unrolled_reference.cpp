@@ -41,13 +41,13 @@ MatrixD up(const Crbm& layer, const MatrixD& visible, Eigen::Index first,
   return hidden;
 }
 
-/// Eq 32 and 33 for one frame. @param drive b and what the present modalities give
-RowVectorD missing_code(const Mrbm& model, std::size_t q, const RowVectorD& drive, int steps,
-                        const RowVectorD& factors) {
+/// Eq 32 and 33 for one frame. @param present_input b and what the present modalities give
+RowVectorD missing_code(const Mrbm& model, std::size_t q, const RowVectorD& present_input,
+                        int steps, const RowVectorD& factors) {
   RowVectorD missing = RowVectorD::Zero(model.weights[q].rows());
   for (int step = 0; step < steps; ++step) {
     const RowVectorD hidden =
-        dropped(sigmoid(MatrixD(drive + missing * model.weights[q])), factors);
+        dropped(sigmoid(MatrixD(present_input + missing * model.weights[q])), factors);
     missing = sigmoid(MatrixD(model.visible_bias[q] + hidden * model.weights[q].transpose()));
   }
   return missing;
@@ -98,7 +98,7 @@ UnrolledModel UnrolledModel::with_parameters(const Eigen::VectorXd& flat) const 
 MatrixD joint_prediction(const UnrolledModel& model, std::size_t q,
                          const std::vector<MatrixD>& values, int first, int mean_field_steps,
                          const DropOut& drop_out) {
-  MatrixD drive;
+  MatrixD present_input;
   std::size_t number = 0;
   for (std::size_t p = 0; p < values.size(); ++p) {
     if (p == q) continue;
@@ -108,12 +108,13 @@ MatrixD joint_prediction(const UnrolledModel& model, std::size_t q,
       valid += order_of(layer);
       code = up(layer, code, valid, factors_of(drop_out.up, number++));
     }
-    if (drive.size() == 0) drive = model.mrbm.hidden_bias.replicate(code.rows(), 1);
-    drive += code * model.mrbm.weights[p];
+    if (present_input.size() == 0) present_input = model.mrbm.hidden_bias.replicate(code.rows(), 1);
+    present_input += code * model.mrbm.weights[p];
   }
-  MatrixD state(drive.rows(), model.mrbm.weights[q].rows());
-  for (Eigen::Index t = 0; t < drive.rows(); ++t)
-    state.row(t) = missing_code(model.mrbm, q, drive.row(t), mean_field_steps, drop_out.shared);
+  MatrixD state(present_input.rows(), model.mrbm.weights[q].rows());
+  for (Eigen::Index t = 0; t < present_input.rows(); ++t)
+    state.row(t) =
+        missing_code(model.mrbm, q, present_input.row(t), mean_field_steps, drop_out.shared);
   for (std::size_t i = model.stacks[q].size(); i-- > 0;)
     state = down(model.stacks[q][i], state, model.start[q][i], first, factors_of(drop_out.down, i));
   return state;

@@ -1,5 +1,5 @@
-"""scripts/average_models.py: the mean of each number, all else the last model's, nothing of unlike models; and
-scripts/share_model.py: no folders, the acknowledgement, which models the start was a mean of.
+"""scripts/average_models.py: the mean of each number, the training clips of all, all else the last model's, nothing
+of unlike models; and scripts/share_model.py: no folders, the acknowledgement, which models the start was a mean of.
 
     average_models_test.py
 """
@@ -66,6 +66,22 @@ class AverageModels(unittest.TestCase):
         self.assertEqual(json.loads(header["__metadata__"]["mean_of"]),
                          [{"model": model.name, "sha256": hashlib.sha256(model.read_bytes()).hexdigest()}
                           for model in (self.model, self.second, self.further)])
+
+    def test_training_clips_of_all_and_no_ones_early_stopping(self):
+        def clips(*numbers):
+            return [{"path": f"/clips/{number}.bvh", "fingerprint": str(number)} for number in numbers]
+
+        stopped = {"held_out": ["4.bvh"], "steps": 200, "loss": 0.5}
+        write_model(self.model, [1.0], [1.0], seed=1, training_clips=clips(1, 2))
+        write_model(self.second, [1.0], [1.0], seed=2, training_clips=clips(1, 2, 3), early_stopping=stopped)
+        write_model(self.further, [1.0], [1.0], seed=3, training_clips=clips(2, 4),
+                    early_stopping={**stopped, "held_out": ["3.bvh"]})
+        result = self.average(self.model, self.second, self.further)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        about = json.loads(header_of(self.out)["__metadata__"]["mcdbn"])
+        self.assertCountEqual(about["training_clips"], clips(1, 2, 3, 4))
+        self.assertNotIn("early_stopping", about)
+        self.assertEqual(about["config"], {"seed": 3})
 
     def test_one_model_has_no_mean(self):
         self.assertNotEqual(self.average(self.model).returncode, 0)

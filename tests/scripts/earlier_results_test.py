@@ -151,6 +151,16 @@ class EarlierResults(unittest.TestCase):
         self.assertEqual((done.returncode, calls), (0, 6), done.stderr)
         self.assertIn(f"| 08 | 2 | 0.500 / {1000 * (53 + 60) + 900}.0 |", done.stdout)
 
+    def test_files_of_macos_are_no_clips(self):
+        whole, _ = self.paper_claims()
+        table = self.leave_one_out()[0].stdout
+        for name in CLIPS:
+            self.write(f"data/._{name}.bvh", "no number")
+        # Nothing is measured anew: the clips are the same.
+        self.assertEqual(self.paper_claims(), (whole, 0))
+        done, calls = self.leave_one_out()
+        self.assertEqual((done.stdout, calls), (table, 0), done.stderr)
+
     def test_a_program_that_is_not_there(self):
         for script in ("paper_claims", "leave_one_out"):
             done, _ = self.run_script(script, "--cli", "./none")
@@ -188,7 +198,10 @@ class EarlierResults(unittest.TestCase):
         first, second = (with_contents(["--from", model]) for model in models)
         self.assertEqual(first[0], "--from")
         self.assertNotEqual(first[1].split()[1], second[1].split()[1])
-        self.assertEqual(with_contents(["--order", "5"]), ["--order", "5"])
+        # As one word it stands for the same contents.
+        self.assertEqual(with_contents([f"--from={models[0]}"]), [f"--from={first[1]}"])
+        self.assertEqual(with_contents(["--order", "5", "--order=5", "--quiet"]),
+                         ["--order", "5", "--order=5", "--quiet"])
 
 
 if __name__ == "__main__":

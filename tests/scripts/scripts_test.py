@@ -225,6 +225,15 @@ fine-tuning.from-greedy = false
             self.assertTrue(is_png(run / "metrics.png"))
             self.assertEqual(
                 self.run_program(SCRIPTS / "plot_metrics.py", self.folder).returncode, 3)
+            # Of a training that runs in the place of a finished one: its lines so far.
+            (run / "metrics.png").unlink()
+            (run / "unfinished").mkdir()
+            lines = (run / "metrics.jsonl").read_text().splitlines()
+            (run / "unfinished/metrics.jsonl").write_text(lines[0] + "\n" + lines[1][:20])
+            plot = self.run_program(SCRIPTS / "plot_metrics.py", run)
+            self.assertEqual(plot.returncode, 0, plot.stderr)
+            self.assertIn(" 1 stages", plot.stderr)
+            self.assertTrue(is_png(run / "metrics.png"))
 
     def test_reproduce_paper(self):
         out = self.folder / "out"
@@ -233,6 +242,7 @@ fine-tuning.from-greedy = false
         (self.folder / "walk").symlink_to("walkers")
         clip = next((self.folder / "clap").iterdir())
         clip.symlink_to(clip.rename(self.folder / clip.name))
+        clip.with_name("._" + clip.name).write_bytes(b"\0")  # as macOS puts beside it
         cli = pathlib.Path(self.cli).resolve()
         result = self.run_program(SCRIPTS / "reproduce_paper", self.folder, "-o", out, "--cli",
                                   f"./{cli.name}", "--samples", 2, "--train", TINY, folder=cli.parent)

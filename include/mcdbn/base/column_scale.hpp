@@ -6,8 +6,7 @@
 
 namespace mcdbn {
 
-/// What each column of some data is less its mean, over its deviation: what Gaussian units of
-/// variance 1 see.
+/// Standardizes columns: (value - mean) / deviation, as Gaussian units of variance 1 need.
 struct ColumnScale {
   RowVectorF mean, deviation;
 

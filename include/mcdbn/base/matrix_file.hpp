@@ -15,6 +15,7 @@ namespace mcdbn {
 ///   empty cell or `nan` is NaN; in a file of one column an empty line is one, but for the last.
 /// - .safetensors: the tensor of that name, or the only one.
 /// @param tensor name of a tensor of a .safetensors file; empty: its only one
+/// @return at least one row and one column
 /// @throws InputError `file:line: what` (without a line where the file has none)
 MatrixF read_matrix(const std::filesystem::path& path, const std::string& tensor = "");
 

@@ -19,7 +19,7 @@ struct Range {
 /// The upper end where none is given: far beyond any use, and floats still multiply it.
 inline constexpr double kLargest = 1e9;
 
-/// Of no setting; without an end, any finite number.
+/// Any finite number; for values in files, not for settings.
 constexpr Range any_number() {
   return {};
 }

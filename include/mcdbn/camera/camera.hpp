@@ -67,10 +67,11 @@ struct CameraPlacement {
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     visit(Setting{"azimuth", within(-360, 360), "degrees",
-                  "around the figure, to its left (+x); 0 is in front of one that faces +z"},
+                  "the camera's direction around the figure, towards its left (+x); 0: in front of "
+                  "a figure that faces +z"},
           self.azimuth_deg);
     // From right above a figure nothing shows which way it faces.
-    visit(Setting{"elevation", within(-89, 89), "degrees", "above the horizon"},
+    visit(Setting{"elevation", within(-89, 89), "degrees", "the camera's angle above the horizon"},
           self.elevation_deg);
     visit(Setting{"fov", kFieldOfView_deg, "degrees", "vertical field of view"},
           self.field_of_view_deg);

@@ -28,11 +28,13 @@ const JointSet& joint_set(std::string_view name);
 const JointSet* joint_set_of(std::span<const std::string> names);
 
 /// The keypoint of a column, from its name in a file in any of the usual spellings: "LShoulder",
-/// "left_shoulder", "shoulder-left", "Left Shoulder". Without a role where the name is unknown.
+/// "left_shoulder", "shoulder-left", "Left Shoulder". Without a role where the name is unknown, and
+/// of the `spine` that Human3.6M has, halfway between hips and shoulders. A foot is the toes.
 Keypoint keypoint_of(const std::string& name);
 
 /// keypoint_of of every name, if they are a human's: both sides of two kinds of limb joints at
-/// least; else the names alone, without roles, for the left ear of a mouse is no left ear.
+/// least; else the names alone, without roles, for the left ear of a mouse is no left ear. A foot
+/// is the ankle where no other name of its side is at the ankle, as in Human3.6M's joints.
 std::vector<Keypoint> keypoints_of(std::span<const std::string> names);
 
 }  // namespace mcdbn

@@ -20,6 +20,7 @@ struct Track2d {
 
   int frames() const { return static_cast<int>(x_px.rows()); }
   int joint_count() const { return static_cast<int>(joint_names.size()); }
+  /// Column of the joint of that name; −1 if there is none.
   int find(const std::string& name) const;
 };
 

@@ -27,12 +27,15 @@ struct TrackStretches {
   std::vector<FrameRange> strays;     ///< frames that show something elsewhere that is no stretch
 };
 
-/// Where a whole body is suddenly elsewhere the detector went on with another person, or the film
-/// was cut. The middle of the joints that are seen moves by no more than three quarters of the
-/// body's height on the image and seven heights a second: joints come and go, and a runner's 12 m/s
-/// are as much. What is elsewhere for less than 0.3 s, or in no frame shows half of the joints that
-/// the track shows, is a stray, and what comes before and after it may be one stretch. A detector's
-/// joints are those of the limbs.
+/// Where a whole body is suddenly elsewhere, or of another size, the detector went on with another
+/// person, or the film was cut. The middle of the joints that are seen moves by no more than three
+/// quarters of the body's height on the image and seven heights a second: joints come and go, and a
+/// runner's 12 m/s are as much. The distances between the joints that two frames both show, if they
+/// are eight at least and each frame shows half of a body, grow or shrink by a factor of no more
+/// than 1.5 at once, and of 20 in a second, in which somebody may have come nearer. What is
+/// elsewhere for less than 0.3 s, or in no frame shows half of the joints that the track shows, is
+/// a stray, and what comes before and after it may be one stretch. A detector's joints are those of
+/// the limbs.
 /// @return one stretch of all frames if there is no such jump, or nothing but jumps; none of no
 ///         frames
 TrackStretches find_stretches(const Track2d& track);

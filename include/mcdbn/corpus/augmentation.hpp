@@ -37,15 +37,17 @@ struct AugmentationSettings {
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     visit(Setting{"views", within(1, 1e5), "views",
-                  "of each clip; fewer of more than some two hours"},
+                  "views of each clip; fewer if they would exceed about two hours in all"},
           self.views);
     visit(Setting{"mirror", on_or_off(), "",
-                  "exchange left and right in every other view, where the skeleton has sides"},
+                  "exchange left and right in half of the views, where the skeleton has sides"},
           self.mirror);
     visit(Setting{"azimuth", within(0, 180), "degrees",
-                  "the camera goes round by up to so much: for tracks of unknown cameras"},
+                  "largest turn of the camera around the person, to either side: for tracks of "
+                  "unknown cameras"},
           self.azimuth_deg);
-    visit(Setting{"elevation", within(0, 90), "degrees", "the camera rises or sinks likewise"},
+    visit(Setting{"elevation", within(0, 90), "degrees",
+                  "largest change of the camera's elevation, up or down"},
           self.elevation_deg);
     visit(Setting{"distance", within(0, 10), "",
                   "relative deviation of the camera's distance: for other perspectives"},
@@ -53,21 +55,24 @@ struct AugmentationSettings {
     visit(Setting{"bone", within(0, 1), "",
                   "relative deviation of each bone's length, both sides alike: for other people"},
           self.bone);
-    visit(Setting{"turn", within(0, 180), "degrees",
-                  "deviation of how each joint is held throughout a clip: for other postures"},
-          self.turn_deg);
+    visit(
+        Setting{"turn", within(0, 180), "degrees",
+                "deviation of a turn that each joint keeps throughout a view: for other postures"},
+        self.turn_deg);
     // The clip takes 1 / (1 ± speed) of its time.
-    visit(Setting{"speed", within(0, 0.9), "", "up to so much faster or slower"}, self.speed);
+    visit(
+        Setting{"speed", within(0, 0.9), "", "largest relative change of speed, faster or slower"},
+        self.speed);
     visit(Setting{"noise", within(0, 100), "px",
-                  "mean deviation of the 2D joints of a 200 px figure, up to twice it in a view: "
-                  "trackers are no better"},
+                  "mean deviation of noise on the 2D joints of a 700 px tall figure, less on a "
+                  "smaller one; each view has from none to twice as much"},
           self.noise_px);
     visit(Setting{"missing", within(0, 1), "",
                   "share of the views in which limbs are hidden for a while"},
           self.missing);
     visit(Setting{"detector", within(0, 1), "",
-                  "share of the views that a detector sees (OpenPose, MediaPipe or RTMPose, as "
-                  "measured) through a camera anywhere around the person"},
+                  "share of the views with the track of a detector (OpenPose, MediaPipe or "
+                  "RTMPose, with measured errors), through a camera anywhere around the person"},
           self.detector);
     visit(Setting{"limbs-exchanged", within(0, 1), "",
                   "share of the views with the legs of one clip, the upper body of another and an "
@@ -80,19 +85,20 @@ struct AugmentationSettings {
     visit(Setting{"limbs-turned-by", within(0, 180), "degrees",
                   "deviation of that turn about each axis"},
           self.limbs_turned_deg);
-    visit(Setting{"arms-anywhere", within(0, 1), "",
-                  "share of the views in which arms point anywhere before and beside the body"},
-          self.arms_anywhere);
+    visit(
+        Setting{"arms-anywhere", within(0, 1), "",
+                "share of the views in which arms point anywhere in front of and beside the body"},
+        self.arms_anywhere);
     visit(Setting{"leaning", within(0, 1), "",
-                  "share of the views in which all above the hips leans, now this way, now that"},
+                  "share of the views in which all above the hips leans, in changing directions"},
           self.leaning);
     visit(Setting{"leaning-by", within(0, 180), "degrees", "deviation of that lean"},
           self.leaning_deg);
     visit(Setting{"turning-round", within(0, 1), "",
-                  "share of the views in which the person turns round on the way"},
+                  "share of the views in which the person turns around in the course of the clip"},
           self.turning_round);
     visit(Setting{"gravity", within(0, 180), "degrees",
-                  "deviation of the error in what is taken for down: of phones' and of assumed "
+                  "deviation of the error of the direction taken as down: for phones and assumed "
                   "cameras"},
           self.gravity_deg);
   }

@@ -22,8 +22,8 @@ Motion load_clip(const std::filesystem::path& path, const ClipOptions& options =
                  std::vector<std::string>* notices = nullptr);
 
 /// The BVH and AMC files that a command line means: files as they are, folders searched recursively
-/// for
-/// *.bvh and *.amc (any case), sorted by path within each folder; a file named twice counts once.
+/// for *.bvh and *.amc (any case), sorted by path within each folder; a file named twice counts
+/// once.
 /// @throws InputError if a path does not exist or a folder holds none
 std::vector<std::filesystem::path> find_clips(const std::vector<std::filesystem::path>& paths);
 

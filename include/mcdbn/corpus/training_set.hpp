@@ -40,17 +40,16 @@ struct CorpusSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"fps", kFrameRate_hz, "Hz", "rate that clips are resampled to, the model's own"},
+    visit(Setting{"fps", kFrameRate_hz, "Hz", "frame rate of the model; clips are resampled to it"},
           self.fps);
-    visit(Setting{"phases", within(1, 1000), "grids",
-                  "times that each clip is sampled, shifted, where its own rate allows: a fast "
-                  "clip's other frames add information"},
+    visit(Setting{"phases", within(1, 1000), "resamplings",
+                  "shifted resamplings of each clip, at most clip rate / fps: they use the frames "
+                  "in between"},
           self.phases);
-    visit(
-        Setting{"directions", Modalities::kDirections, "directions",
-                "from how many, evenly around, each clip is seen where nothing is fine-tuned: one "
-                "who walks away is no rarity then"},
-        self.directions);
+    visit(Setting{"directions", Modalities::kDirections, "directions",
+                  "camera directions, evenly around, that each clip is projected from when nothing "
+                  "is fine-tuned"},
+          self.directions);
     visit(Setting{"keep-first-frame", on_or_off(), "", "keep a leading calibration pose"},
           self.keep_first_frame);
     visit_group("augment", self.augment, visit);
@@ -63,8 +62,8 @@ struct TrainingSet {
   Modalities modalities;
   std::vector<MatrixF> tracks;  ///< 2D
   std::vector<MatrixF> poses;   ///< 3D
-  std::vector<TrainingClip>
-      clips;  ///< all files as they were read; of augmented views, each view's
+  /// All files as they were read; of augmented views, each view's.
+  std::vector<TrainingClip> clips;
   /// Who is seen in each of `poses`, counted from 0.
   std::vector<std::size_t> people;
   /// What was seen of each of `tracks`, 1, and what was not, 0, where the track is at its mean;

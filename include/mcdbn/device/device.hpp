@@ -86,8 +86,8 @@ class Device {
   /// Whether from here on the time of every kernel launch is kept, which costs a little of it.
   /// @throws DeviceError
   void keep_launch_times(bool keep);
-  /// Whether launches have to be kept by keep_launch; of several kernels of a library at once, the
-  /// last.
+  /// True while keep_launch() must be called after each launch; if a library call launches several
+  /// kernels, keep the last event.
   bool keeps_launch_times() const { return keeps_launch_times_; }
   void keep_launch(std::string kernel, const cl::Event& event);
   /// Those of the launches since the last call, in order; waits for the queue. @throws DeviceError

@@ -49,6 +49,7 @@ std::vector<Tuning> tuning_candidates(const DeviceInfo& info, const Tuning& from
 /// The winners as `mcdbn-cl bench --tune` left them in the user's cache folder; unset where there
 /// is no entry for this device and driver, or one that makes no sense.
 std::optional<Tuning> load_tuning(const DeviceInfo& info);
-void store_tuning(const DeviceInfo& info, const Tuning& tuning);
+/// Keeps it there. @return whether it could be written
+bool store_tuning(const DeviceInfo& info, const Tuning& tuning);
 
 }  // namespace mcdbn

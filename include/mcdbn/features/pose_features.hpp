@@ -23,7 +23,8 @@ class PoseFeatures {
   static constexpr int kBlock = 6;  ///< numbers of one orientation; the blocks stand first
 
   int dimension() const;
-  const Skeleton& skeleton() const { return skeleton_; }  ///< fitted: the first clip's
+  /// Fitted: the first clip's; the humanoid has its orders of axes (with_humanoid_orders).
+  const Skeleton& skeleton() const { return skeleton_; }
   /// Where the root velocity's three features begin; the height stands before them.
   int velocity_feature() const { return dimension() - 3; }
   int root() const { return root_; }  ///< the moving root: a joint of skeleton()
@@ -64,7 +65,7 @@ class PoseFeatures {
   /// Features that were fitted before. @param joints, fixed_channels as those functions give them
   /// @throws InputError where sizes do not fit together
   static PoseFeatures restored(Skeleton skeleton, int root, std::vector<int> joints,
-                               RowVectorD fixed_channels);
+                               const RowVectorD& fixed_channels);
 
  private:
   void find_leading_axes();

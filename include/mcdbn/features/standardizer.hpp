@@ -30,7 +30,7 @@ class Standardizer {
   nlohmann::json to_json() const;
   /// @param where it stands, for errors: "model.safetensors: modalities.pose_scale"
   /// @throws InputError
-  static Standardizer from_json(const nlohmann::json& json, const std::string& where = "scaling");
+  static Standardizer from_json(const nlohmann::json& json, const std::string& where);
 
  private:
   RowVectorD mean_, deviation_;  ///< [1 x input]

@@ -28,9 +28,8 @@ class TrackFeatures {
   static TrackFeatures for_skeleton(const Skeleton& skeleton, int root);
 
   int dimension() const;
-  const std::vector<std::string>& joint_names() const {
-    return joint_names_;
-  }  ///< without the root
+  /// Without the root.
+  const std::vector<std::string>& joint_names() const { return joint_names_; }
   const std::string& root_name() const { return root_name_; }
   std::vector<std::string> feature_names() const;
 
@@ -64,8 +63,7 @@ class TrackFeatures {
 
   nlohmann::json to_json() const;
   /// @param where it stands, for errors  @throws InputError
-  static TrackFeatures from_json(const nlohmann::json& json,
-                                 const std::string& where = "track features");
+  static TrackFeatures from_json(const nlohmann::json& json, const std::string& where);
 
  private:
   std::vector<std::string> joint_names_;

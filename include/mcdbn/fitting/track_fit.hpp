@@ -99,6 +99,7 @@ struct TrackFitSettings {
   double roll_deg = 8;
   double balance_deg = 5;
   double balance_speed_m_s = 1.5;
+  double balance_bent_legs = 0.2;
   double focal = 0.1;
   double roughly_s = 0.1;
   std::size_t solutions = 5;
@@ -218,6 +219,11 @@ struct TrackFitSettings {
     visit(Setting{"balance-speed", above(0), "m/s",
                   "how fast a body moves where that is twice as uncertain"},
           self.balance_speed_m_s);
+    // Who sits has the feet in front of the body.
+    visit(Setting{"balance-bent-legs", above(0), "",
+                  "by what share of a leg's length the ankles are nearer to the hips where it is "
+                  "twice as uncertain, too"},
+          self.balance_bent_legs);
     visit(
         Setting{
             "focal", above(0), "",

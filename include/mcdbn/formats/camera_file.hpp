@@ -54,6 +54,9 @@ CameraRig read_cameras(const std::filesystem::path& path);
 Camera read_camera(const std::filesystem::path& path, std::vector<std::string>* assumed = nullptr,
                    std::vector<std::string>* stated = nullptr);
 
+/// Whether write_camera has a format of that ending: .yml, .yaml, .xml or .json, in any case.
+bool has_camera_ending(const std::filesystem::path& path);
+
 /// Writes OpenCV's YAML, XML or JSON, by the path's ending. @throws InputError
 void write_camera(const std::filesystem::path& path, const Camera& camera);
 

@@ -12,12 +12,13 @@
 namespace mcdbn {
 
 /// Reads a 2D track line by line, as it is written: JSON, the value of one frame in each line as
-/// any of the JSON formats has it, or our own CSV, whose header line stands before the frames. JSON
-/// in which nobody is, in any layout, is a frame that shows nobody. What reading a whole file finds
-/// from all of it is found here from what has come so far: joints and whether coordinates are
-/// shares of the image by the first frame that shows a person, rate and image size by `options` or
-/// the file itself. Of several people the largest of that frame, or the one of that number, is
-/// followed. Confidences beyond 1 are 1.
+/// any of the JSON formats has it, or our own CSV, whose header line stands before the frames. The
+/// first line that is not empty decides which of the two it is. JSON in which nobody is, in any
+/// layout, is a frame that shows nobody. What reading a whole file finds from all of it is found
+/// here from what has come so far: joints and whether coordinates are shares of the image by the
+/// first frame that shows a person, rate and image size by `options` or the file itself. Of several
+/// people the largest of that frame, or the one of that number, is followed. Confidences beyond 1
+/// are 1.
 class TrackLines {
  public:
   /// @param name of the source, for messages

@@ -20,7 +20,7 @@ struct EpochReport {
   std::optional<double> held_out_loss;  ///< of the clips held out, fine-tuning only
   /// Share of the time since the last report in which training waited for sequences that are made
   /// on the way, fine-tuning only.
-  std::optional<double> waited;
+  std::optional<double> waiting_share;
   std::optional<LayerHealth> health;  ///< at a stage's first and last epoch, and every fifth
 };
 using EpochObserver = std::function<void(const EpochReport&)>;

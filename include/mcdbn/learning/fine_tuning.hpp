@@ -34,7 +34,9 @@ struct FineTuned {
 /// @param held_out sequences that are not learnt from and decide when to stop, or none
 /// @param make_loss of the last modality
 /// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
-/// @throws DivergenceError naming what to lower, ShapeError
+/// @throws ConfigError if the settings' look-ahead is not the network's; ShapeError, InputError for
+///         sequences that SynchronizedClips::check() refuses or that do not fit the network; those
+///         that come by renew() are not checked. DivergenceError naming what to lower
 FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& source,
                     const SequenceSource* held_out, const LearningSettings& settings,
                     const SequenceLossMaker& make_loss, const EpochObserver& observer = {},

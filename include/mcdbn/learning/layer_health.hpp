@@ -15,8 +15,9 @@ struct LayerHealth {
   double saturation = 0;       ///< fraction of hidden probabilities below 0.01 or above 0.99
   double weight_norm = 0;      ///< Frobenius norm of W (of all W of an MRBM)
   std::optional<double> weight_norm_A, weight_norm_B;  ///< of a CRBM
-  /// Mean squared error of a unit when the CRBM goes on by itself, mean field, for kFreeRunFrames
-  /// after a true history. Unset if no clip is long enough, and for an MRBM.
+  /// Mean squared error of a unit, in the data's units, when the CRBM goes on by itself, mean
+  /// field, for kFreeRunFrames after a true history. Unset if no clip is long enough, and for an
+  /// MRBM.
   std::optional<double> free_run_error;
 };
 

@@ -27,18 +27,18 @@ struct MachineSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"seed", any_seed(), "", "of every random number"}, self.seed);
+    visit(Setting{"seed", any_seed(), "", "seed of all random numbers"}, self.seed);
     visit(Setting{"order", within(1, size_limits::kHistory.most), "frames",
-                  "history that a machine with one sees, in every layer"},
+                  "frames of history of every layer, of machines with history"},
           self.order);
-    visit(Setting{"hidden", size_limits::kUnits, "units", "hidden units, in every layer"},
+    visit(Setting{"hidden", size_limits::kUnits, "units", "hidden units of every layer"},
           self.hidden);
     visit(Setting{"layers", size_limits::kLayers, "machines",
-                  "of a stack, each on the code of the last"},
+                  "layers of a stack; each learns the code of the one below"},
           self.layers);
-    visit(Setting{"batch", within(1, 1e5), "rows", "of a mini-batch"}, self.batch);
+    visit(Setting{"batch", within(1, 1e5), "rows", "rows in a mini-batch"}, self.batch);
     visit(Setting{"least-batches", within(1, 1e6), "mini-batches",
-                  "of an epoch, at least: few rows are gone over several times in it"},
+                  "least mini-batches in an epoch; a small data set is visited several times"},
           self.least_batches);
     visit_group("gaussian", self.gaussian, visit);
     visit_group("binary", self.binary, visit);
@@ -67,7 +67,7 @@ Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind,
 
 /// An MRBM, fitted by the settings' rule on rows that belong together.
 /// @param modalities name and kind of each
-/// @param data of each, as many rows in all; values as fit_stack takes them
+/// @param data of each, of the same clips; values as fit_stack takes them
 /// @throws InputError, ConfigError, ShapeError, DivergenceError
 Mrbm fit_mrbm(Device& device, const std::vector<Modality>& modalities,
               std::span<const Sequences> data, const MachineSettings& settings,

@@ -11,9 +11,9 @@ namespace mcdbn {
 class TrainingState;
 
 /// Windows of a mini-batch: `count` of `frames` frames, one after another. Frames before `first`
-/// are history, those before `lead` settle, the rest are judged.
+/// are history, those from there to `judged_from` settle, the rest are judged.
 struct SequenceWindows {
-  std::size_t count = 0, frames = 0, first = 0, lead = 0;
+  std::size_t count = 0, frames = 0, first = 0, judged_from = 0;
   std::size_t rows() const { return count * frames; }
 };
 
@@ -22,7 +22,7 @@ struct SequenceWindows {
 class SequenceLoss {
  public:
   virtual ~SequenceLoss() = default;
-  /// Writes dL/d prediction, zero before the windows' lead. Each is [at least windows.rows() x
+  /// Writes dL/d prediction, zero before `judged_from`. Each is [at least windows.rows() x
   /// dimension]. Enqueues and returns. @throws ShapeError
   virtual void differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) = 0;
   /// The weighted loss, its mean since the last call. Waits for the queue.

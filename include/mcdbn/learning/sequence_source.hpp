@@ -32,13 +32,21 @@ struct SynchronizedClips {
   std::vector<ModalityClips> modalities;
   /// Which clips belong together (e.g. of one person), counted from 0; empty: all alike.
   std::span<const std::size_t> groups;
+  /// Where the clips are pieces of a larger corpus: the frames of each group in it, by its number;
+  /// pieces of a group were drawn as these to the power `drawn_power`. Empty: the clips are all
+  /// there is.
+  std::span<const double> group_frames = {};
+  double drawn_power = 1;
 
   std::size_t count() const { return modalities.front().clips.size(); }
   std::size_t frames(std::size_t clip) const {
     return static_cast<std::size_t>(modalities.front().clips[clip].rows());
   }
-  /// @throws ShapeError without modalities or clips, or where they differ in clips or frames;
-  ///         where `seen` has another shape than its clips, or a clip a number that was not seen
+  /// One pass over all values.
+  /// @throws ShapeError without modalities or clips, or where they differ in clips or frames, or
+  ///         the clips of one in columns; where `seen` has another shape than its clips, or a clip
+  ///         a number that was not seen; where a clip's group is not known. InputError naming
+  ///         modality, clip, row and column of the first value that its units cannot take
   void check() const;
 };
 

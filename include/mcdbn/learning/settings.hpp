@@ -31,66 +31,76 @@ struct CdSettings {
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     // So many steps, and some more, have random numbers of their own (greedy_schedule.cpp).
-    visit(Setting{"gibbs-steps", within(1, 1000), "steps",
-                  "k of CD-k: more follow the likelihood's gradient closer and take longer"},
-          self.gibbs_steps);
+    visit(
+        Setting{
+            "gibbs-steps", within(1, 1000), "steps",
+            "k of CD-k: more steps follow the likelihood's gradient more closely and take longer"},
+        self.gibbs_steps);
     visit(Setting{"rate", above(0, 100), "", "learning rate of W and the biases"}, self.rate);
     visit(Setting{"rate-A", within(0, 100), "",
-                  "learning rate of A (history to visible); small, or A explains all by itself"},
+                  "learning rate of A (history to visible); small, else A alone explains the data"},
           self.rate_A);
     visit(Setting{"rate-B", within(0, 100), "", "learning rate of B (history to hidden)"},
           self.rate_B);
     visit(Setting{"momentum", share_below_one(), "",
-                  "share of a step that goes on in the next: evens out what draws do to it"},
+                  "share of the last step that is added to the next; averages out sampling noise"},
           self.momentum);
     visit(Setting{"momentum-from-epoch", within(0, 1e7), "epochs",
-                  "no momentum in so many first epochs, whose gradients still turn; Adam's first "
-                  "decay begins at once"},
+                  "first epochs without momentum, while the gradient still changes direction; does "
+                  "not affect Adam"},
           self.momentum_from_epoch);
     visit(Setting{"weight-decay", within(0, 1000), "",
                   "decay of W, A and B, times the rate: keeps weights of little effect small"},
           self.weight_decay);
     visit(Setting{"initial-deviation", within(0, 100), "",
-                  "spread of the first weights where no fine-tuning follows, which has its own"},
+                  "standard deviation of the first weights; not used before fine-tuning, which "
+                  "sets its own"},
           self.initial_deviation);
     visit(Setting{"history-noise", within(0, 100), "",
-                  "deviation of normal noise on the history, new in every mini-batch: what runs on "
-                  "its own output learns to stay on course"},
+                  "standard deviation of noise on the history, new in every mini-batch: for "
+                  "free-running generation, which has to recover from its own errors"},
           self.history_noise);
-    visit(Setting{"epochs", within(1, 1e7), "epochs",
-                  "rounds over the data; without fine-tuning 100, binary 50"},
-          self.epochs);
     visit(
-        Setting{"persistent", on_or_off(), "",
-                "persistent contrastive divergence: chains go on from one mini-batch to the next, "
-                "each under the history of its window"},
-        self.persistent);
-    visit(Setting{"fast-rate", within(0, 100), "",
-                  "rate of fast weights, which keep persistent chains moving; 0: none"},
-          self.fast_rate);
-    visit(Setting{"sample-visible", on_or_off(), "",
-                  "draws visible units in the chain, as the model defines them, not their means"},
-          self.sample_visible);
+        Setting{
+            "epochs", within(1, 1e7), "epochs",
+            "passes over the data; the default without fine-tuning is 100, of binary layers 50"},
+        self.epochs);
+    visit(Setting{"persistent", on_or_off(), "",
+                  "persistent contrastive divergence: chains continue from one mini-batch to the "
+                  "next, each under the history of its window"},
+          self.persistent);
+    visit(
+        Setting{"fast-rate", within(0, 100), "",
+                "learning rate of fast weights, which make persistent chains mix faster; 0: none"},
+        self.fast_rate);
+    visit(
+        Setting{
+            "sample-visible", on_or_off(), "",
+            "draw the visible units in the chain, as the model defines it; off: use their means"},
+        self.sample_visible);
     visit(Setting{"sparsity-target", between(0, 1), "",
-                  "how often a hidden unit should be on, where sparsity-strength counts"},
+                  "how often a hidden unit should be on; needs sparsity-strength"},
           self.sparsity_target);
     visit(Setting{"sparsity-strength", within(0, 1000), "",
-                  "how hard hidden units are pulled to that target: keeps all of them in use"},
+                  "how strongly hidden units are pulled to that target, which keeps all of them in "
+                  "use; 0: not at all"},
           self.sparsity_strength);
     visit(Setting{"l1", within(0, 1000), "",
-                  "pull of W, A and B towards zero, times the rate: leaves few weights large"},
+                  "L1 penalty on W, A and B, times the rate: leaves few weights large"},
           self.l1);
-    visit(Setting{"adam", on_or_off(), "",
-                  "Adam, whose rates suit every weight, with momentum as its first decay"},
-          self.adam);
-    visit(Setting{"final-rate", within(0, 1), "",
-                  "share of the rates that is left at the end, down to which they fall; 1: they "
-                  "stay"},
-          self.final_rate);
-    visit(Setting{"cosine", on_or_off(), "", "rates fall along a cosine, else in a line"},
+    visit(
+        Setting{
+            "adam", on_or_off(), "",
+            "Adam, which adapts the rate of each weight, with momentum as its first decay (β1)"},
+        self.adam);
+    visit(
+        Setting{"final-rate", within(0, 1), "",
+                "learning rates fall to this share of themselves by the last epoch; 1: they stay"},
+        self.final_rate);
+    visit(Setting{"cosine", on_or_off(), "", "learning rates fall along a cosine; off: linearly"},
           self.cosine);
     visit(Setting{"deviation-rate", within(0, 100), "",
-                  "rate of the deviation of Gaussian units; with a history they have none"},
+                  "learning rate of the Gaussian units' deviation σ; order 0 only; 0: σ is fixed"},
           self.deviation_rate);
   }
 };
@@ -111,41 +121,44 @@ struct MrbmSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"rate", above(0, 100), "",
-                  "learning rate; falls in a line to a fiftieth over the second half"},
-          self.rate);
+    visit(
+        Setting{"rate", above(0, 100), "",
+                "learning rate; falls linearly to a fiftieth over the second half of the training"},
+        self.rate);
     visit(
         Setting{
             "weight-decay", within(0, 1000), "",
             "decoupled decay of the weights, times the rate: keeps those of little effect small"},
         self.weight_decay);
     visit(Setting{"initial-deviation", within(0, 100), "",
-                  "spread of the first weights where no fine-tuning follows, which has its own"},
+                  "standard deviation of the first weights; not used before fine-tuning, which "
+                  "sets its own"},
           self.initial_deviation);
     visit(Setting{"mean-field-steps", size_limits::kMeanFieldSteps, "steps",
-                  "unrolled steps of eq 32 and 33: more come nearer to their fixed point"},
+                  "unrolled mean-field steps (eq 32 and 33): more come closer to the fixed point"},
           self.mean_field_steps);
     visit(Setting{"epochs", within(1, 1e7), "epochs",
-                  "rounds over the codes; without fine-tuning 30"},
+                  "passes over the codes; the default without fine-tuning is 30"},
           self.epochs);
     visit(Setting{"joint-likelihood", on_or_off(), "",
-                  "learns the joint likelihood by contrastive divergence, in place of MinVI"},
+                  "maximize the joint likelihood by contrastive divergence, in place of MinVI"},
           self.joint_likelihood);
-    visit(Setting{"perceptron-loss", on_or_off(), "",
-                  "MinVI, where it is learnt, by CD-PercLoss in place of multi-prediction"},
-          self.perceptron_loss);
+    visit(
+        Setting{"perceptron-loss", on_or_off(), "",
+                "MinVI by CD-PercLoss in place of multi-prediction; without joint-likelihood only"},
+        self.perceptron_loss);
     visit(Setting{"gibbs-steps", within(1, 1000), "steps",
-                  "k of the chains of joint-likelihood and perceptron-loss"},
+                  "k of the Gibbs chains of joint-likelihood and perceptron-loss"},
           self.gibbs_steps);
     visit(Setting{"persistent", on_or_off(), "",
-                  "joint-likelihood: chains go on from one mini-batch to the next"},
+                  "with joint-likelihood: chains continue from one mini-batch to the next"},
           self.persistent);
     visit(Setting{"sample-visible", on_or_off(), "",
-                  "draws the codes in those chains, as the model defines them, not their means"},
+                  "draw the codes in those chains, as the model defines it; off: use their means"},
           self.sample_visible);
     visit(Setting{"adam", on_or_off(), "", "Adam; off: gradient descent with momentum"}, self.adam);
     visit(Setting{"momentum", share_below_one(), "",
-                  "share of a step that goes on in the next; Adam's first decay"},
+                  "share of the last step that is added to the next; Adam's first decay (β1)"},
           self.momentum);
   }
 };
@@ -170,30 +183,34 @@ struct FineTuningSettings {
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     visit(Setting{"steps", within(0, 1e9), "mini-batches",
-                  "how long the stage lasts; 0 leaves it out"},
+                  "mini-batches of fine-tuning; 0: no fine-tuning"},
           self.steps);
     // 3,000 mini-batches learn six views of 60 CMU clips by heart.
-    visit(Setting{"view-uses", within(0, 1e6), "windows",
-                  "that are learnt from an augmented view, on average, before a fresh one takes "
-                  "its place, made meanwhile; 0: all views are made beforehand, if they are not "
-                  "more than some two hours"},
-          self.view_uses);
+    visit(
+        Setting{
+            "view-uses", within(0, 1e6), "windows",
+            "windows drawn from an augmented view, on average, before a new view replaces it; 0: "
+            "all views are made before training; with more than about two hours of clips, 0 is 16"},
+        self.view_uses);
     visit(Setting{"from-greedy", on_or_off(), "",
-                  "the greedy stages come first, on the same views and from weights of the size "
-                  "that fine-tuning wants; else they are left out"},
+                  "train the greedy stages first, on the same views and from weights of the size "
+                  "that fine-tuning needs; off: start from random weights"},
           self.from_greedy);
-    visit(Setting{"windows", within(1, 1e5), "windows", "of a mini-batch"}, self.windows);
+    visit(Setting{"windows", within(1, 1e5), "windows", "windows in a mini-batch"}, self.windows);
     visit(Setting{"people-power", within(0, 1), "",
-                  "windows are drawn from people as their frames to this power: 1: every frame "
-                  "counts alike; 0: every person, identified by their bones"},
+                  "a person (with actions given, a person in an action) is drawn with probability "
+                  "proportional to frames^power; 1: all frames alike, 0: all people alike"},
           self.people_power);
     // The loss judges steps from frame to frame, too.
-    visit(Setting{"window-frames", within(2, 1000), "frames", "judged frames of a window"},
+    visit(Setting{"window-frames", within(2, 1000), "frames",
+                  "frames of a window that the loss judges"},
           self.window_frames);
     visit(Setting{"settle-frames", within(0, 1000), "frames",
-                  "free-running frames before the judged ones, whose own errors they inherit"},
+                  "free-running frames before the judged ones, so that these start from the "
+                  "network's own errors"},
           self.settle_frames);
-    visit(Setting{"rate", above(0, 100), "", "Adam's rate; falls along a cosine to a fiftieth"},
+    visit(Setting{"rate", above(0, 100), "",
+                  "Adam's learning rate; falls along a cosine to a fiftieth"},
           self.rate);
     visit(
         Setting{
@@ -201,16 +218,17 @@ struct FineTuningSettings {
             "decoupled decay of the weights, times the rate: keeps those of little effect small"},
         self.weight_decay);
     visit(Setting{"dropout", share_below_one(), "",
-                  "share of hidden units that are left out, the same throughout a window"},
+                  "share of hidden units that are left out; the same ones throughout a window"},
           self.dropout);
     visit(Setting{"average", share_below_one(), "",
-                  "what a step keeps of the parameters' moving average, which is the result"},
+                  "share of the parameters' moving average that each step keeps; the average is "
+                  "the result"},
           self.average);
     visit(Setting{"reverse", within(0, 1000), "",
-                  "weight of the other direction, 2D from 3D, which stays trained by it"},
+                  "weight of the loss in the other direction, 2D from 3D"},
           self.reverse);
     visit(Setting{"mean-field-steps", size_limits::kMeanFieldSteps, "steps",
-                  "unrolled steps of eq 32 and 33, in training and in the model"},
+                  "unrolled mean-field steps (eq 32 and 33), in training and in the model"},
           self.mean_field_steps);
   }
 };
@@ -224,13 +242,14 @@ struct RegenerationSettings {
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     visit(Setting{"gibbs-steps", within(0, 1000), "steps",
-                  "k of the decoder's samples; 0: mean field"},
+                  "Gibbs steps (k) of the decoder in each frame of a sample; 0: mean field"},
           self.gibbs_steps);
     visit(Setting{"mrbm-gibbs-steps", within(0, 1000), "steps",
-                  "k of the chain that infers each sample's code; 0: one mean field for all"},
+                  "Gibbs steps (k) of the chain that infers each sample's code; 0: all samples "
+                  "share the mean-field code"},
           self.mrbm_gibbs_steps);
     visit(Setting{"sampled", on_or_off(), "",
-                  "a single answer is drawn, too, where mean field is more exact"},
+                  "draw a single answer, too; off: take the mean field, which is more exact"},
           self.sampled);
   }
 };
@@ -274,27 +293,30 @@ struct LearningSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"seed", any_seed(), "", "of every random number"}, self.seed);
-    visit(Setting{"order", size_limits::kHistory, "frames", "history that every CRBM sees (N)"},
+    visit(Setting{"seed", any_seed(), "", "seed of all random numbers"}, self.seed);
+    visit(Setting{"order", size_limits::kHistory, "frames",
+                  "frames of history that every CRBM sees (N)"},
           self.order);
     visit(Setting{"hidden", size_limits::kUnits, "units", "hidden units of every CRBM"},
           self.hidden);
     visit(Setting{"layers", size_limits::kLayers, "CRBMs",
-                  "in each CDBN, each on the code of the last"},
+                  "CRBMs in each CDBN; each learns the code of the one below"},
           self.layers);
     visit(Setting{"mrbm-hidden", size_limits::kUnits, "units", "hidden units of the MRBM"},
           self.mrbm_hidden);
     visit(Setting{"look-ahead", size_limits::kLookAhead, "frames",
-                  "how much later the 2D is that 3D is inferred from; 0 is causal, the paper's"},
+                  "the 3D code of frame t is inferred from the 2D code of frame t + look-ahead; 0: "
+                  "causal, as in the paper"},
           self.look_ahead);
-    visit(Setting{"batch", within(1, 1e5), "windows", "of a mini-batch of the greedy stages"},
-          self.batch);
+    visit(
+        Setting{"batch", within(1, 1e5), "windows", "windows in a mini-batch of the greedy stages"},
+        self.batch);
     visit(Setting{"least-batches", within(1, 1e6), "mini-batches",
-                  "of an epoch, at least: few clips are gone over several times in it"},
+                  "least mini-batches in an epoch; a small data set is visited several times"},
           self.least_batches);
     visit(Setting{"people-power", within(0, 1), "",
-                  "mini-batches of the greedy stages are drawn from people as their frames to this "
-                  "power; fine-tuning has its own"},
+                  "greedy stages: a person is drawn with probability proportional to frames^power; "
+                  "1: all frames alike, 0: all people alike"},
           self.people_power);
     visit_group("gaussian", self.gaussian, visit);
     visit_group("binary", self.binary, visit);

@@ -17,10 +17,14 @@ struct Cdbn {
   std::size_t total_order() const;
   /// Mean-field up-pass through every layer: hidden probabilities of all frames that have a
   /// history.
+  /// @param visible [all frames x visible units of the lowest layer]
+  /// @return [all frames x code_dimension]; the first total_order() frames of each clip have no
+  ///         code and are zero (Sequences::valid_from)
+  /// @throws ShapeError for a stack without layers, and where the columns are not the visible units
   Sequences up_pass(const Sequences& visible) const;
 };
 
-/// The same through one layer.
+/// The same through one layer. @return [all frames x hidden]  @throws ShapeError
 Sequences up_pass(const Crbm& layer, const Sequences& visible);
 
 }  // namespace mcdbn

@@ -14,7 +14,7 @@ struct CrbmShape {
   std::size_t hidden = 0;
   std::size_t order = 0;  ///< frames of history; 0 makes it an RBM
   VisibleKind kind = VisibleKind::gaussian;
-  /// Frames of it that A and B see, the latest ones, at most `order`; unset: all of them.
+  /// How many of the latest history frames A and B use; at most `order`; unset: `order`.
   std::optional<std::size_t> own_order_A = {}, own_order_B = {};
 
   std::size_t order_A() const { return own_order_A.value_or(order); }
@@ -65,6 +65,7 @@ class Crbm : public CrbmMatrices {
   /// W, A, B, a, b. @throws ShapeError if A or B should see more frames than `order`
   static std::vector<ParameterShape> parameter_shapes(const CrbmShape& shape);
 
+  /// @throws ShapeError if a matrix does not have the shape that CrbmParameters gives for it
   Crbm(Device& device, const CrbmParameters& start);
   /// Of these parameters as they are; they may stand among those of a larger machine.
   /// @param visible_mean_row [1 x visible]  @param visible_deviation_row [1 x visible]; none: ones
@@ -76,17 +77,22 @@ class Crbm : public CrbmMatrices {
   const Parameters& parameters() const { return parameters_; }
   Device& device() const { return W.device(); }
 
-  /// The history of each row: `order` frames that end before it. @param rows one frame each
+  /// The history of each row in place: the `order` frames before it as one row, oldest first, each
+  /// with its padding.
+  /// @param rows [rows x visible], one frame each
+  /// @return [rows x order · padded(visible)]
+  /// @throws ShapeError if a row has fewer frames before it than the order; of indexed rows the
+  ///         caller answers for that. So do all that follow, which read histories
   Rows history(const Rows& rows) const;
   /// What A and B see of it: order_A and order_B frames.
   Rows history_for_A(const Rows& rows) const;
   Rows history_for_B(const Rows& rows) const;
 
-  /// b̂ = b + H·B (eq 17). @param out [rows x hidden]
+  /// b̂ = b + H·B (eq 17). @param out [rows x hidden]  @throws ShapeError
   void dynamic_hidden_bias(const Rows& rows, const Rows& out) const;
-  /// â = a + H·A (eq 16). @param out [rows x visible]
+  /// â = a + H·A (eq 16). @param out [rows x visible]  @throws ShapeError
   void dynamic_visible_bias(const Rows& rows, const Rows& out) const;
-  /// p(h = 1 | v, H), eq 11 with eq 17. @param out [rows x hidden]
+  /// p(h = 1 | v, H), eq 11 with eq 17. @param out [rows x hidden]  @throws ShapeError
   void hidden_probabilities(const Rows& rows, const Rows& out) const;
   /// Brings the transposed copy of W up to date after W changed.
   void refresh_transposed();
@@ -94,8 +100,7 @@ class Crbm : public CrbmMatrices {
   Matrix W_transposed;       ///< [hidden x visible]
   Matrix visible_mean;       ///< [1 x visible], see CrbmParameters
   Matrix visible_deviation;  ///< [1 x visible], see CrbmParameters
-  /// Whether visible_deviation is more than ones, so that who gives frames to the machine divides
-  /// them by it, and multiplies what it gives back.
+  /// If true, callers divide frames by visible_deviation before use and multiply results by it.
   bool has_deviation = false;
 
  private:

@@ -39,10 +39,11 @@ GenerationHealth generation_health(const std::vector<MatrixF>& sequences,
 double mean_speed(const MatrixF& sequence);
 
 /// The first lag from 2 frames on at which the mean squared change has a minimum that is below
-/// kComesBack of what it was at the largest on the way there: a walk's stride, which has to be seen
-/// twice. 0 if there is none up to half of the sequence, the lag after it being at most `longest`,
-/// as for what wanders or only shakes.
-std::size_t shortest_cycle(const MatrixF& sequence, std::size_t longest = 90);
+/// kComesBack of what it was at the largest on the way there: e.g. the stride of a walk; at least
+/// two cycles must be in the sequence. 0 if there is none up to half of the sequence, the lag after
+/// it being at most kLongestLag, as for what wanders or only shakes.
+std::size_t shortest_cycle(const MatrixF& sequence);
 inline constexpr double kComesBack = 0.7;
+inline constexpr std::size_t kLongestLag = 90;  ///< frames
 
 }  // namespace mcdbn

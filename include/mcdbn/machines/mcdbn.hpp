@@ -21,12 +21,12 @@ struct SamplingRule {
   /// k of the MRBM's own sampled chain, each sample's for itself: then samples differ in the 3D
   /// code that is inferred, too. 0: mean field, one code for all samples.
   std::size_t mrbm_gibbs_steps = 0;
-  /// The chain's units draw once a sample, not once a frame, and concretely: a sample is one person
-  /// throughout and does not shake.
+  /// In the MRBM's chain one random number per unit for the whole sample, not for each frame, and
+  /// concrete draws, σ(logit p + logit u): a sample is one person throughout and does not shake.
   bool steady = false;
   double scale = 1.0;  ///< what temperature 1 stands for (calibrated_sampling)
   /// A single answer is drawn too, at temperature 1, unless another is asked for.
-  bool always = false;
+  bool sampled = false;
 };
 
 /// The multimodal conditional deep belief network (section IV.A, Fig. 6): a CDBN for each modality
@@ -34,7 +34,8 @@ struct SamplingRule {
 struct Mcdbn {
   std::vector<Cdbn> cdbns;  ///< of each modality of the MRBM, in its order
   Mrbm mrbm;
-  /// The first modality's code of frame t + look_ahead belongs to the others' of frame t.
+  /// The MRBM pairs the first modality's code of frame t + look_ahead with the other modalities'
+  /// codes of frame t.
   std::size_t look_ahead = 0;
   std::size_t mean_field_steps = 10;
   SamplingRule sampling = {};

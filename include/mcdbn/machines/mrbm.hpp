@@ -56,6 +56,8 @@ class Mrbm : public MrbmMatrices {
   /// W_NAME and a_NAME of every modality, then b.
   static std::vector<ParameterShape> parameter_shapes(const MrbmShape& shape);
 
+  /// @throws ShapeError for a shape that check() refuses, or a matrix of another shape than
+  ///         MrbmParameters gives for it
   Mrbm(Device& device, const MrbmParameters& start);
   /// Of these parameters as they are, of parameter_shapes(); they may stand among those of a larger
   /// machine. @throws ShapeError
@@ -73,13 +75,15 @@ class Mrbm : public MrbmMatrices {
   const Parameters& transposed() const { return transposed_; }
   Device& device() const { return b.device(); }
 
-  /// Mean-field inference of the absent modalities (eq 32, 33), started from zeros, `steps` times.
-  /// With `doubled` the first pass counts the present modalities twice in place of the absent ones'
-  /// zeros (Sohn et al.). Sampled inference is MrbmChain's.
-  /// @param modalities [rows x visible] for each: those `present` are given, the others are the
-  /// result  @throws ShapeError
+  /// Mean-field inference of the absent modalities (eq 32, 33), started from zeros, `steps` times
+  /// (0: once). Sampled inference is MrbmChain's.
+  /// @param modalities for each [rows x visible(m)], of as many rows; those `present` are read, the
+  ///        others are the result and may not be indexed
+  /// @param present of each modality; one at least is not
+  /// @throws ShapeError for other counts, columns or rows, and where none is absent
   void infer(const std::vector<Rows>& modalities, const std::vector<bool>& present,
-             std::size_t steps, bool doubled = false) const;
+             std::size_t steps) const;
+  /// Brings the transposed copies of every W up to date after W changed.
   void refresh_transposed();
 
   std::vector<Matrix> W_transposed;  ///< [hidden x visible], in transposed()

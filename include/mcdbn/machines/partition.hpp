@@ -16,12 +16,14 @@ struct AisSettings {
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     visit(Setting{"temperatures", within(1, 1e6), "temperatures",
-                  "from the base distribution to the machine: more weigh chains more evenly"},
+                  "intermediate distributions, from the base distribution to the machine: with "
+                  "more the chains' weights differ less"},
           self.temperatures);
     visit(Setting{"chains", within(2, 1e6), "chains",
-                  "whose weights are averaged: the standard error falls with their root"},
+                  "chains whose weights are averaged: the standard error falls with the square "
+                  "root of their number"},
           self.chains);
-    visit(Setting{"seed", any_seed(), "", "of every random number"}, self.seed);
+    visit(Setting{"seed", any_seed(), "", "seed of all random numbers"}, self.seed);
   }
 };
 

@@ -20,6 +20,10 @@ struct RegenerationOptions {
 
   /// What draws are multiplied by.
   double drawn_share() const { return temperature * sampling.scale; }
+  /// Whether the decoder's top layer is drawn; else mean field.
+  bool samples_decoder() const { return drawn_share() > 0.0 && sampling.gibbs_steps > 0; }
+  /// Whether each sample has an MRBM chain of its own; else one mean field for all.
+  bool samples_mrbm() const { return drawn_share() > 0.0 && sampling.mrbm_gibbs_steps > 0; }
 };
 
 /// Algorithms 3 and 5 with their errata (docs/paper.md): up-pass of the present modalities' CDBNs,

@@ -6,8 +6,9 @@ namespace mcdbn {
 
 /// The canonical humanoid, onto which skeletons of every make are brought: a joint for each role,
 /// called by the role's name. At rest it stands in a T-pose: up is +y, it faces +z, its left is +x,
-/// palms down, thumbs forward. The root is the pelvis, the only joint with position channels; every
-/// joint turns by ZXY. It is 170 units tall, so that one is a centimetre.
+/// palms down, thumbs forward. The root is the pelvis, the only joint with position channels. It is
+/// 170 units tall, so that one is a centimetre. Every joint turns about three axes, in an order in
+/// which it turns least about the middle one (docs/joints.md).
 ///
 /// Heights and lengths are shares of stature of Drillis and Contini (1966), as in Winter,
 /// Biomechanics and Motor Control of Human Movement, fig. 4.1: hip 0.530, knee 0.285, ankle 0.039,
@@ -19,8 +20,12 @@ namespace mcdbn {
 /// heel, the toe joint at 0.73 of it, knuckles are half a hand from the wrist.
 const Skeleton& canonical_humanoid();
 
-/// Whether the skeleton has the humanoid's joints, of whatever lengths.
+/// Whether the skeleton has the humanoid's joints, of whatever lengths, with its orders of axes or
+/// with Z X Y, which all its joints had in older files and models.
 bool is_humanoid(const Skeleton& skeleton);
+
+/// The humanoid's motion with its orders of axes, angles continuous; any other comes back as it is.
+Motion with_humanoid_orders(const Motion& motion);
 
 /// Which of its joints plays which role: each plays one.
 const SkeletonRoles& humanoid_roles();

@@ -16,8 +16,8 @@ struct PlantedFoot {
   bool holds(double above_ground_m, double speed_m_s) const {
     return above_ground_m <= within_m && speed_m_s <= below_m_s;
   }
-  /// How surely, 0 to 1: normal curves of these deviations.
-  double surely(double above_ground_m, double speed_m_s) const {
+  /// From 0 to 1: normal curves of height and speed, whose deviations are those limits.
+  double confidence(double above_ground_m, double speed_m_s) const {
     const double high = above_ground_m / within_m, fast = speed_m_s / below_m_s;
     return std::exp(-0.5 * (high * high + fast * fast));
   }
@@ -32,7 +32,7 @@ inline constexpr PlantedFoot kPlantedInAnswer{.within_m = 0.05};
 /// A joint's step to a frame from the one before.
 struct JointStep {
   Eigen::RowVector3d moved;  ///< in the positions' unit
-  double height = 0;         ///< the higher of both frames', over 0
+  double height = 0;         ///< the larger height of the two frames, above y = 0
 };
 
 /// @param positions [frames x 3·joints], +y up  @param frame 1 at least

@@ -68,7 +68,8 @@ struct WorldPose {
 WorldPose forward_kinematics(const Skeleton& skeleton,
                              const Eigen::Ref<const RowVectorD>& channels);
 
-/// Forward kinematics of a clip. @return [frames x 3·joints], x y z of joint 0, then of joint 1 …
+/// Forward kinematics of a clip, in file units.
+/// @return [frames x 3·joints], x y z of joint 0, then of joint 1 …
 MatrixD joint_positions(const Motion& motion);
 
 /// Where the joint's channels put it in its parent's frame: its offset, or its position channels.
@@ -85,9 +86,9 @@ Eigen::Matrix3d local_rotation(const Joint& joint, const double* joint_channels)
 void set_local_rotation(const Joint& joint, const Eigen::Matrix3d& parent_from_joint,
                         const double* previous, double* joint_channels);
 
-/// The joint that carries the body through space: joint 0, or, where joint 0 never moves over the
-/// clips (Bandai's joint_Root), the first descendant on its chain of only children whose position
-/// channels vary.
+/// The joint that carries the body through space: of joint 0 and its chain of only children the
+/// last one whose position channels vary within any of the clips, else joint 0. So it is the hips
+/// also where a joint above them travels in some of the clips (Bandai's joint_Root).
 int moving_root(const std::vector<const Motion*>& clips);
 
 }  // namespace mcdbn

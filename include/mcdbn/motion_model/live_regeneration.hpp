@@ -44,8 +44,8 @@ class LiveRegeneration {
   LiveRegeneration& operator=(const LiveRegeneration&) = delete;
 
   /// What comes back for frames before a person is found: the model's mean pose above the origin,
-  /// its feet on the ground. It does not depend on the track's joints, which may not be known yet.
-  /// @return one frame, on the skeleton that the motion will begin with
+  /// its feet on the ground. The track's joints may not be known yet: it is for a detector's track.
+  /// @return one frame, on the skeleton that the fit to such a track begins with
   /// @throws ConfigError as the constructor does
   static Motion before_anybody(const Model& model, const ClipPlacement& placement,
                                std::optional<std::size_t> look_ahead = {});

@@ -46,9 +46,9 @@ class RunFolder {
   /// Where its clips are kept as they were read (cached_training_clips); gone with `unfinished`.
   std::filesystem::path clip_cache() const { return unfinished() / "clips.cache"; }
 
-  /// Takes back what begin() made, if nothing was learnt since: a training that was refused before
+  /// Discards what begin() made, if nothing was learnt since: a training that was refused before
   /// its first epoch needs no `replace` the next time. @return whether it did
-  bool take_back();
+  bool discard_if_untrained();
 
   /// The model is there: everything is put where it belongs. On a full disk the checkpoint before
   /// the last makes room; if that will not do the model goes to the folder for temporary files.
@@ -59,7 +59,7 @@ class RunFolder {
   class Lock;
 
   RunFolder(std::filesystem::path path, std::unique_ptr<Lock> lock);
-  void note_beginning(const std::filesystem::path& start);
+  void write_start_record(const std::filesystem::path& start);
   void put_in_place();
 
   std::filesystem::path path_;

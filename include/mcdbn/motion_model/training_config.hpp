@@ -19,15 +19,16 @@ struct PoseLossWeights {
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
     visit(Setting{"positions", within(0, 1e6), "",
-                  "weight of joints' squared distances from the truth, in units of 5 cm"},
+                  "weight, in the loss, of the joints' squared distances from the truth, in units "
+                  "of 5 cm"},
           self.positions);
     visit(Setting{"velocities", within(0, 1e6), "",
-                  "weight of squared differences of joints' steps from frame to frame, in units of "
-                  "1 cm"},
+                  "weight of the squared errors of the joints' steps from frame to frame, in units "
+                  "of 1 cm"},
           self.velocities);
     visit(Setting{"contacts", within(0, 1e6), "",
-                  "weight of the same through the world, the root's travel included, of feet that "
-                  "are planted in truth: against sliding"},
+                  "weight of the same for feet that are planted in truth, in the world, the root's "
+                  "travel included: against sliding"},
           self.contacts);
   }
 };
@@ -62,11 +63,11 @@ struct TrainingConfig : CorpusSettings, LearningSettings {
     LearningSettings::visit(self, visit);
     visit_group("fine-tuning", self.pose_loss, visit);
     visit(Setting{"fine-tuning.hold-out-among", within(0, 1e6), "people",
-                  "of at least so many one is held out, and fine-tuning stops when they fare "
-                  "worse; 0: never"},
+                  "with at least this many people one is held out, and fine-tuning stops when the "
+                  "loss on that person rises; 0: never"},
           self.hold_out_among);
     visit(Setting{"half-precision", on_or_off(), "",
-                  "the model's numbers are stored in 16 bits each, in half the room"},
+                  "store the model's numbers in 16 bits each: half the file size"},
           self.half_precision);
   }
 };

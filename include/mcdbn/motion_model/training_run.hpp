@@ -28,8 +28,8 @@ struct CheckpointSettings {
   static void visit(Self& self, const Visit& visit) {
     constexpr double kWeek = 7 * 24 * 60;
     visit(Setting{"checkpoint-minutes", within(0, kWeek), "minutes",
-                  "between checkpoints: as much work is lost at most when the machine goes down; "
-                  "an interruption writes one in any case"},
+                  "time between checkpoints: a crash loses no more work than that; an interruption "
+                  "always writes one"},
           self.minutes);
   }
 };
@@ -44,8 +44,7 @@ struct TrainingWatch {
 /// @param data of make_training_set(clips, config)
 /// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
 /// @param start the model that it starts from (training_start.hpp), whose modalities data has;
-/// none:
-///        random weights
+///        none: random weights
 /// @throws ConfigError, DivergenceError
 TrainedRun train_model(Device& device, const TrainingSet& data, const ClipStore& clips,
                        const TrainingConfig& config, const EpochObserver& observer = {},

@@ -30,14 +30,13 @@ TrainingSet make_augmented_views(const ClipStore& clips, const Modalities& modal
 /// Fine-tuning with the loss on poses (PoseLoss). Of at least config.hold_out_among people one is
 /// held out (person_to_hold_out) and decides when to stop.
 /// @param views augmented ones  @throws DivergenceError
-TrainedNetwork fine_tune(Device& device, const Mcdbn& start, const TrainingSet& views,
-                         const TrainingConfig& config, const EpochObserver& observer = {},
-                         Checkpoints* checkpoints = nullptr);
+TrainedNetwork fine_tune_on_views(Device& device, const Mcdbn& start, const TrainingSet& views,
+                                  const TrainingConfig& config, const EpochObserver& observer = {},
+                                  Checkpoints* checkpoints = nullptr);
 
 /// The greedy stages (Algorithm 1) on the clips as they are, or on augmented views of them and then
-/// fine-tuning, or that alone, as config.fine_tuning specifies.
+/// fine-tuning, or that alone, as config.fine_tuning specifies. The observer may throw to stop.
 /// @param data of those clips (make_training_set)
-/// The observer may throw to stop.
 /// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
 /// @param from parameters to start from instead of random ones
 /// @throws DivergenceError, InputError

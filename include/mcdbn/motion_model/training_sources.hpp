@@ -42,12 +42,12 @@ class ViewSource : public SequenceSource {
   /// Those to learn from.
   SynchronizedClips sequences() const override { return ClipSource(made().to_learn).sequences(); }
   /// Views of the person held out, if one is.
-  const std::optional<TrainingSet>& strangers() const { return made().strangers; }
+  const std::optional<TrainingSet>& held_out_views() const { return made().held_out; }
 
  private:
   struct Views {
     TrainingSet to_learn;
-    std::optional<TrainingSet> strangers;
+    std::optional<TrainingSet> held_out;
   };
   const Views& made() const;
 
@@ -61,9 +61,10 @@ class ViewSource : public SequenceSource {
 class ViewLoader;
 
 /// Views of pieces of clips (FreshViews) that give way to fresh ones while they are learnt from,
-/// one after config.fine_tuning.view_uses windows of it. Threads of its own make them ahead. Which
-/// views a mini-batch is drawn from depends on its number alone. So does its cost, whatever the
-/// corpus.
+/// one after config.fine_tuning.view_uses windows of it. People and actions come as their frames to
+/// the power config.fine_tuning.people_power; the greedy stages weigh the views for theirs. Threads
+/// of its own make them ahead. Which views a mini-batch is drawn from depends on its number alone.
+/// So does its cost, whatever the corpus.
 class FreshViewSource : public SequenceSource {
  public:
   /// One person is held out as config.hold_out_among specifies.
@@ -77,11 +78,11 @@ class FreshViewSource : public SequenceSource {
   /// Mini-batches from any one on after which all views are others.
   std::size_t lifetime() const;
   /// Views of the person held out, always the same, if one is.
-  const std::optional<TrainingSet>& strangers() const { return strangers_; }
+  const std::optional<TrainingSet>& held_out_views() const { return held_out_views_; }
 
  private:
   std::unique_ptr<ViewLoader> loader_;
-  std::optional<TrainingSet> strangers_;
+  std::optional<TrainingSet> held_out_views_;
 };
 
 /// Whether fine-tuning learns from a FreshViewSource: if the settings ask for it, or all views at

@@ -6,10 +6,12 @@
 
 namespace mcdbn {
 
-/// The `count` rows that follow a sequence's end: it is turned about its last row, point by point,
-/// so that what a look-ahead sees there moves on as it did. Binary units stay from 0 to 1.
+/// `count` rows to follow a sequence's end, for a look-ahead: the sequence mirrored about its last
+/// row in time and in value, so that motion goes on at the same speed; beyond its length it stands
+/// still. Binary units stay from 0 to 1.
 /// @param sequence [frames x units], one frame at least  @return [count x units]
-inline MatrixF carried_on(const MatrixF& sequence, Eigen::Index count, VisibleKind kind) {
+inline MatrixF mirrored_continuation(const MatrixF& sequence, Eigen::Index count,
+                                     VisibleKind kind) {
   MatrixF rows(count, sequence.cols());
   const Eigen::Index last = sequence.rows() - 1;
   for (Eigen::Index i = 0; i < count; ++i)
