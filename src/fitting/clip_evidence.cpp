@@ -110,9 +110,9 @@ ClipEvidence::ClipEvidence(const PoseFeatures& features, const Motion& answer,
   clip.planted = MatrixD::Zero(answer.frames(), std::ssize(feet_));
 }
 
-void ClipEvidence::set_doubts(const PosePrior& prior, const Modalities& modalities,
-                              bool body_unknown, std::optional<CameraDoubt> camera,
-                              const TrackFitSettings& settings) {
+void ClipEvidence::set_unknowns(const PosePrior& prior, const Modalities& modalities,
+                                bool body_unknown, std::optional<UnknownCamera> camera,
+                                const TrackFitSettings& settings) {
   clip.turn_deviation_rad = fitted_turn_deviations_rad(prior, modalities, settings);
   clip.root_m_s2 = fitted_root_acceleration_deviation_m_s2(prior, modalities, settings);
   clip.body_unknown = body_unknown;
@@ -153,7 +153,7 @@ ExpectedLean ClipEvidence::balanced(const Stance& stance, const TrackFitSettings
   const double speed = usual_speed_m_s() / settings.balance_speed_m_s,
                bent = stance.bent_legs / settings.balance_bent_legs;
   const double deviation_rad =
-      settings.balance_deg * kRadiansPerDegree * (1 + speed * speed) * (1 + bent * bent);
+      settings.balance_deviation_deg * kRadiansPerDegree * (1 + speed * speed) * (1 + bent * bent);
   return {pitch_rad(up) - pitch_rad(clip.up), roll_from_to_rad(clip.up, up), deviation_rad,
           deviation_rad};
 }

@@ -26,11 +26,11 @@ class ClipEvidence {
   ClipEvidence(const PoseFeatures& features, const Motion& answer, const MatrixD& travelled,
                const TrackRays& track, const Camera& camera);
 
-  PosteriorClip clip;  ///< doubts and planted feet still to be set
+  PosteriorClip clip;  ///< unknowns and planted feet still to be set
 
   /// How far the prior may be off, and what is not known besides, into `clip`.
-  void set_doubts(const PosePrior& prior, const Modalities& modalities, bool body_unknown,
-                  std::optional<CameraDoubt> camera, const TrackFitSettings& settings);
+  void set_unknowns(const PosePrior& prior, const Modalities& modalities, bool body_unknown,
+                    std::optional<UnknownCamera> camera, const TrackFitSettings& settings);
   /// Which feet stand in a motion of the same skeleton's joints, into `clip`: by how low and slow
   /// they are (kPlantedInAnswer), the ground being the lowest foot of the frame.
   void find_planted(const Motion& motion);

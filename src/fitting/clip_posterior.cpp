@@ -111,9 +111,9 @@ std::size_t most_seen(const PosteriorClip& clip, const std::vector<ClipWindow>& 
   return static_cast<std::size_t>(std::ranges::max_element(ranks) - ranks.begin());
 }
 
-PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
-                           const TrackFitSettings& settings, PosteriorPoint from,
-                           SharedUnknowns shared, double small_gain, const WindowSizes& sizes) {
+PosteriorPoint map_solution(const PosteriorClip& clip, const RayNoise& noise,
+                            const TrackFitSettings& settings, PosteriorPoint from,
+                            SharedUnknowns shared, double small_gain, const WindowSizes& sizes) {
   const std::vector<ClipWindow> windows = windows_of(clip.frames(), sizes);
   const auto solved = [&](const ClipWindow& window, bool shared_too) {
     WindowProblem problem(clip, noise, settings, from, window.first, window.frames);
@@ -141,13 +141,14 @@ PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
   return whole;
 }
 
-PosteriorPoint roughly_likely(const PosteriorClip& clip, const RayNoise& noise,
-                              const TrackFitSettings& settings, PosteriorPoint from) {
-  const auto every = std::max<Eigen::Index>(1, std::lround(settings.roughly_s / clip.frame_time_s));
+PosteriorPoint coarse_solution(const PosteriorClip& clip, const RayNoise& noise,
+                               const TrackFitSettings& settings, PosteriorPoint from) {
+  const auto every =
+      std::max<Eigen::Index>(1, std::lround(settings.first_solution_step_s / clip.frame_time_s));
   for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
     from.*rows = thinned(from.*rows, every);
-  PosteriorPoint point = most_likely(thinned(clip, every), noise, settings, std::move(from),
-                                     SharedUnknowns::to_be_found, kSmallGainOfRough, kFewFrames);
+  PosteriorPoint point = map_solution(thinned(clip, every), noise, settings, std::move(from),
+                                      SharedUnknowns::to_be_found, kSmallGainOfCoarse, kFewFrames);
   for (const auto rows : {&PosteriorPoint::turns, &PosteriorPoint::shift})
     point.*rows = between(point.*rows, every, clip.frames());
   return point;

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "fitting/camera_doubt.hpp"
 #include "fitting/clip_windows.hpp"
 #include "fitting/lever.hpp"
 #include "fitting/marginal_prior.hpp"
+#include "fitting/unknown_camera.hpp"
 #include "mcdbn/base/matrices.hpp"
 #include "mcdbn/fitting/track_fit.hpp"
 
@@ -36,11 +36,11 @@ struct PosteriorClip {
   MatrixD travelled;                         ///< [frames x 3] the prior's velocity, summed up
   std::vector<std::vector<SeenJoint>> seen;  ///< by frame and joint
   std::vector<std::size_t> feet;             ///< indices among the joints
-  MatrixD planted;               ///< [frames x feet] how surely each stands, 0…1, from
+  MatrixD planted;               ///< [frames x feet] confidence that each stands, 0…1, from
                                  ///< the frame before
   std::vector<int> grounds;      ///< by foot, which height it stands at: left and right the same
   Eigen::Vector3d up{0, -1, 0};  ///< against gravity, as the camera is assumed to stand
-  std::optional<CameraDoubt> camera;  ///< unset: known
+  std::optional<UnknownCamera> camera;  ///< unset: known
   MatrixD mean_lean;  ///< [frames x 3] how the camera leaned that the prior's mean was seen by;
                       ///< 0 x 0: as assumed
   std::optional<MarginalPrior> past;  ///< of frames before the first
@@ -93,23 +93,24 @@ enum class SharedUnknowns {
 /// @param windows of the clip, one at least  @return which of them
 std::size_t most_seen(const PosteriorClip& clip, const std::vector<ClipWindow>& windows);
 
-/// The likeliest motion given prior and track: nonlinear least squares over all frames at once, of
-/// the costs in terms/. Long clips are solved in windows that overlap.
+/// The likeliest motion given prior and track (maximum a posteriori): nonlinear least squares over
+/// all frames at once, of the costs in terms/. Long clips are solved in windows that overlap.
 /// @param from where to start
 /// @param small_gain a step that lowers the energy by less than this share is the last one
-PosteriorPoint most_likely(const PosteriorClip& clip, const RayNoise& noise,
-                           const TrackFitSettings& settings, PosteriorPoint from,
-                           SharedUnknowns shared = SharedUnknowns::to_be_found,
-                           double small_gain = kSmallGainOfAll,
-                           const WindowSizes& sizes = kAllFrames);
+PosteriorPoint map_solution(const PosteriorClip& clip, const RayNoise& noise,
+                            const TrackFitSettings& settings, PosteriorPoint from,
+                            SharedUnknowns shared = SharedUnknowns::to_be_found,
+                            double small_gain = kSmallGainOfAll,
+                            const WindowSizes& sizes = kAllFrames);
 
-/// The gain at which roughly_likely stops.
-inline constexpr double kSmallGainOfRough = 1e-2;
+/// The gain at which coarse_solution stops.
+inline constexpr double kSmallGainOfCoarse = 1e-2;
 
-/// About the same from a frame every TrackFitSettings::roughly_s, in a fraction of the time: how a
-/// motion differs from the prior's mean is slow, and runs straight between those frames.
-PosteriorPoint roughly_likely(const PosteriorClip& clip, const RayNoise& noise,
-                              const TrackFitSettings& settings, PosteriorPoint from);
+/// About the same from a frame every TrackFitSettings::first_solution_step_s, in a fraction of the
+/// time: how a motion differs from the prior's mean is slow, and runs straight between those
+/// frames.
+PosteriorPoint coarse_solution(const PosteriorClip& clip, const RayNoise& noise,
+                               const TrackFitSettings& settings, PosteriorPoint from);
 
 /// Where the joint is. @return camera axes
 Eigen::Vector3d place_of(const PosteriorClip& clip, const PosteriorPoint& point, Eigen::Index frame,

@@ -14,11 +14,10 @@ struct ClipWindow {
 
 /// How a clip is cut.
 struct WindowSizes {
-  /// Of its own, at most: memory and time of a window's equations grow with them, so that those of
-  /// a clip do.
+  /// Most frames of a window, without overlap. Memory and time of its equations grow with them.
   Eigen::Index frames;
-  /// Of its neighbours' on either side, over several times what an error lasts: frames further
-  /// away have no influence.
+  /// Frames of its neighbours on either side: several times as long as an error lasts. Frames
+  /// further away have no influence.
   Eigen::Index overlap;
 };
 inline constexpr WindowSizes kAllFrames{300, 30};

@@ -146,7 +146,7 @@ class LimbInTime {
   double value(Eigen::Index t, std::size_t set) const {
     double squares = 0;
     for (std::size_t i = 0; i < limb_.size(); ++i) squares += at(t, set).residual[i].squaredNorm();
-    return prior_.process().point / 2 * squares;
+    return prior_.process().value_weight / 2 * squares;
   }
 
   /// @param t the last of the three frames
@@ -156,9 +156,9 @@ class LimbInTime {
     for (std::size_t i = 0; i < limb_.size(); ++i) {
       const double open = first.open[i] + 4 * second.open[i] + third.open[i];
       squares += (first.residual[i] - 2 * second.residual[i] + third.residual[i]).squaredNorm() /
-                 (1 + kExcused * prior_.process().bend * open);
+                 (1 + kExcused * prior_.process().curvature_weight * open);
     }
-    return prior_.process().bend / 2 * squares;
+    return prior_.process().curvature_weight / 2 * squares;
   }
 
   const PosteriorClip& clip_;

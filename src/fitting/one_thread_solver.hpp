@@ -5,10 +5,10 @@
 namespace mcdbn {
 
 /// While it lives, what lies under Ceres' sparse solver works in the calling thread alone: CHOLMOD
-/// shares loops that are far too short for that out over OpenMP's threads, and OpenBLAS its
-/// products. Windows are solved two at once instead. OpenBLAS of one thread (Debian's
-/// libopenblas0-serial) gives wrong factors when two threads call it, so there one waits for the
-/// other. Neither library need be there: they are found at run time, behind CHOLMOD.
+/// and OpenBLAS would split loops that are too short over threads. Windows are solved two at once
+/// instead. OpenBLAS of one thread (Debian's libopenblas0-serial) gives wrong factors when two
+/// threads call it, so there one waits for the other. Neither library need be there: they are found
+/// at run time, behind CHOLMOD.
 class OneThreadSolver {
  public:
   OneThreadSolver();

@@ -128,7 +128,8 @@ std::vector<PosteriorPoint> posterior_draws(const PosteriorClip& clip, const Ray
   if (lengths > 0) {
     const WindowPosterior determining = posterior_of(windows[most_seen(clip, windows)]);
     for (std::size_t i = 0; i < count; ++i) {
-      bodies[i] = settings.spread * determining.draw_lengths(normals(seed, i, kBody, lengths));
+      bodies[i] =
+          settings.draw_width_factor * determining.draw_lengths(normals(seed, i, kBody, lengths));
       draws[i].log_lengths += bodies[i];
     }
   }
@@ -141,7 +142,7 @@ std::vector<PosteriorPoint> posterior_draws(const PosteriorClip& clip, const Ray
       check_interruption();
       const auto row = static_cast<std::uint32_t>(w + 1);
       // `bodies` are wider already.
-      const Eigen::VectorXd normal = settings.spread * normals(seed, i, row, moving);
+      const Eigen::VectorXd normal = settings.draw_width_factor * normals(seed, i, row, moving);
       const WindowDraw drawn{window.draw(normal), window.with_lengths(bodies[i])};
       add(draws[i], windows[w], last, likeliest, drawn, before[i]);
       before[i] = drawn.of_body;

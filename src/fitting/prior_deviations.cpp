@@ -31,8 +31,8 @@ Eigen::VectorXd variance_of(const PosePrior& prior, const Standardizer& scale, i
 MatrixD turn_deviations_rad(const PosePrior& prior, const Modalities& features,
                             const TrackFitSettings& settings) {
   const auto turns = static_cast<Eigen::Index>(features.pose_features.joints().size());
-  MatrixD result =
-      MatrixD::Constant(prior.mean.rows(), turns, settings.turn_deg * kRadiansPerDegree);
+  MatrixD result = MatrixD::Constant(prior.mean.rows(), turns,
+                                     settings.orientation_deviation_deg * kRadiansPerDegree);
   if (!prior.has_deviation()) return result;
   for (Eigen::Index turn = 0; turn < turns; ++turn)
     result.col(turn) =
@@ -47,7 +47,7 @@ MatrixD turn_deviations_rad(const PosePrior& prior, const Modalities& features,
 MatrixD fitted_turn_deviations_rad(const PosePrior& prior, const Modalities& features,
                                    const TrackFitSettings& settings) {
   return turn_deviations_rad(prior, features, settings)
-      .cwiseMax(settings.turn_deg * kRadiansPerDegree);
+      .cwiseMax(settings.orientation_deviation_deg * kRadiansPerDegree);
 }
 
 double root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities& features,
@@ -56,7 +56,7 @@ double root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities
   const double variance =
       variance_of(prior, features.pose_scale, features.pose_features.velocity_feature(), 3).mean() /
       3;
-  return std::max(kLeastAcceleration_m_s2, std::sqrt(variance) / settings.lasting_s);
+  return std::max(kLeastAcceleration_m_s2, std::sqrt(variance) / settings.prior_error_time_s);
 }
 
 double fitted_root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities& features,

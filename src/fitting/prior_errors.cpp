@@ -7,16 +7,17 @@ namespace mcdbn {
 PriorErrors::PriorErrors(const PosteriorClip& clip, const RayNoise& noise,
                          const TrackFitSettings& settings)
     : clip_(clip),
-      likeness_(noise.steady ? settings.exact_likeness : settings.likeness),
-      process_(noise.measured ? settings.measured_lasting_s : settings.lasting_s,
+      parent_correlation_(noise.steady ? settings.exact_parent_correlation
+                                       : settings.parent_correlation),
+      process_(noise.measured ? settings.measured_prior_error_time_s : settings.prior_error_time_s,
                clip.frame_time_s) {
-  if (noise.exact) process_.point *= settings.exact;
+  if (noise.exact) process_.value_weight *= settings.exact_prior_weight;
 }
 
 double PriorErrors::share_of_parent(Eigen::Index frame, int turn) const {
   const int parent = parent_of(turn);
   return parent < 0 ? 0
-                    : likeness_ * clip_.turn_deviation_rad(frame, turn) /
+                    : parent_correlation_ * clip_.turn_deviation_rad(frame, turn) /
                           clip_.turn_deviation_rad(frame, parent);
 }
 
@@ -40,7 +41,8 @@ Eigen::Vector3d PriorErrors::expected_turn(Eigen::Index frame, int turn,
 }
 
 double PriorErrors::own_deviation_rad(Eigen::Index frame, int turn) const {
-  const double own = parent_of(turn) < 0 ? 1 : std::sqrt(1 - likeness_ * likeness_);
+  const double own =
+      parent_of(turn) < 0 ? 1 : std::sqrt(1 - parent_correlation_ * parent_correlation_);
   return own * clip_.turn_deviation_rad(frame, turn);
 }
 

@@ -8,9 +8,9 @@
 namespace mcdbn {
 
 /// What the errors of the prior's mean are. Where rays are exact its values count for less
-/// (`TrackFitSettings::exact`), its bends as elsewhere. Where their noise is steady a turn is as
-/// wrong as its parent's less (`exact_likeness`); where it was measured they last longer
-/// (`measured_lasting_s`). Keeps the clip.
+/// (`TrackFitSettings::exact_prior_weight`), its bends as elsewhere. Where their noise is steady a
+/// turn's error depends less on its parent's (`exact_parent_correlation`); where it was measured
+/// errors last longer (`measured_prior_error_time_s`). Keeps the clip.
 class PriorErrors {
  public:
   PriorErrors(const PosteriorClip& clip, const RayNoise& noise, const TrackFitSettings& settings);
@@ -39,7 +39,7 @@ class PriorErrors {
   int parent_of(int turn) const { return clip_.parents[static_cast<std::size_t>(turn)]; }
 
   const PosteriorClip& clip_;
-  double likeness_;
+  double parent_correlation_;
   SlowProcess process_;
 };
 

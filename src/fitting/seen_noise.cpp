@@ -32,11 +32,11 @@ SeenNoise::SeenNoise(double track_noise_px, const Camera& camera, double depth_m
     return std::max(kLeastNoise_px, noise_px) / focal_px;
   };
   of_track_ = on_rays(track_noise_px);
-  usual_ = settings.detector * kHeight_m / std::max(depth_m, 1e-9);
+  usual_ = settings.detector_noise_heights * kHeight_m / std::max(depth_m, 1e-9);
   least_ = may_be_exact ? of_track_ : usual_;
-  rays_.white = on_rays(settings.caution * track_noise_px);
+  rays_.white = on_rays(settings.noise_factor * track_noise_px);
   rays_.steady = may_be_exact && rays_.white <= kExactOfTrack * usual_;
-  less_cautious_ = on_rays(settings.measured_caution * track_noise_px);
+  measured_white_ = on_rays(settings.measured_noise_factor * track_noise_px);
   set_lasting(share * usual_);
 }
 
@@ -52,7 +52,7 @@ bool SeenNoise::learn(double residual) {
 bool SeenNoise::measure() {
   if (!may_be_exact_ || rays_.steady || rays_.measured) return false;
   rays_.measured = true;
-  rays_.white = less_cautious_;
+  rays_.white = measured_white_;
   return true;
 }
 

@@ -26,7 +26,7 @@ class SeenNoise {
   bool learn(double residual);
   /// Once solutions no longer change the estimate: noise that shows in the track, and is no
   /// detector's, was measured, and less of it is taken as new in each frame
-  /// (`TrackFitSettings::measured_caution`).
+  /// (`TrackFitSettings::measured_noise_factor`).
   /// @return whether that makes another solution worth while
   bool measure();
   /// The lasting part as estimated so far, as a share of a usual detector's.
@@ -37,7 +37,7 @@ class SeenNoise {
 
   bool may_be_exact_;
   double of_track_, usual_, least_;  ///< on the rays: of the track, of detectors, of both parts
-  double less_cautious_;             ///< on the rays: of the track, once it was measured
+  double measured_white_;            ///< on the rays: of the track, once it was measured
   RayNoise rays_;
 };
 

@@ -122,10 +122,10 @@ PosteriorPoint likeliest_in_depth(const PosteriorClip& clip, const RayNoise& noi
                                   const TrackFitSettings& settings, PosteriorPoint point) {
   const SidesInDepth sides(clip, noise, settings);
   std::vector<ClipWindow> changed{{0, clip.frames()}};
-  for (std::size_t round = 0; round < settings.alternatives; ++round) {
+  for (std::size_t round = 0; round < settings.most_alternatives; ++round) {
     changed = sides.take_likelier(sides.tries(point, changed), point);
     if (changed.empty()) break;
-    point = most_likely(clip, noise, settings, std::move(point));
+    point = map_solution(clip, noise, settings, std::move(point));
   }
   return point;
 }
@@ -138,10 +138,10 @@ PosteriorPoint likeliest_of_exact(const PosteriorClip& clip, RayNoise& noise,
     RayNoise less = noise;
     less.white = std::max(least, noise.white / kLess);
     less.lasting = 0;
-    PosteriorPoint nearer = most_likely(clip, less, settings, point);
+    PosteriorPoint nearer = map_solution(clip, less, settings, point);
     if (!(nearer.energy < kNoise * point.energy)) break;
     nearer = likeliest_in_depth(clip, less, settings, std::move(nearer));
-    if (!(nearer.energy < settings.exact_cost * point.energy)) break;
+    if (!(nearer.energy < settings.exact_energy_ratio * point.energy)) break;
     noise = less;
     point = std::move(nearer);
   }

@@ -16,7 +16,8 @@ PosteriorPoint likeliest_in_depth(const PosteriorClip& clip, const RayNoise& noi
 
 /// The same for a track that seems to be exact, with rays of less noise, again and again: where
 /// there is none of that noise they cost next to no energy and distinguish sides better; where
-/// there is some a solution follows it, which costs more than `TrackFitSettings::exact_cost`.
+/// there is some a solution follows it, which costs more than
+/// `TrackFitSettings::exact_energy_ratio`.
 /// @param noise in: as estimated from the track; out: as it was lowered to
 /// @param least not lowered below, as the rays
 PosteriorPoint likeliest_of_exact(const PosteriorClip& clip, RayNoise& noise,

@@ -26,10 +26,10 @@ constexpr double kSmallGain = 1e-3;
 constexpr double kLearned_s = 0.2;
 /// So much of the past is solved again: the window of fit_to_track that finds body and camera is as
 /// long. With 8 s the answer is 0.6 mm further from that of the whole clip.
-constexpr double kLookedAt_s = 15;
+constexpr double kPastSolution_s = 15;
 /// How often it is; while the clip is short, after half as many frames again.
-constexpr double kLookEvery_s = 0.5;
-constexpr long long kLookAfter = 4;
+constexpr double kPastSolutionEvery_s = 0.5;
+constexpr long long kPastSolutionAfter = 4;
 /// The result is taken when the next solution of the past begins, so that frames need not wait for
 /// it. Up to so long a past they do wait: it takes no longer than a frame or two, and is worth two
 /// millimetres.
@@ -39,13 +39,13 @@ constexpr Eigen::Index kBeforeHeld = 8;
 
 /// The last rows are others; there may be more of them than before.
 template <typename Rows>
-void replace_behind(Rows& rows, Eigen::Index kept, const Rows& more) {
+void replace_tail(Rows& rows, Eigen::Index kept, const Rows& more) {
   rows.conservativeResize(kept + more.rows(), more.cols());
   rows.bottomRows(more.rows()) = more;
 }
 
-/// So many rows; those that are new are as the last.
-void go_on(MatrixD& rows, Eigen::Index count, Eigen::Index columns) {
+/// So many rows; those that are new are as the last, or 0 where there is none.
+void extend_with_last_row(MatrixD& rows, Eigen::Index count, Eigen::Index columns) {
   const Eigen::Index before = rows.rows();
   const Eigen::RowVectorXd last =
       before > 0 ? Eigen::RowVectorXd(rows.row(before - 1)) : Eigen::RowVectorXd::Zero(columns);
@@ -71,7 +71,7 @@ SlidingFit::SlidingFit(const Modalities& modalities, const KnownOfClip& known, c
       units_per_m_(file_units_per_metre(skeleton_)),
       assumed_(in_file_units(known.camera_of(like, modalities), skeleton_)),
       camera_(assumed_),
-      doubt_(doubt_of(known, modalities, like, settings)),
+      unknown_camera_(unknown_camera_of(known, modalities, like, settings)),
       names_(tracked_joints(modalities.track_features)) {}
 
 Motion SlidingFit::decoded(const MatrixD& features, const Skeleton& skeleton, const Camera& camera,
@@ -83,11 +83,11 @@ Motion SlidingFit::decoded(const MatrixD& features, const Skeleton& skeleton, co
 /// Held frames keep the prior that they settled with.
 void SlidingFit::take_prior(const PosePrior& prior) {
   const Eigen::Index open = prior.mean.rows();
-  replace_behind(rows_.prior.mean, held_, prior.mean);
-  if (prior.has_deviation()) replace_behind(rows_.prior.deviation, held_, prior.deviation);
-  replace_behind(rows_.mean, held_,
-                 modalities_.pose_in_camera(prior.mean, camera_.camera_from_world));
-  replace_behind(rows_.mean_lean, held_, MatrixD(camera_lean_.transpose().replicate(open, 1)));
+  replace_tail(rows_.prior.mean, held_, prior.mean);
+  if (prior.has_deviation()) replace_tail(rows_.prior.deviation, held_, prior.deviation);
+  replace_tail(rows_.mean, held_,
+               modalities_.pose_in_camera(prior.mean, camera_.camera_from_world));
+  replace_tail(rows_.mean_lean, held_, MatrixD(camera_lean_.transpose().replicate(open, 1)));
 }
 
 /// Where the track shows the root of the body as the prior turns it.
@@ -118,26 +118,26 @@ void SlidingFit::place_root() {
       if (before == 0) throw;
     }
   }
-  go_on(rows_.root_m, rows_.frames(), 3);
+  extend_with_last_row(rows_.root_m, rows_.frames(), 3);
   for (Eigen::Index t = std::max<Eigen::Index>(1, before); t < rows_.frames() && seen_before; ++t)
     rows_.root_m.row(t) = rows_.root_m.row(t - 1) + velocity_m_s.row(t) / modalities_.fps;
 }
 
 /// As the prior's mean has them, where their roots were found.
-Motion SlidingFit::unturned(const ClipRows& rows) const {
+Motion SlidingFit::prior_motion(const ClipRows& rows) const {
   const MatrixD root = ((rows.root_m * units_per_m_).rowwise() - assumed_.translation.transpose()) *
                        assumed_.camera_from_world;
   return decoded(rows.mean, skeleton_, assumed_, root);
 }
 
-/// @param answer of the rows, unturned
+/// @param answer the rows' prior_motion
 ClipEvidence SlidingFit::evidence_of(const ClipRows& rows, const Motion& answer) const {
   const PoseFeatures& features = modalities_.pose_features;
   const MatrixD travelled_m =
       travelled_way(features.root_features(rows.mean).rightCols(3), modalities_.fps);
   ClipEvidence evidence(features, answer, units_per_m_ * travelled_m * assumed_.camera_from_world,
                         track_rays(names_, rows.track, assumed_), assumed_);
-  evidence.set_doubts(rows.prior, modalities_, body_unknown_, doubt_, settings_);
+  evidence.set_unknowns(rows.prior, modalities_, body_unknown_, unknown_camera_, settings_);
   evidence.clip.mean_lean = rows.mean_lean;
   return evidence;
 }
@@ -152,10 +152,10 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
   rows_.track = track;
   place_root();
   problem_.reset();
-  evidence_ = std::make_unique<ClipEvidence>(evidence_of(rows_, unturned(rows_)));
+  evidence_ = std::make_unique<ClipEvidence>(evidence_of(rows_, prior_motion(rows_)));
   PosteriorClip& clip = evidence_->clip;
   if (point_.log_lengths.size() == 0) point_ = PosteriorPoint::zero(clip);
-  go_on(point_.turns, clip.frames(), point_.turns.cols());
+  extend_with_last_row(point_.turns, clip.frames(), point_.turns.cols());
   point_.shift = MatrixD::Zero(clip.frames(), 3);
   take(point_);
   evidence_->find_planted(motion_);
@@ -180,9 +180,9 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
   shown_ = project_motion(motion_, camera_);
 }
 
-/// The rows as a whole clip's fit begins with them.
-ClipEvidence SlidingFit::fresh(const ClipRows& rows) const {
-  const Motion answer = unturned(rows);
+/// The evidence of these rows, as a whole clip's fit begins with it.
+ClipEvidence SlidingFit::evidence_of_past(const ClipRows& rows) const {
+  const Motion answer = prior_motion(rows);
   ClipEvidence evidence = evidence_of(rows, answer);
   evidence.find_planted(answer);
   expect_balance(evidence);
@@ -198,31 +198,31 @@ PosteriorPoint SlidingFit::start_of(const ClipEvidence& evidence) const {
 
 /// Finds body, ground and camera in the last seconds, by a whole clip's rough solution, while other
 /// frames come.
-void SlidingFit::look_back() {
+void SlidingFit::start_past_solution() {
   ClipRows rows = past_rows_;
   rows.append(rows_);
-  auto evidence = std::make_shared<const ClipEvidence>(fresh(rows));
+  auto evidence = std::make_shared<const ClipEvidence>(evidence_of_past(rows));
   PosteriorPoint point = start_of(*evidence);
   point.ground_m = evidence->ground(point);
   RayNoise rays = rays_;
   rays.steady = false;
-  look_ = std::async(std::launch::async, [=, settings = settings_] {
+  past_solution_ = std::async(std::launch::async, [=, settings = settings_] {
     // Who takes the result decides where to stop.
     const InterruptionDeferred until_the_end;
-    return roughly_likely(evidence->clip, rays, settings, point);
+    return coarse_solution(evidence->clip, rays, settings, point);
   });
 }
 
-/// Waits for look_back's result. The held frames' prior is computed anew from those before them,
-/// with that body.
-void SlidingFit::take_look() {
-  if (!look_.valid()) return;
-  point_.take_shared(look_.get());
+/// Waits for start_past_solution's result. The held frames' prior is computed anew from those
+/// before them, with that body.
+void SlidingFit::finish_past_solution() {
+  if (!past_solution_.valid()) return;
+  point_.take_shared(past_solution_.get());
   const Eigen::Index before = std::min(kBeforeHeld, past_rows_.frames());
   ClipRows rows = past_rows_;
   rows.drop_first(rows.frames() - before);
   rows.append(rows_);
-  const ClipEvidence evidence = fresh(rows);
+  const ClipEvidence evidence = evidence_of_past(rows);
   WindowProblem window(evidence.clip, rays_, settings_, start_of(evidence), 0, rows.frames(),
                        Unknowns::tracked);
   window.solve(false, kSmallGain);
@@ -235,9 +235,9 @@ void SlidingFit::begin_fade() {
   fading_frames_ = fading_.rows();
 }
 
-/// Frames that were open when a look was taken, or other noise was learned, turn from what they
-/// were then to what they are now, the sooner they settle the less, so that what settles does not
-/// jump.
+/// Frames that were open when a past solution was taken, or other noise was learned, turn from what
+/// they were then to what they are now, the sooner they settle the less, so that what settles does
+/// not jump.
 void SlidingFit::fade() {
   const Eigen::Index rest = fading_.rows();
   for (Eigen::Index i = 0; i < rest; ++i) {
@@ -252,11 +252,12 @@ void SlidingFit::fade() {
 /// few or none behind them, come nearer to the rays than a whole clip's do.
 /// @return whether the next solution is given other noise
 bool SlidingFit::learn(SeenNoise& noise) {
-  if (!past_ || learned_ + 1 >= settings_.solutions) return false;
+  if (!past_ || learned_ + 1 >= settings_.most_solutions) return false;
   if (const double residual = evidence_->usual_residual(point_, held_); residual > 0)
     residuals_.push_back(residual);
   if (std::ssize(residuals_) < std::lround(kLearned_s * modalities_.fps)) return false;
-  learned_ = noise.learn(upper_median(std::move(residuals_))) ? learned_ + 1 : settings_.solutions;
+  learned_ =
+      noise.learn(upper_median(std::move(residuals_))) ? learned_ + 1 : settings_.most_solutions;
   lasting_noise_ = noise.share();
   residuals_.clear();
   return true;
@@ -266,14 +267,14 @@ void SlidingFit::take(const PosteriorPoint& point) {
   auto [body, scale] = evidence_->body(point);
   body_ = std::move(body);
   if (!camera_known_)
-    look_as(point,
-            scale * units_per_m_ * (evidence_->clip.root.row(0) + point.shift.row(0)).transpose());
+    set_camera(point, scale * units_per_m_ *
+                          (evidence_->clip.root.row(0) + point.shift.row(0)).transpose());
   motion_ = decoded(evidence_->turned(rows_.mean, point), body_, camera_,
                     evidence_->root(point, scale, camera_));
 }
 
 /// The world turns about the place where the first frame showed the root, which stays.
-void SlidingFit::look_as(const PosteriorPoint& point, const Eigen::Vector3d& first_root) {
+void SlidingFit::set_camera(const PosteriorPoint& point, const Eigen::Vector3d& first_root) {
   camera_lean_ = point.lean;
   camera_ = fitted_camera(point, assumed_);
   if (settled_ == 0) {
@@ -307,14 +308,16 @@ Eigen::Index SlidingFit::settle(Eigen::Index frames) {
        {&point_.turns, &motion_.channels, &shown_.x_px, &shown_.y_px, &shown_.confidence})
     drop_rows(*rows, dropped);
   const bool ended = motion_.frames() == held_;
-  if (ended || settled_ < next_look_) return dropped;
-  const Eigen::Index kept = std::lround(kLookedAt_s * modalities_.fps);
+  if (ended || settled_ < next_past_solution_) return dropped;
+  const Eigen::Index kept = std::lround(kPastSolution_s * modalities_.fps);
   past_rows_.drop_first(std::max<Eigen::Index>(0, past_rows_.frames() - kept));
-  take_look();
-  look_back();
-  if (static_cast<double>(past_rows_.frames()) <= kWaitedFor_s * modalities_.fps) take_look();
-  const long long most = std::lround(kLookEvery_s * modalities_.fps);
-  next_look_ = settled_ + std::clamp(settled_ / 2, kLookAfter, std::max(kLookAfter, most));
+  finish_past_solution();
+  start_past_solution();
+  if (static_cast<double>(past_rows_.frames()) <= kWaitedFor_s * modalities_.fps)
+    finish_past_solution();
+  const long long most = std::lround(kPastSolutionEvery_s * modalities_.fps);
+  next_past_solution_ =
+      settled_ + std::clamp(settled_ / 2, kPastSolutionAfter, std::max(kPastSolutionAfter, most));
   return dropped;
 }
 

@@ -56,20 +56,20 @@ class SlidingFit {
   Motion decoded(const MatrixD& features, const Skeleton& skeleton, const Camera& camera,
                  const MatrixD& root) const;
   void take_prior(const PosePrior& prior);
-  Motion unturned(const ClipRows& rows) const;
+  Motion prior_motion(const ClipRows& rows) const;
   void expect_balance(ClipEvidence& evidence) const;
   ClipEvidence evidence_of(const ClipRows& rows, const Motion& answer) const;
   void place_root();
   MatrixD placed_root(const MatrixD& velocity_m_s) const;
   bool learn(SeenNoise& noise);
   void take(const PosteriorPoint& point);
-  ClipEvidence fresh(const ClipRows& rows) const;
+  ClipEvidence evidence_of_past(const ClipRows& rows) const;
   PosteriorPoint start_of(const ClipEvidence& evidence) const;
-  void look_back();
-  void take_look();
+  void start_past_solution();
+  void finish_past_solution();
   void begin_fade();
   void fade();
-  void look_as(const PosteriorPoint& point, const Eigen::Vector3d& first_root);
+  void set_camera(const PosteriorPoint& point, const Eigen::Vector3d& first_root);
   Stance stance() const;
 
   const Modalities& modalities_;
@@ -79,7 +79,7 @@ class SlidingFit {
   double units_per_m_;
   Camera assumed_, camera_;               ///< at first, and as it was found
   Eigen::Vector3d camera_lean_{0, 0, 0};  ///< of camera_; PosteriorPoint::lean may have gone on
-  std::optional<CameraDoubt> doubt_;
+  std::optional<UnknownCamera> unknown_camera_;
   std::vector<std::string> names_;
   double lasting_noise_ = 1;       ///< as a share of a usual detector's
   std::size_t learned_ = 0;        ///< how often it was estimated
@@ -93,9 +93,9 @@ class SlidingFit {
   std::unique_ptr<WindowProblem> problem_;
   // Of frames before:
   std::optional<MarginalPrior> past_;
-  ClipRows past_rows_;                ///< of the last seconds
-  long long next_look_ = 0;           ///< when so many frames have settled
-  std::future<PosteriorPoint> look_;  ///< only what all frames share is taken from it
+  ClipRows past_rows_;                         ///< of the last seconds
+  long long next_past_solution_ = 0;           ///< when so many frames have settled
+  std::future<PosteriorPoint> past_solution_;  ///< only what all frames share is taken from it
   MatrixD fading_;  ///< channels of frames that were open when it began, as they were
   Eigen::Index fading_frames_ = 0;  ///< as many as they were
   // Of all frames that have settled:

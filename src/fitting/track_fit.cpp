@@ -32,7 +32,7 @@ constexpr double kVelocityError_m_s2 = 1.0;
 
 /// Those that the posterior's width is computed with.
 TrackFitSettings settings_of_draws(TrackFitSettings settings) {
-  settings.noise_lasts_s = settings.draws_noise_lasts_s;
+  settings.detector_noise_time_s = settings.draws_noise_time_s;
   return settings;
 }
 
@@ -92,27 +92,27 @@ class ClipFit {
                   const Track2d& track, const TrackFitSettings& settings) {
     const bool may_be_exact = known.may_be_exact();
     evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, assumed_);
-    evidence_->set_doubts(prior, modalities_, !known.skeleton,
-                          doubt_of(known, modalities_, track, settings), settings);
+    evidence_->set_unknowns(prior, modalities_, !known.skeleton,
+                            unknown_camera_of(known, modalities_, track, settings), settings);
     const PosteriorClip& clip = evidence_->clip;
     SeenNoise noise(track_noise_px, assumed_, evidence_->usual_depth_m(), may_be_exact, settings);
     point_ = PosteriorPoint::zero(clip);
-    look_again(settings);
+    update_evidence(settings);
     rays_ = noise.rays();
     rays_.steady = false;  // a rough solution is as far off as a detector's
-    take(roughly_likely(clip, rays_, settings, std::move(point_)));
+    take(coarse_solution(clip, rays_, settings, std::move(point_)));
     // With a detector's track more frames a second carry no more information on what all frames
     // share, and a rough solution's window spans more seconds.
     const auto shared = may_be_exact ? SharedUnknowns::to_be_found : SharedUnknowns::as_found;
     const double small_gain = known.detected ? kSmallGainOfDetector : kSmallGainOfAll;
-    for (std::size_t solution = 0; solution < settings.solutions; ++solution) {
-      look_again(settings);
+    for (std::size_t solution = 0; solution < settings.most_solutions; ++solution) {
+      update_evidence(settings);
       rays_ = noise.rays();
-      take(most_likely(clip, rays_, settings, std::move(point_), shared, small_gain));
+      take(map_solution(clip, rays_, settings, std::move(point_), shared, small_gain));
       if (!noise.learn(evidence_->usual_residual(point_, clip.frames())) && !noise.measure()) break;
     }
     if (!rays_.exact) return;
-    const double least = settings.exact_noise_px / std::sqrt(now_.camera.fx_px * now_.camera.fy_px);
+    const double least = settings.least_noise_px / std::sqrt(now_.camera.fx_px * now_.camera.fy_px);
     take(likeliest_of_exact(clip, rays_, settings, least, std::move(point_)));
   }
 
@@ -131,13 +131,13 @@ class ClipFit {
   }
 
   /// Where no track is met. Before put_at_origin.
-  void keep_open(const PosePrior& prior, bool body_given) {
+  void prepare_prior_draws(const PosePrior& prior, bool body_given) {
     evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, assumed_);
     evidence_->clip.turn_deviation_rad =
         turn_deviations_rad(prior, modalities_, settings_of_draws({}));
     evidence_->clip.body_unknown = !body_given;
   }
-  /// After keep_open. The root of each draw is where the clip's is.
+  /// After prepare_prior_draws. The root of each draw is where the clip's is.
   std::vector<Motion> drawn_by_prior(const PosteriorDraws& draws) const {
     std::vector<Motion> motions;
     for (const PosteriorPoint& point :
@@ -186,7 +186,7 @@ class ClipFit {
 
  private:
   /// Finds standing feet, their ground and how the camera stands from the motion.
-  void look_again(const TrackFitSettings& settings) {
+  void update_evidence(const TrackFitSettings& settings) {
     PosteriorClip& clip = evidence_->clip;
     evidence_->find_planted(motion());
     point_.ground_m = evidence_->ground(point_);
@@ -250,7 +250,7 @@ FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, cons
   if (settings)
     clip.meet_track(prior, track_noise_px(track), known, track, *settings);
   else if (draws_any)
-    clip.keep_open(prior, known.body_given());
+    clip.prepare_prior_draws(prior, known.body_given());
   FittedClip result;
   result.shown = clip.shown(track);
   if (!known.camera) clip.put_at_origin();

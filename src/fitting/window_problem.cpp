@@ -28,7 +28,7 @@ constexpr double kNearest = 0.1;
 constexpr double kNearest_m = 0.01;
 /// What hardly stands is not worth an equation.
 constexpr double kHardlyStands = 0.05;
-/// From so many deviations on a foot that slips counts by its distance, not the square.
+/// Huber threshold of a slipping foot, in deviations.
 constexpr double kSlips = 2;
 
 ceres::LossFunction* scaled(ceres::LossFunction* loss, double weight) {
@@ -167,7 +167,8 @@ std::vector<double*> WindowProblem::length_blocks(std::size_t joint) {
 
 /// Noise that lasts is the same in frame after frame, so that its energy is a rate over time.
 void WindowProblem::add_rays() {
-  const double same_frames = std::max(1.0, 2 * settings_.noise_lasts_s / clip_.frame_time_s);
+  const double same_frames =
+      std::max(1.0, 2 * settings_.detector_noise_time_s / clip_.frame_time_s);
   const double lasting = noise_.lasting * noise_.lasting, white = noise_.white * noise_.white;
   const double weight = (white + lasting) / (white + same_frames * lasting);
   for (Eigen::Index t = 0; t < x_.turns.rows(); ++t) {
@@ -181,7 +182,7 @@ void WindowProblem::add_rays() {
       add(t,
           new Reprojection(place(t, joint), nearest_m, at.ray,
                            std::sqrt((white + lasting) / at.confidence), clip_.camera.has_value()),
-          scaled(new ceres::CauchyLoss(settings_.outlier), weight), blocks);
+          scaled(new ceres::CauchyLoss(settings_.outlier_deviations), weight), blocks);
     }
   }
 }
@@ -207,7 +208,7 @@ void WindowProblem::add_turns() {
       }
       add(t,
           new LinearTerm(shares, prior_.expected_turn_at_rest(first_ + t, turn),
-                         deviation / std::sqrt(process.point)),
+                         deviation / std::sqrt(process.value_weight)),
           nullptr, blocks);
       if (t == 0 || t + 1 == x_.turns.rows()) continue;
       blocks = {turn_at(t - 1, turn), turn_at(t, turn), turn_at(t + 1, turn)};
@@ -218,7 +219,7 @@ void WindowProblem::add_turns() {
       }
       add(t - 1,
           new LinearTerm(shares, prior_.expected_bend_at_rest(first_ + t, turn),
-                         deviation / std::sqrt(process.bend)),
+                         deviation / std::sqrt(process.curvature_weight)),
           nullptr, blocks);
     }
   }
@@ -241,12 +242,13 @@ void WindowProblem::add_feet() {
     const std::size_t foot = clip_.feet[f];
     if (!is_used(foot)) continue;
     for (Eigen::Index t = 1; t < x_.turns.rows(); ++t) {
-      const double surely = clip_.planted(first_ + t, static_cast<Eigen::Index>(f));
-      if (surely < kHardlyStands) continue;
+      const double confidence = clip_.planted(first_ + t, static_cast<Eigen::Index>(f));
+      if (confidence < kHardlyStands) continue;
       std::vector<double*> blocks = moving_blocks(t - 1, foot);
       append(blocks, moving_blocks(t, foot));
       append(blocks, length_blocks(foot));
-      const double deviation_m = settings_.footing_m_s * clip_.frame_time_s / std::sqrt(surely);
+      const double deviation_m =
+          settings_.planted_foot_speed_m_s * clip_.frame_time_s / std::sqrt(confidence);
       add(t - 1, new StandingFoot(place(t - 1, foot), place(t, foot), deviation_m),
           new ceres::HuberLoss(kSlips), blocks);
     }
@@ -255,27 +257,28 @@ void WindowProblem::add_feet() {
 
 /// Heights of standing feet within about a step count as one observation.
 void WindowProblem::add_ground() {
-  const double weight = std::min(1.0, clip_.frame_time_s / settings_.step_s);
+  const double weight = std::min(1.0, clip_.frame_time_s / settings_.ground_observation_s);
   for (std::size_t f = 0; f < clip_.feet.size(); ++f) {
     const std::size_t foot = clip_.feet[f];
     if (!is_used(foot)) continue;
     double* const height = &x_.ground_m[clip_.grounds[f]];
     for (Eigen::Index t = 1; t < x_.turns.rows(); ++t) {
-      const double surely = clip_.planted(first_ + t, static_cast<Eigen::Index>(f));
-      if (surely < kHardlyStands) continue;
+      const double confidence = clip_.planted(first_ + t, static_cast<Eigen::Index>(f));
+      if (confidence < kHardlyStands) continue;
       std::vector<double*> blocks = moving_blocks(t, foot);
       append(blocks, length_blocks(foot));
       blocks.push_back(height);
       if (clip_.camera) blocks.push_back(x_.lean.data());
       add(t - 1,
-          new GroundContact(place(t, foot), clip_.up, settings_.ground_m, clip_.camera.has_value()),
-          scaled(new ceres::CauchyLoss(kCauchy), surely * weight), blocks);
+          new GroundContact(place(t, foot), clip_.up, settings_.ground_deviation_m,
+                            clip_.camera.has_value()),
+          scaled(new ceres::CauchyLoss(kCauchy), confidence * weight), blocks);
     }
   }
 }
 
 void WindowProblem::add_camera() {
-  const CameraDoubt& camera = *clip_.camera;
+  const UnknownCamera& camera = *clip_.camera;
   const Eigen::Vector3d right = level_right(clip_.up);
   problem_.AddParameterBlock(x_.lean.data(), 3);
   Eigen::Matrix3Xd free(3, 0);
@@ -366,17 +369,17 @@ bool WindowProblem::hides_legs() const {
 /// One camera does not distinguish a small person from one far away: a person's size is that of the
 /// legs, and where they are hidden, of what is seen.
 double WindowProblem::proportion_deviation(std::size_t length, bool legs_hidden) const {
-  if (legs_hidden) return settings_.part_proportions;
-  if (length >= clip_.length_kinds.size()) return settings_.proportions;
+  if (legs_hidden) return settings_.partial_body_log_deviation;
+  if (length >= clip_.length_kinds.size()) return settings_.bone_log_deviation;
   switch (clip_.length_kinds[length]) {
     case BoneKind::leg:
-      return settings_.leg_proportions;
+      return settings_.leg_log_deviation;
     case BoneKind::arm:
-      return settings_.arm_proportions;
+      return settings_.arm_log_deviation;
     case BoneKind::other:
       break;
   }
-  return settings_.proportions;
+  return settings_.bone_log_deviation;
 }
 
 void WindowProblem::add_lengths(Unknowns unknowns) {

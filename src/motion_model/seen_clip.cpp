@@ -25,8 +25,8 @@ constexpr double kOfRounds_s = 0.2;
 /// @param every_s between the frames that are solved for
 ClipPlacement roughly(ClipPlacement placement, double every_s = kOfRounds_s) {
   if (placement.fit) {
-    placement.fit->solutions = 0;
-    placement.fit->roughly_s = every_s;
+    placement.fit->most_solutions = 0;
+    placement.fit->first_solution_step_s = every_s;
   }
   return placement;
 }
@@ -122,7 +122,7 @@ SeenClip see_clip(const Modalities& modalities, const Track2d& track,
   Track2d weighted = weighted_by_confidence(track);
   if (placement.fit) {
     // A spell lasts for some frames.
-    const ClipPlacement finer = roughly(placement, placement.fit->roughly_s);
+    const ClipPlacement finer = roughly(placement, placement.fit->first_solution_step_s);
     seen.swaps = swapped_spells(weighted, [&](const Track2d& some) {
       look(map.joints_of(some));
       return fit_to_track(answer(seen.features), modalities, map.evidence(map.joints_of(some)),

@@ -150,7 +150,7 @@ TEST_CASE("a test run's samples are the network's, with the options that were gi
       TestRunOptions options = plain_options(scene);
       if (fit) {
         options.fit = TrackFitSettings{};
-        options.fit->turn_deg = 10;
+        options.fit->orientation_deviation_deg = 10;
       }
       options.damage.noise_px = 2;
       options.regeneration.seed = 70;

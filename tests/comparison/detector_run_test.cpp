@@ -77,7 +77,7 @@ TEST_CASE("a detector's test run: the clip by another body, from another camera,
       const Eigen::Vector3d own = scene.modalities.pose_features.skeleton().joints[3].offset;
       const Eigen::Vector3d offset = answered.joints[3].offset;
       CHECK(offset.cross(own).norm() < 1e-9 * own.squaredNorm());
-      const double often = std::exp(2 * TrackFitSettings{}.proportions);  // two deviations
+      const double often = std::exp(2 * TrackFitSettings{}.bone_log_deviation);  // two deviations
       CHECK(offset.norm() > own.norm() / often);
       CHECK(offset.norm() < own.norm() * often);
       CHECK(offset != own);

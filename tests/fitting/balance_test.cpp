@@ -35,7 +35,7 @@ ClipEvidence evidence_of(double speed_m_s, int frames) {
 
 double deviation_deg(double speed_m_s, int frames, double bent_legs = 0) {
   TrackFitSettings settings;
-  settings.balance_deg = 4;
+  settings.balance_deviation_deg = 4;
   settings.balance_speed_m_s = 2;
   settings.balance_bent_legs = 0.1;
   const ClipEvidence evidence = evidence_of(speed_m_s, frames);

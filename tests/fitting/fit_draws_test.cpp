@@ -83,7 +83,7 @@ TEST_CASE("without a fit draws are what the prior leaves open, bones turned with
   };
   const MatrixD hip = bone("Hips", "LeftUpLeg"), thigh = bone("LeftUpLeg", "LeftLeg");
   const double one = hip.squaredNorm(), two = one + thigh.squaredNorm(),
-               together = 2 * TrackFitSettings{}.likeness * hip.cwiseProduct(thigh).sum();
+               together = 2 * TrackFitSettings{}.parent_correlation * hip.cwiseProduct(thigh).sum();
   const auto wanted = [&](double squares) {
     return std::sqrt(2 * squares / static_cast<double>(hip.size()));
   };
@@ -118,7 +118,7 @@ TEST_CASE("fit draws: they spread as the settings specify, and less where the tr
   const Scene scene = make_scene(0, 30);
   const FittedClip narrow = drawn(scene, scene.mean);
   TrackFitSettings settings;
-  settings.spread = 2.6;
+  settings.draw_width_factor = 2.6;
   // Turns are rotations, so that twice the turn is not quite twice the distance.
   CHECK(width_of(scene, drawn(scene, scene.mean, settings), "LeftHand") /
             width_of(scene, narrow, "LeftHand") ==
@@ -134,7 +134,7 @@ TEST_CASE("fit draws: the prior's deviation counts as given, whatever the likeli
   for (const char* joint : {"LeftForeArm", "LeftHand"})
     scene.track.confidence.col(scene.track.find(joint)).setZero();
   TrackFitSettings settings;
-  settings.exact = 1;
+  settings.exact_prior_weight = 1;
   const double once = width_of(scene, drawn(scene, prior_of(scene, 0.2), settings), "LeftHand");
   const double twice = width_of(scene, drawn(scene, prior_of(scene, 0.4), settings), "LeftHand");
   CHECK(twice > 1.7 * once);
@@ -143,10 +143,10 @@ TEST_CASE("fit draws: the prior's deviation counts as given, whatever the likeli
 TEST_CASE("fit draws: a detector's error lasts throughout, whatever the likeliest takes it for") {
   const Scene scene = make_scene(0, 30);
   TrackFitSettings settings;
-  settings.solutions = 1;
-  settings.noise_lasts_s = 0;
+  settings.most_solutions = 1;
+  settings.detector_noise_time_s = 0;
   const double brief = width_of(scene, drawn(scene, scene.mean, settings), "LeftHand");
-  settings.noise_lasts_s = 3;
+  settings.detector_noise_time_s = 3;
   CHECK(width_of(scene, drawn(scene, scene.mean, settings), "LeftHand") / brief ==
         doctest::Approx(1).epsilon(0.02));
 }
@@ -164,7 +164,8 @@ TEST_CASE("fit draws: an unknown body has one length of each bone a draw, and it
   CHECK(length(clip.draws[0], knee) != length(clip.draws[1], knee));
   CHECK(length(clip.draws[0], knee) == doctest::Approx(length(clip.draws[0], other)));
   const TrackFitSettings settings;
-  const double five_deviations = std::exp(5 * settings.spread * settings.proportions);
+  const double five_deviations =
+      std::exp(5 * settings.draw_width_factor * settings.bone_log_deviation);
   for (const Motion& draw : clip.draws)
     for (int joint = 1; joint < draw.skeleton.joint_count(); ++joint)
       CHECK(length(draw, joint) <= five_deviations * length(clip.motion, joint));

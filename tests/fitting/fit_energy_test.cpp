@@ -22,7 +22,7 @@ TEST_CASE(
   const Track2d track = project_motion(truth, *known.camera);
   const MatrixF mean = modalities.encode_pose(truth, known.camera->camera_from_world);
   TrackFitSettings rough;
-  rough.solutions = 0;
+  rough.most_solutions = 0;
   for (const auto& settings : {rough, TrackFitSettings{}}) {
     const auto energy = [&](const Track2d& seen) {
       return fit_to_track(mean, modalities, seen, known, settings).energy;

@@ -166,7 +166,8 @@ TEST_CASE("known of a clip: an unknown body gets the lengths that the track show
   // To within what a detector is usually off: of an unknown body no track is taken for exact.
   const double height_px =
       (scene.track.y_px.rowwise().maxCoeff() - scene.track.y_px.rowwise().minCoeff()).mean();
-  CHECK(largest(seen.x_px - scene.track.x_px) < TrackFitSettings{}.detector * height_px);
+  CHECK(largest(seen.x_px - scene.track.x_px) <
+        TrackFitSettings{}.detector_noise_heights * height_px);
   // Who is known stays who they are.
   const auto known = scene.placed({scene.camera, own}, TrackFitSettings{}).skeleton;
   CHECK(length(known, "LeftHand") == length(own, "LeftHand"));

@@ -109,7 +109,7 @@ TEST_CASE("long clip: the other windows take what the middle one finds, and begi
             (nearer / std::exp(middle.log_focal) - 1) * clip.root.leftCols<2>();
       }
       const PosteriorPoint whole =
-          most_likely(clip, kNoise, {}, zero, SharedUnknowns::to_be_found, kGain);
+          map_solution(clip, kNoise, {}, zero, SharedUnknowns::to_be_found, kGain);
       DOCTEST_CHECK(whole.log_lengths == middle.log_lengths);
       DOCTEST_CHECK(whole.log_focal == middle.log_focal);
       DOCTEST_CHECK(whole.lean == middle.lean);
@@ -148,7 +148,7 @@ TEST_CASE("long clip: the window in the middle determines nothing if it shows no
                        first = solved(clip, zero, windows[0], true);
   DOCTEST_REQUIRE(first.log_lengths.cwiseAbs().minCoeff() > 1e-6);  // nothing seen would leave 0
   const PosteriorPoint whole =
-      most_likely(clip, kNoise, {}, zero, SharedUnknowns::to_be_found, kGain);
+      map_solution(clip, kNoise, {}, zero, SharedUnknowns::to_be_found, kGain);
   DOCTEST_CHECK(whole.log_lengths == first.log_lengths);
   DOCTEST_CHECK(whole.log_focal == first.log_focal);
 }
@@ -158,7 +158,8 @@ TEST_CASE("long clip: what was found already stays, and every window is solved w
   PosteriorPoint from = PosteriorPoint::zero(clip);
   from.log_lengths << 0.1, -0.05;
   from.log_focal = 0.3;
-  const PosteriorPoint whole = most_likely(clip, kNoise, {}, from, SharedUnknowns::as_found, kGain);
+  const PosteriorPoint whole =
+      map_solution(clip, kNoise, {}, from, SharedUnknowns::as_found, kGain);
   DOCTEST_CHECK(whole.log_lengths == from.log_lengths);
   DOCTEST_CHECK(whole.log_focal == from.log_focal);
   for (const ClipWindow& window : windows_of(kFrames))
@@ -168,7 +169,8 @@ TEST_CASE("long clip: what was found already stays, and every window is solved w
 TEST_CASE("long clip: a single window always finds what all frames share") {
   const PosteriorClip clip = large_body(true, true, 300);
   const PosteriorPoint zero = PosteriorPoint::zero(clip);
-  const PosteriorPoint found = most_likely(clip, kNoise, {}, zero, SharedUnknowns::as_found, kGain);
+  const PosteriorPoint found =
+      map_solution(clip, kNoise, {}, zero, SharedUnknowns::as_found, kGain);
   DOCTEST_CHECK(found.log_focal == doctest::Approx(0.2).epsilon(0.1));
   DOCTEST_CHECK(found.log_lengths.cwiseAbs().maxCoeff() > 0.05);
 }

@@ -71,7 +71,7 @@ class Information {
         matrix_(MatrixD::Identity(size_, size_) / 100) {
     for (Eigen::Index t = 0; t < clip.frames(); ++t) add_ray(t, noise);
     for (Eigen::Index t = 0; t < clip.frames(); ++t) add_prior(t);
-    const double proportion = settings.proportions;
+    const double proportion = settings.bone_log_deviation;
     for (Eigen::Index i = clip.frames() * kOfFrame; i < size_ && clip.body_unknown; ++i)
       matrix_(i, i) += 1 / (proportion * proportion);
   }
@@ -86,7 +86,7 @@ class Information {
   void add_ray(Eigen::Index t, const RayNoise& noise) {
     constexpr double kStep = 1e-5;
     const double white = noise.white * noise.white, lasting = noise.lasting * noise.lasting;
-    const double again = std::max(1.0, 2 * settings_.noise_lasts_s / clip_.frame_time_s);
+    const double again = std::max(1.0, 2 * settings_.detector_noise_time_s / clip_.frame_time_s);
     const double confidence = clip_.seen[0][0].confidence;
     for (const int axis : {0, 1}) {
       const auto ray = [&](Eigen::Index unknown, double step) {
@@ -104,12 +104,12 @@ class Information {
   }
 
   void add_prior(Eigen::Index t) {
-    const SlowProcess process(settings_.lasting_s, clip_.frame_time_s);
+    const SlowProcess process(settings_.prior_error_time_s, clip_.frame_time_s);
     const bool inside = t > 0 && t + 1 < clip_.frames();
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       for (Eigen::Index turn = 0; turn < kTurns; ++turn) {
         const double own = clip_.turn_deviation_rad(0, turn), parents = kTurn_rad;
-        const double kappa = turn == 0 ? 0 : settings_.likeness;
+        const double kappa = turn == 0 ? 0 : settings_.parent_correlation;
         const double deviation = std::sqrt(1 - kappa * kappa) * own;
         Eigen::VectorXd point = Eigen::VectorXd::Zero(size_), bend = point;
         const auto put = [&](Eigen::VectorXd& into, Eigen::Index frame, double factor) {
@@ -117,10 +117,10 @@ class Information {
           if (turn > 0) into[frame * kOfFrame + axis] -= factor * kappa * own / parents;
         };
         put(point, t, 1);
-        add(point, deviation / std::sqrt(process.point));
+        add(point, deviation / std::sqrt(process.value_weight));
         if (!inside) continue;
         for (const Eigen::Index step : {-1, 0, 1}) put(bend, t + step, step == 0 ? -2 : 1);
-        add(bend, deviation / std::sqrt(process.bend));
+        add(bend, deviation / std::sqrt(process.curvature_weight));
       }
       if (!inside) continue;
       Eigen::VectorXd bend = Eigen::VectorXd::Zero(size_);
@@ -160,7 +160,7 @@ TEST_CASE("posterior draws: their covariance is the posterior's, of every pair o
     const PosteriorClip clip = clip_of(5, body_unknown);
     for (const double spread : {1.0, 1.5}) {
       TrackFitSettings settings;
-      settings.spread = spread;
+      settings.draw_width_factor = spread;
       const MatrixD found = covariance_of(drawn(clip, settings, kDraws));
       Eigen::Index unknowns = found.rows();
       if (!body_unknown) unknowns -= 3;  // of lengths that are known nothing is drawn

@@ -46,7 +46,7 @@ TEST_CASE(
     "posterior: a rough solution comes back to the truth, too, but not to every frame's track") {
   const Scene scene = make_scene();
   TrackFitSettings rough;
-  rough.solutions = 0;
+  rough.most_solutions = 0;
   const Motion fitted = scene.fit(scene.track, rough);
   CHECK(error_cm(scene, fitted) < 0.4 * error_cm(scene, scene.unfitted()));
   CHECK(miss_px(scene, fitted, scene.track) > miss_px(scene, scene.fit(), scene.track));
@@ -55,8 +55,8 @@ TEST_CASE(
 TEST_CASE("posterior: limbs are tried on other sides in depth, where the track is exact") {
   Scene scene = make_scene(4);
   TrackFitSettings with, without;
-  with.exact_noise_px = without.exact_noise_px = 10;  // energies of the same noise
-  without.alternatives = 0;
+  with.least_noise_px = without.least_noise_px = 10;  // energies of the same noise
+  without.most_alternatives = 0;
   const auto fitted = [&](const TrackFitSettings& settings) {
     return fit_to_track(scene.mean, scene.modalities, scene.track, scene.known, settings);
   };
@@ -69,7 +69,7 @@ TEST_CASE("posterior: limbs are tried on other sides in depth, where the track i
 TEST_CASE("posterior: an exact track is met as exactly, a detector's is not") {
   Scene scene = make_scene(4);
   TrackFitSettings as_noisy;
-  as_noisy.exact_noise_px = 10;
+  as_noisy.least_noise_px = 10;
   CHECK(error_cm(scene, scene.fit()) < 0.1 * error_cm(scene, scene.fit(scene.track, as_noisy)));
   CHECK(miss_px(scene, scene.fit(), scene.track) < 0.01);
   scene.known.detected = true;
@@ -81,7 +81,7 @@ TEST_CASE(
   Scene scene = make_scene(1, 40);
   add_pixel_noise(scene.track, 5, 1);
   TrackFitSettings others;
-  others.measured_lasting_s = 0.05;
+  others.measured_prior_error_time_s = 0.05;
   CHECK(scene.fit().channels != scene.fit(scene.track, others).channels);
   scene.known.detected = true;
   CHECK(scene.fit().channels == scene.fit(scene.track, others).channels);
@@ -116,7 +116,7 @@ TEST_CASE("posterior: a joint that the tracker takes for another is let go of") 
   REQUIRE(hand >= 0);
   swapped.x_px.col(hand).segment(20, 6).array() += 300;
   TrackFitSettings as_noisy;
-  as_noisy.exact_noise_px = 10;
+  as_noisy.least_noise_px = 10;
   const double clean_cm = error_cm(scene, scene.fit(scene.track, as_noisy));
   CHECK(error_cm(scene, scene.fit(swapped, as_noisy)) < 1.3 * clean_cm);
   CHECK(error_cm(scene, scene.fit(swapped)) < 1.3 * clean_cm);
@@ -156,7 +156,7 @@ TEST_CASE("posterior: the root's way bends as the prior's velocity does") {
   const auto roughness = [&](double root_m_s2) {
     TrackFitSettings settings;
     settings.root_m_s2 = root_m_s2;
-    settings.footing_m_s = 1e3;
+    settings.planted_foot_speed_m_s = 1e3;
     const MatrixD off =
         path_of(scene.fit(scene.track, settings), "Hips") - path_of(scene.truth, "Hips");
     return (off.bottomRows(28) - 2 * off.middleRows(1, 28) + off.topRows(28)).norm();
@@ -168,9 +168,9 @@ TEST_CASE("posterior: feet that stand stay where they stand") {
   Scene scene = make_scene(1);
   Track2d noisy = scene.track;
   add_pixel_noise(noisy, 5, 2);
-  const auto slide = [&](double footing_m_s) {
+  const auto slide = [&](double speed_m_s) {
     TrackFitSettings settings;
-    settings.footing_m_s = footing_m_s;
+    settings.planted_foot_speed_m_s = speed_m_s;
     const MatrixD places = joint_positions(scene.fit(noisy, settings));
     const MatrixD truth = joint_positions(scene.truth);
     double sum = 0;
@@ -226,8 +226,9 @@ TEST_CASE("posterior: a long clip is solved in windows, and nothing jumps betwee
   scene.mean = mean;
   scene.track = track;
   TrackFitSettings settings;
-  settings.exact = 1;  // else not all walks find the same of two places that are about as likely
-  settings.alternatives = 0;
+  // Else not all walks find the same of two places that are about as likely.
+  settings.exact_prior_weight = 1;
+  settings.most_alternatives = 0;
   const Motion fitted = scene.fit(scene.track, settings);
   CHECK(error_cm(scene, fitted) < 0.4 * error_cm(scene, scene.unfitted()));
   const MatrixD off = joint_positions(fitted) - joint_positions(scene.truth);

@@ -32,7 +32,7 @@ double deviation_deg(double given_deg, const TrackFitSettings& settings) {
 
 TEST_CASE("prior deviations: as given, a tenth of a degree at least") {
   TrackFitSettings settings;
-  settings.turn_deg = 10;
+  settings.orientation_deviation_deg = 10;
   CHECK(deviation_deg(0, settings) == doctest::Approx(0.1));
   CHECK(deviation_deg(5, settings) == doctest::Approx(5).epsilon(1e-5));
   CHECK(deviation_deg(40, settings) == doctest::Approx(40).epsilon(1e-5));
@@ -42,7 +42,7 @@ TEST_CASE("prior deviations: a prior without any has the typical one") {
   const Modalities modalities = modalities_of({two_second_walk()}, {});
   const MatrixF mean = MatrixF::Zero(2, std::ssize(modalities.pose_scale.kept_columns()));
   TrackFitSettings settings;
-  settings.turn_deg = 18;
+  settings.orientation_deviation_deg = 18;
   const MatrixD turns = turn_deviations_rad(PosePrior(mean), modalities, settings);
   CHECK((turns.array() - std::numbers::pi / 10).abs().maxCoeff() < 1e-12);
 }
@@ -52,7 +52,7 @@ TEST_CASE("prior deviations: the fit takes none for smaller than the typical one
   const auto columns = std::ssize(modalities.pose_scale.kept_columns());
   PosePrior prior(MatrixF::Zero(3, columns), MatrixF::Zero(3, columns));
   TrackFitSettings settings;
-  settings.turn_deg = 18;
+  settings.orientation_deviation_deg = 18;
   settings.root_m_s2 = 4;
   CHECK(fitted_turn_deviations_rad(prior, modalities, settings).minCoeff() ==
         doctest::Approx(std::numbers::pi / 10));

@@ -20,20 +20,20 @@ PosteriorClip three_turns() {
 
 }  // namespace
 
-TEST_CASE("prior errors: a turn's are its parent's by the likeness, in their own deviations") {
+TEST_CASE("prior errors: a turn's correlate with its parent's, in their own deviations") {
   const PosteriorClip clip = three_turns();
   TrackFitSettings settings;
-  settings.likeness = 0.6;
-  settings.exact_likeness = 0.28;
+  settings.parent_correlation = 0.6;
+  settings.exact_parent_correlation = 0.28;
   for (const bool steady : {false, true}) {
     CAPTURE(steady);
     RayNoise noise{0.01, 0, !steady};
     noise.steady = steady;
     const PriorErrors prior(clip, noise, settings);
-    const double likeness = steady ? 0.28 : 0.6, own = steady ? 0.96 : 0.8;
+    const double correlation = steady ? 0.28 : 0.6, own = steady ? 0.96 : 0.8;
     CHECK_UNARY(prior.share_of_parent(1, 0) == 0);
-    CHECK(prior.share_of_parent(1, 1) == doctest::Approx(2 * likeness));
-    CHECK(prior.share_of_parent(1, 2) == doctest::Approx(1.5 * likeness));
+    CHECK(prior.share_of_parent(1, 1) == doctest::Approx(2 * correlation));
+    CHECK(prior.share_of_parent(1, 2) == doctest::Approx(1.5 * correlation));
     CHECK(prior.own_deviation_rad(1, 0) == doctest::Approx(0.1));
     CHECK(prior.own_deviation_rad(1, 1) == doctest::Approx(0.2 * own));
     CHECK(prior.own_deviation_rad(0, 2) == doctest::Approx(0.1 * own));
@@ -47,19 +47,20 @@ TEST_CASE("prior errors: a turn's are its parent's by the likeness, in their own
 TEST_CASE("prior errors: where rays are exact values count for less, bends as elsewhere") {
   const PosteriorClip clip = three_turns();
   TrackFitSettings settings;
-  settings.exact = 0.25;
+  settings.exact_prior_weight = 0.25;
   const PriorErrors noisy(clip, {0.01, 0}, settings), exact(clip, {0.01, 0, true}, settings);
-  CHECK(exact.process().point == doctest::Approx(0.25 * noisy.process().point));
-  CHECK_UNARY(exact.process().bend == noisy.process().bend);
+  CHECK(exact.process().value_weight == doctest::Approx(0.25 * noisy.process().value_weight));
+  CHECK_UNARY(exact.process().curvature_weight == noisy.process().curvature_weight);
 }
 
 TEST_CASE("prior errors: where a solution measured the noise they last longer") {
   TrackFitSettings settings;
-  settings.lasting_s = 0.1;
-  settings.measured_lasting_s = 0.2;
+  settings.prior_error_time_s = 0.1;
+  settings.measured_prior_error_time_s = 0.2;
   const PosteriorClip clip = three_turns();
   const PriorErrors usual(clip, {0.01, 0}, settings),
       measured(clip, {0.01, 0, false, true}, settings);
-  CHECK(measured.process().point == doctest::Approx(usual.process().point / 2));
-  CHECK(measured.process().bend == doctest::Approx(usual.process().bend * 8));
+  CHECK(measured.process().value_weight == doctest::Approx(usual.process().value_weight / 2));
+  CHECK(measured.process().curvature_weight ==
+        doctest::Approx(usual.process().curvature_weight * 8));
 }

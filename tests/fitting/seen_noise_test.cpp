@@ -9,7 +9,7 @@ using namespace mcdbn;
 namespace {
 
 constexpr double kFocal_px = 1000, kDepth_m = 4;
-const double kUsual = TrackFitSettings{}.detector * 1.7 / kDepth_m;
+const double kUsual = TrackFitSettings{}.detector_noise_heights * 1.7 / kDepth_m;
 
 SeenNoise noise_of(double track_px, bool own_skeleton) {
   Camera camera;
@@ -22,7 +22,8 @@ SeenNoise noise_of(double track_px, bool own_skeleton) {
 TEST_CASE("seen noise: a track is a detector's until a solution shows otherwise") {
   const SeenNoise noise = noise_of(1, true);
   CHECK(noise.rays().lasting == doctest::Approx(kUsual));
-  CHECK(noise.rays().white == doctest::Approx(2 * 1 / kFocal_px));  // TrackFitSettings::caution
+  CHECK(noise.rays().white ==
+        doctest::Approx(2 * 1 / kFocal_px));  // TrackFitSettings::noise_factor
   CHECK(noise_of(0, true).rays().white == doctest::Approx(0.25 / kFocal_px));
 }
 
@@ -54,7 +55,7 @@ TEST_CASE("seen noise: an exact projection is found out, of an own skeleton alon
 
 TEST_CASE("seen noise: a track with noise of its own is not exact, near as a solution may come") {
   const auto exact_at = [](double share) {
-    SeenNoise noise = noise_of(share * kUsual * kFocal_px / TrackFitSettings{}.caution, true);
+    SeenNoise noise = noise_of(share * kUsual * kFocal_px / TrackFitSettings{}.noise_factor, true);
     CHECK(noise.rays().steady == (share < 0.25));
     noise.learn(1e-3 * kUsual);
     CHECK(std::hypot(noise.rays().white, noise.rays().lasting) == doctest::Approx(share * kUsual));
@@ -74,7 +75,7 @@ TEST_CASE("seen noise: that of a known body which no detector saw was measured, 
   const double lasting = own.rays().lasting;
   CHECK(own.measure());
   CHECK(own.rays().measured);
-  CHECK(own.rays().white == doctest::Approx(1.7 * 3 / kFocal_px));  // measured_caution
+  CHECK(own.rays().white == doctest::Approx(1.7 * 3 / kFocal_px));  // measured_noise_factor
   CHECK(own.rays().lasting == lasting);
   CHECK_FALSE(own.measure());
   own.learn(0.01 * kUsual);

@@ -70,7 +70,7 @@ PosteriorPoint solved_from(const PosteriorClip& clip, const std::vector<int>& tu
     for (const int turn : other_turns)
       point.turns(t, 3 * turn) = (other_way(t) ? -1 : 1) * swing_rad(t);
   }
-  return most_likely(clip, kExact, {}, point);
+  return map_solution(clip, kExact, {}, point);
 }
 
 double worst_rad(const PosteriorPoint& point, int turn) {
@@ -103,7 +103,7 @@ TEST_CASE("sides in depth: a swing to the wrong side is found and put right") {
       CHECK_UNARY(worst_rad(right, 2) < 0.1);
       CHECK_UNARY(right.energy < wrong.energy);
       TrackFitSettings none;
-      none.alternatives = 0;
+      none.most_alternatives = 0;
       CHECK_UNARY(likeliest_in_depth(clip, kExact, none, wrong).turns == wrong.turns);
     }
 }
@@ -229,10 +229,10 @@ TEST_CASE("window problem: where rays are exact the prior's mean counts for less
   PosteriorClip clip = swinging_arm();
   const auto followed = [&](bool is_exact, double counts) {
     TrackFitSettings settings;
-    settings.exact = counts;
+    settings.exact_prior_weight = counts;
     const RayNoise noise{0.05, 0, is_exact};  // so far off that the prior counts
     const PosteriorPoint start = solved_from(clip, {1, 2}, {}, in_one_swing);
-    return most_likely(clip, noise, settings, start).turns.norm();
+    return map_solution(clip, noise, settings, start).turns.norm();
   };
   CHECK_UNARY(followed(true, 0.3) > 1.05 * followed(false, 0.3));
   CHECK_UNARY(followed(true, 0.6) > 1.01 * followed(false, 0.3));

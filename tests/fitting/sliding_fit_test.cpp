@@ -91,7 +91,7 @@ double apart_mm(const Motion& one, const Motion& other, const Modalities& modali
 TEST_CASE("a sliding fit: eight frames later it is where the whole clip's fit is") {
   const Scene scene = make_scene();
   TrackFitSettings settings;
-  settings.solutions = 1;  // how exact the track is, either would learn at its own pace
+  settings.most_solutions = 1;  // how exact the track is, either would learn at its own pace
   const Slid got = slid(scene, scene.truth.skeleton, 8, settings);
   const Motion motion{scene.truth.skeleton, scene.truth.frame_time_s, got.channels},
       whole = scene.fit(scene.track, settings);
@@ -119,7 +119,7 @@ TEST_CASE("a sliding fit: a prior that is surer than usual counts as one without
 TEST_CASE("a sliding fit: that a track is exact shows within a second") {
   const Scene scene = make_scene();
   TrackFitSettings unlearned;
-  unlearned.solutions = 1;
+  unlearned.most_solutions = 1;
   const auto off_mm = [&](const TrackFitSettings& settings) {
     const Slid got = slid(scene, scene.truth.skeleton, 8, settings);
     Motion second{scene.truth.skeleton, scene.truth.frame_time_s, got.channels.bottomRows(30)};
@@ -176,9 +176,9 @@ TEST_CASE("a sliding fit: looking back finds the body that the whole clip's fit 
   CHECK(apart < 5);
 }
 
-TEST_CASE("a sliding fit: after a look back it is no matter how solutions went before") {
+TEST_CASE("a sliding fit: after a past solution it is no matter how solutions went before") {
   TrackFitSettings settings;
-  settings.solutions = 1;  // how noisy the track is they would learn at their own pace
+  settings.most_solutions = 1;  // how noisy the track is they would learn at their own pace
   constexpr Eigen::Index kLag = 8, kSettled = 19;
   for (const unsigned seed : {1U, 2U, 3U}) {
     const Scene scene = make_scene(seed);
@@ -272,7 +272,7 @@ Moved moved_by(const Scene& scene, const KnownOfClip& known, const TrackFitSetti
 TEST_CASE("a sliding fit: what settles does not jump where the past is looked at again") {
   const Scene scene = make_scene();
   TrackFitSettings settings;
-  settings.solutions = 1;  // no noise is learned
+  settings.most_solutions = 1;  // no noise is learned
   // It is looked back when 5 frames have settled, and half as many more each time.
   const Moved moved =
       moved_by(scene, {std::nullopt, scene.truth.skeleton}, settings, {13, 17, 21, 27, 36, 50});

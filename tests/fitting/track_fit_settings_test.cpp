@@ -11,80 +11,80 @@ using namespace mcdbn::test;
 TEST_CASE("track fit settings: every one has its default, its own name and its own member") {
   using S = TrackFitSettings;
   const std::vector<Expected<S>> table = {
-      {"turn", [](S& s) { return at(s.turn_deg); }, "9"},
-      {"likeness", [](S& s) { return at(s.likeness); }, "0.6"},
-      {"lasting", [](S& s) { return at(s.lasting_s); }, "0.1"},
-      {"measured-lasting", [](S& s) { return at(s.measured_lasting_s); }, "0.2"},
-      {"measured-caution", [](S& s) { return at(s.measured_caution); }, "1.7"},
-      {"exact", [](S& s) { return at(s.exact); }, "0.3"},
-      {"exact-likeness", [](S& s) { return at(s.exact_likeness); }, "0.3"},
-      {"exact-noise", [](S& s) { return at(s.exact_noise_px); }, "0.02"},
-      {"exact-cost", [](S& s) { return at(s.exact_cost); }, "1.5"},
+      {"orientation-deviation", [](S& s) { return at(s.orientation_deviation_deg); }, "9"},
+      {"parent-correlation", [](S& s) { return at(s.parent_correlation); }, "0.6"},
+      {"prior-error-time", [](S& s) { return at(s.prior_error_time_s); }, "0.1"},
+      {"measured-prior-error-time", [](S& s) { return at(s.measured_prior_error_time_s); }, "0.2"},
+      {"measured-noise-factor", [](S& s) { return at(s.measured_noise_factor); }, "1.7"},
+      {"exact-prior-weight", [](S& s) { return at(s.exact_prior_weight); }, "0.3"},
+      {"exact-parent-correlation", [](S& s) { return at(s.exact_parent_correlation); }, "0.3"},
+      {"least-noise", [](S& s) { return at(s.least_noise_px); }, "0.02"},
+      {"exact-energy-ratio", [](S& s) { return at(s.exact_energy_ratio); }, "1.5"},
       {"root", [](S& s) { return at(s.root_m_s2); }, "3"},
-      {"detector", [](S& s) { return at(s.detector); }, "0.009"},
-      {"noise-lasts", [](S& s) { return at(s.noise_lasts_s); }, "0.35"},
-      {"caution", [](S& s) { return at(s.caution); }, "2"},
-      {"outlier", [](S& s) { return at(s.outlier); }, "4"},
-      {"proportions", [](S& s) { return at(s.proportions); }, "0.5"},
-      {"arm-proportions", [](S& s) { return at(s.arm_proportions); }, "0.15"},
-      {"leg-proportions", [](S& s) { return at(s.leg_proportions); }, "0.06"},
-      {"part-proportions", [](S& s) { return at(s.part_proportions); }, "0.1"},
-      {"people", [](S& s) { return at(s.people); }, "0.1"},
-      {"footing", [](S& s) { return at(s.footing_m_s); }, "0.5"},
-      {"ground", [](S& s) { return at(s.ground_m); }, "0.05"},
-      {"step", [](S& s) { return at(s.step_s); }, "0.5"},
-      {"pitch", [](S& s) { return at(s.pitch_deg); }, "10"},
-      {"roll", [](S& s) { return at(s.roll_deg); }, "8"},
-      {"balance", [](S& s) { return at(s.balance_deg); }, "5"},
+      {"detector-noise", [](S& s) { return at(s.detector_noise_heights); }, "0.009"},
+      {"detector-noise-time", [](S& s) { return at(s.detector_noise_time_s); }, "0.35"},
+      {"noise-factor", [](S& s) { return at(s.noise_factor); }, "2"},
+      {"outlier", [](S& s) { return at(s.outlier_deviations); }, "4"},
+      {"bone-log-deviation", [](S& s) { return at(s.bone_log_deviation); }, "0.5"},
+      {"arm-log-deviation", [](S& s) { return at(s.arm_log_deviation); }, "0.15"},
+      {"leg-log-deviation", [](S& s) { return at(s.leg_log_deviation); }, "0.06"},
+      {"partial-body-log-deviation", [](S& s) { return at(s.partial_body_log_deviation); }, "0.1"},
+      {"people-log-deviation", [](S& s) { return at(s.people_log_deviation); }, "0.1"},
+      {"planted-foot-speed", [](S& s) { return at(s.planted_foot_speed_m_s); }, "0.5"},
+      {"ground-deviation", [](S& s) { return at(s.ground_deviation_m); }, "0.05"},
+      {"ground-observation", [](S& s) { return at(s.ground_observation_s); }, "0.5"},
+      {"pitch-deviation", [](S& s) { return at(s.pitch_deviation_deg); }, "10"},
+      {"roll-deviation", [](S& s) { return at(s.roll_deviation_deg); }, "8"},
+      {"balance-deviation", [](S& s) { return at(s.balance_deviation_deg); }, "5"},
       {"balance-speed", [](S& s) { return at(s.balance_speed_m_s); }, "1.5"},
       {"balance-bent-legs", [](S& s) { return at(s.balance_bent_legs); }, "0.2"},
-      {"focal", [](S& s) { return at(s.focal); }, "0.1"},
-      {"roughly", [](S& s) { return at(s.roughly_s); }, "0.1"},
-      {"solutions", [](S& s) { return at(s.solutions); }, "5"},
-      {"alternatives", [](S& s) { return at(s.alternatives); }, "4"},
-      {"spread", [](S& s) { return at(s.spread); }, "1.2"},
-      {"draws-noise-lasts", [](S& s) { return at(s.draws_noise_lasts_s); }, "10"}};
+      {"focal-log-deviation", [](S& s) { return at(s.focal_log_deviation); }, "0.1"},
+      {"first-solution-step", [](S& s) { return at(s.first_solution_step_s); }, "0.1"},
+      {"most-solutions", [](S& s) { return at(s.most_solutions); }, "5"},
+      {"most-alternatives", [](S& s) { return at(s.most_alternatives); }, "4"},
+      {"draw-width-factor", [](S& s) { return at(s.draw_width_factor); }, "1.2"},
+      {"draws-noise-time", [](S& s) { return at(s.draws_noise_time_s); }, "10"}};
   check_table(table);
   CHECK(member_count<S>() == table.size());
 }
 
-TEST_CASE("track fit settings: deviations are above nothing, a likeness leaves something") {
-  for (const char* name : {"turn",
-                           "lasting",
+TEST_CASE("track fit settings: deviations are above 0, a correlation below 1") {
+  for (const char* name : {"orientation-deviation",
+                           "prior-error-time",
                            "root",
-                           "detector",
-                           "caution",
-                           "proportions",
-                           "people",
-                           "footing",
-                           "spread",
+                           "detector-noise",
+                           "noise-factor",
+                           "bone-log-deviation",
+                           "people-log-deviation",
+                           "planted-foot-speed",
+                           "draw-width-factor",
                            "outlier",
-                           "ground",
-                           "step",
-                           "pitch",
-                           "roll",
-                           "balance",
-                           "focal",
-                           "exact-noise",
-                           "measured-lasting",
-                           "measured-caution",
-                           "arm-proportions",
-                           "leg-proportions",
-                           "part-proportions",
+                           "ground-deviation",
+                           "ground-observation",
+                           "pitch-deviation",
+                           "roll-deviation",
+                           "balance-deviation",
+                           "focal-log-deviation",
+                           "least-noise",
+                           "measured-prior-error-time",
+                           "measured-noise-factor",
+                           "arm-log-deviation",
+                           "leg-log-deviation",
+                           "partial-body-log-deviation",
                            "balance-speed",
                            "balance-bent-legs"})
     for (const double value : {0.0, -1.0, kNan})
       check_refused<TrackFitSettings>(name, value, "above 0");
-  check_refused<TrackFitSettings>("roughly", 0, "above 0");
-  check_refused<TrackFitSettings>("likeness", 1, "at least 0 and below 1");
-  check_refused<TrackFitSettings>("exact-likeness", 1, "at least 0 and below 1");
-  check_refused<TrackFitSettings>("noise-lasts", -0.01, "at least 0");
-  check_refused<TrackFitSettings>("draws-noise-lasts", -0.01, "at least 0");
-  check_refused<TrackFitSettings>("exact", 0, "above 0 and at most 1");
-  check_refused<TrackFitSettings>("exact", 1.01, "above 0 and at most 1");
-  check_refused<TrackFitSettings>("exact-cost", 1, "above 1");
-  check_accepted<TrackFitSettings>("exact", 1);
-  check_accepted<TrackFitSettings>("likeness", 0);
-  check_accepted<TrackFitSettings>("exact-likeness", 0);
-  check_accepted<TrackFitSettings>("noise-lasts", 0);
+  check_refused<TrackFitSettings>("first-solution-step", 0, "above 0");
+  check_refused<TrackFitSettings>("parent-correlation", 1, "at least 0 and below 1");
+  check_refused<TrackFitSettings>("exact-parent-correlation", 1, "at least 0 and below 1");
+  check_refused<TrackFitSettings>("detector-noise-time", -0.01, "at least 0");
+  check_refused<TrackFitSettings>("draws-noise-time", -0.01, "at least 0");
+  check_refused<TrackFitSettings>("exact-prior-weight", 0, "above 0 and at most 1");
+  check_refused<TrackFitSettings>("exact-prior-weight", 1.01, "above 0 and at most 1");
+  check_refused<TrackFitSettings>("exact-energy-ratio", 1, "above 1");
+  check_accepted<TrackFitSettings>("exact-prior-weight", 1);
+  check_accepted<TrackFitSettings>("parent-correlation", 0);
+  check_accepted<TrackFitSettings>("exact-parent-correlation", 0);
+  check_accepted<TrackFitSettings>("detector-noise-time", 0);
 }

@@ -68,7 +68,7 @@ struct Scene {
   /// Which trust any prior by its own deviations.
   static TrackFitSettings believing() {
     TrackFitSettings settings;
-    settings.turn_deg = 0.1;
+    settings.orientation_deviation_deg = 0.1;
     return settings;
   }
   FittedClip fit(const std::optional<TrackFitSettings>& settings = believing()) const {

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <vector>
 
@@ -128,7 +129,7 @@ TEST_CASE("unknown camera: of a long clip a detector's track is as the rough sol
   const Scene scene(12, 3, SynthesisAction::walk, 14);  // two windows
   KnownOfClip known;
   TrackFitSettings rough;
-  rough.solutions = 0;
+  rough.most_solutions = 0;
   const auto fit = [&](const TrackFitSettings& settings) {
     return fit_to_track(scene.pose, scene.modalities, scene.track, known, settings);
   };
@@ -154,7 +155,7 @@ TEST_CASE("unknown camera: the focal length gives way to what the track shows") 
   // less.
   const Scene scene(5, 0);
   TrackFitSettings stiff;
-  stiff.focal = 1e-3;
+  stiff.focal_log_deviation = 1e-3;
   const auto off = [&](const AssumedView& view) {
     return std::abs(std::log(std::tan(*view.field_of_view_deg * EIGEN_PI / 360) /
                              std::tan(40 * EIGEN_PI / 360)));
@@ -181,8 +182,8 @@ TEST_CASE("unknown camera: standing feet are on one level") {
   const MatrixD truth = joint_positions(scene.truth);
   const auto spread = [&](double ground_m) {
     TrackFitSettings settings;
-    settings.ground_m = ground_m;
-    settings.step_s = 1 / scene.track.fps;  // every frame counts
+    settings.ground_deviation_m = ground_m;
+    settings.ground_observation_s = 1 / scene.track.fps;  // every frame counts
     const Motion motion = fit_to_track(scene.pose, scene.modalities, scene.track,
                                        {scene.camera, scene.truth.skeleton}, settings)
                               .motion;

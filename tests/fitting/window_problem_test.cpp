@@ -71,7 +71,7 @@ TEST_CASE("window problem: what moves no seen joint leans with the camera no mor
   for (const double leant : {0.0, 0.1, 0.25}) {
     CAPTURE(leant);
     PosteriorClip clip = hidden_ankle();
-    clip.camera = CameraDoubt{};
+    clip.camera = UnknownCamera{};
     clip.camera->pitch_known = clip.camera->roll_known = true;
     clip.mean_lean = MatrixD::Zero(kFrames, 3);
     clip.mean_lean.col(0).setConstant(leant);
@@ -96,7 +96,7 @@ TEST_CASE("window problem: turns that follow the lean that the mean was seen by 
   clip.planted = MatrixD::Zero(kFrames, 0);
   for (auto& frame : clip.seen)
     for (SeenJoint& joint : frame) joint.confidence = 0;
-  clip.camera = CameraDoubt{};
+  clip.camera = UnknownCamera{};
   const Eigen::Vector3d lean(0.25, 0, 0);
   const auto energy = [&](Eigen::Index last_held) {
     clip.mean_lean = MatrixD::Zero(kFrames, 3);
@@ -118,16 +118,16 @@ TEST_CASE("window problem: turns that follow the lean that the mean was seen by 
 
 TEST_CASE("window problem: how far a bone's length strays, by what it is of and what is seen") {
   TrackFitSettings settings;
-  settings.proportions = 0.5;
-  settings.arm_proportions = 0.25;
-  settings.leg_proportions = 0.0625;
-  settings.part_proportions = 0.125;
+  settings.bone_log_deviation = 0.5;
+  settings.arm_log_deviation = 0.25;
+  settings.leg_log_deviation = 0.0625;
+  settings.partial_body_log_deviation = 0.125;
   /// ½ (0.1 / deviation)² of the first length, the only one that is not 0.
   const auto deviation = [&](const PosteriorClip& clip, Unknowns unknowns = Unknowns::seen) {
     const auto energy = [&](double log_length, double expected_deviation) {
       TrackFitSettings same = settings;
-      same.proportions = same.arm_proportions = same.leg_proportions = same.part_proportions =
-          expected_deviation;
+      same.bone_log_deviation = same.arm_log_deviation = same.leg_log_deviation =
+          same.partial_body_log_deviation = expected_deviation;
       PosteriorPoint from = PosteriorPoint::zero(clip);
       from.log_lengths[0] = log_length;
       return WindowProblem(clip, kNoise, expected_deviation > 0 ? same : settings, from, 0, kFrames,

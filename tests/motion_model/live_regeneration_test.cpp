@@ -159,8 +159,8 @@ TEST_CASE("live, and the whole clip: keypoints are a detector's, whether that is
     const Model model = scene.model(device);
     scene.track = coco_keypoints_of(scene);
     ClipPlacement placement = scene.placement();
-    placement.fit = TrackFitSettings{};  // several solutions: they would find out
-    placement.fit->detector = 0.05;      // that it is better than this
+    placement.fit = TrackFitSettings{};            // several solutions: they would find out
+    placement.fit->detector_noise_heights = 0.05;  // that it is better than this
     const auto answers = [&] {
       LiveRegeneration live(model, scene.track, placement);
       return std::vector{followed(live, scene.track),

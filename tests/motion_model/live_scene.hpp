@@ -27,7 +27,7 @@ struct LiveScene {
   ClipPlacement placement() const {
     ClipPlacement placement{{camera, clip.skeleton}};
     // How exact the track is, live and whole clip would learn at their own pace.
-    placement.fit->solutions = 1;
+    placement.fit->most_solutions = 1;
     return placement;
   }
   Model model(Device& device) const {

@@ -203,7 +203,7 @@ TEST_CASE(
   REQUIRE(scene.asked == 2);  // no spells
   TrackFitSettings& fit = *scene.placement.fit;
   for (const double step_s : {0.03, 5.0}) {
-    fit.roughly_s = step_s;
+    fit.first_solution_step_s = step_s;
     CHECK(scene.see(track).features == usual);
   }
   const LimbPairs legs = leg_pairs(track.keypoints);
@@ -213,7 +213,7 @@ TEST_CASE(
     for (int t = 27; t < 35; ++t) exchange_columns(track, t, left, right);
   }
   CHECK(scene.see(track).swaps.empty());  // the first frame alone does not show them
-  fit.roughly_s = TrackFitSettings{}.roughly_s;
+  fit.first_solution_step_s = TrackFitSettings{}.first_solution_step_s;
   CHECK(described(scene.see(track).swaps) == "legs swapped in frames 27-34");
 }
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "fitting/camera_doubt.hpp"
+#include "fitting/unknown_camera.hpp"
 
 namespace mcdbn {
 

@@ -14,7 +14,7 @@ struct ExpectedLean {
 };
 
 /// What is not known of a camera.
-struct CameraDoubt {
+struct UnknownCamera {
   ExpectedLean usual;     ///< as cameras stand
   ExpectedLean balanced;  ///< as makes the body stand over its feet
   bool pitch_known = false, roll_known = false, focal_known = false;
@@ -24,7 +24,8 @@ struct CameraDoubt {
 
 /// What is not known of the camera, where the network sees and answers in a level view: nothing
 /// determines pitch and roll where it does not.
-std::optional<CameraDoubt> doubt_of(const KnownOfClip& known, const Modalities& modalities,
-                                    const Track2d& track, const TrackFitSettings& settings);
+std::optional<UnknownCamera> unknown_camera_of(const KnownOfClip& known,
+                                               const Modalities& modalities, const Track2d& track,
+                                               const TrackFitSettings& settings);
 
 }  // namespace mcdbn

@@ -7,14 +7,14 @@
 
 #include "fitting/clip_posterior.hpp"
 
-namespace roughly_likely_test {
+namespace coarse_solution_test {
 
 using namespace mcdbn;
 
 namespace {
 
 constexpr double kRate_hz = 30;
-constexpr Eigen::Index kEvery = 3;  // frames of roughly_s
+constexpr Eigen::Index kEvery = 3;  // frames of first_solution_step_s
 const RayNoise kNoise{0.002, 0.004};
 
 /// Two bones that swing in the image, of which the lower one's end is seen and stands now and then.
@@ -55,10 +55,10 @@ PosteriorClip every_third(const PosteriorClip& clip) {
     const Eigen::Index t = kEvery * k;
     thin.turn_deviation_rad.row(k) = clip.turn_deviation_rad.row(t);
     thin.seen[static_cast<std::size_t>(k)] = clip.seen[static_cast<std::size_t>(t)];
-    double surely = 1;  // stands throughout
+    double confidence = 1;  // stands throughout
     for (Eigen::Index step = t - kEvery + 1; step <= t; ++step)
-      surely = std::min(surely, clip.planted(step, 0));
-    thin.planted(k, 0) = surely;
+      confidence = std::min(confidence, clip.planted(step, 0));
+    thin.planted(k, 0) = confidence;
   }
   thin.frame_time_s = kEvery / kRate_hz;
   return thin;
@@ -71,10 +71,10 @@ void check_between_thirds(Eigen::Index frames, std::size_t windows) {
   PosteriorPoint from = PosteriorPoint::zero(clip), thin_from = PosteriorPoint::zero(thin);
   from.ground_m.setConstant(-0.8);
   thin_from.ground_m = from.ground_m;
-  const PosteriorPoint rough = roughly_likely(clip, kNoise, {}, from),
+  const PosteriorPoint rough = coarse_solution(clip, kNoise, {}, from),
                        expected =
-                           most_likely(thin, kNoise, {}, thin_from, SharedUnknowns::to_be_found,
-                                       kSmallGainOfRough, kFewFrames);
+                           map_solution(thin, kNoise, {}, thin_from, SharedUnknowns::to_be_found,
+                                        kSmallGainOfCoarse, kFewFrames);
   DOCTEST_REQUIRE(rough.turns.rows() == frames);
   DOCTEST_CHECK(expected.turns.cwiseAbs().maxCoeff() > 0.1);
   constexpr double kClose = 1e-12;
@@ -93,40 +93,40 @@ void check_between_thirds(Eigen::Index frames, std::size_t windows) {
 
 }  // namespace
 
-TEST_CASE("roughly likely: it is the likeliest of every third frame, straight between them") {
+TEST_CASE("coarse solution: it is the likeliest of every third frame, straight between them") {
   check_between_thirds(44, 1);  // the last frame lies beyond the last of every third
 }
 
-TEST_CASE("roughly likely: a long clip's windows have few frames") {
+TEST_CASE("coarse solution: a long clip's windows have few frames") {
   constexpr Eigen::Index kFrames = 600;
   REQUIRE(windows_of((kFrames + kEvery - 1) / kEvery).size() == 1);
   check_between_thirds(kFrames, 2);
 }
 
-TEST_CASE("roughly likely: how the camera leaned is that of every third frame") {
+TEST_CASE("coarse solution: how the camera leaned is that of every third frame") {
   PosteriorClip clip = swinging(44);
-  clip.camera = CameraDoubt{};
+  clip.camera = UnknownCamera{};
   clip.mean_lean = MatrixD::Zero(44, 3);
   for (Eigen::Index t = 0; t < 44; ++t) clip.mean_lean(t, 0) = 0.01 * static_cast<double>(t);
   PosteriorClip thin = every_third(clip);
   for (Eigen::Index k = 0; k < thin.frames(); ++k)
     thin.mean_lean.row(k) = clip.mean_lean.row(kEvery * k);
-  const PosteriorPoint rough = roughly_likely(clip, kNoise, {}, PosteriorPoint::zero(clip)),
-                       expected = most_likely(thin, kNoise, {}, PosteriorPoint::zero(thin),
-                                              SharedUnknowns::to_be_found, kSmallGainOfRough);
+  const PosteriorPoint rough = coarse_solution(clip, kNoise, {}, PosteriorPoint::zero(clip)),
+                       expected = map_solution(thin, kNoise, {}, PosteriorPoint::zero(thin),
+                                               SharedUnknowns::to_be_found, kSmallGainOfCoarse);
   CHECK(expected.lean.norm() > 0.01);
   CHECK((rough.lean - expected.lean).norm() < 1e-12);
   CHECK((rough.turns.row(0) - expected.turns.row(0)).norm() < 1e-12);
 }
 
-TEST_CASE("roughly likely: a clip whose frames are as far apart as that is solved as it is") {
+TEST_CASE("coarse solution: a clip whose frames are as far apart as that is solved as it is") {
   PosteriorClip clip = swinging(10);
-  clip.frame_time_s = TrackFitSettings{}.roughly_s;
+  clip.frame_time_s = TrackFitSettings{}.first_solution_step_s;
   const PosteriorPoint from = PosteriorPoint::zero(clip);
-  const PosteriorPoint rough = roughly_likely(clip, kNoise, {}, from),
-                       full = most_likely(clip, kNoise, {}, from, SharedUnknowns::to_be_found,
-                                          kSmallGainOfRough);
+  const PosteriorPoint rough = coarse_solution(clip, kNoise, {}, from),
+                       full = map_solution(clip, kNoise, {}, from, SharedUnknowns::to_be_found,
+                                           kSmallGainOfCoarse);
   CHECK(rough.turns == full.turns);
 }
 
-}  // namespace roughly_likely_test
+}  // namespace coarse_solution_test
