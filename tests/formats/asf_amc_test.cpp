@@ -124,7 +124,7 @@ TEST_CASE("ASF and AMC: what is wrong is named with its file and line") {
         Case{true, "name shin", "name thigh", "a second bone 'thigh'"},
         Case{true, "name shin", "id 3", "a bone without a name"},
         Case{true, "begin\n     id 2", "bgin\n     id 2",
-             "a.asf:24: 'bgin' where a bone begins; 'begin' is wanted"},
+             "a.asf:26: 'bgin' where a bone begins; 'begin' is wanted"},
         Case{true, "thigh shin", "thigh foot", "no bone is called 'foot'"},
         Case{true, "    thigh shin\n", "", "'shin' hangs on nothing"},
         Case{true, "thigh shin", "shin thigh", "second parent"},
