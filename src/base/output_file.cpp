@@ -75,8 +75,11 @@ fs::path place_of(const fs::path& path) {
 /// A file cannot take the place of a folder, not even of an empty one.
 void refuse_folder(const fs::path& path) {
   std::error_code error;
-  if (fs::is_directory(path, error) || names_folder(path))
+  if (fs::is_directory(path, error))
     throw InputError(fmt::format("{}: is a folder; name a file", path.string()));
+  if (names_folder(path))
+    throw InputError(
+        fmt::format("{}: names a folder, by the slash at its end; name a file", path.string()));
 }
 
 [[noreturn]] void fail_twice(const fs::path& path) {

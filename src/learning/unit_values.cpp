@@ -58,8 +58,8 @@ void check_codes(std::span<const Sequences> codes, std::span<const Modality> mod
       throw ShapeError(fmt::format("MRBM: {} has {} visible units, its sequences {} columns",
                                    modality.name, modality.visible, codes[m].values.columns()));
     if (!same_clips(codes[m], codes.front()))
-      throw ShapeError(fmt::format("MRBM: the sequences of {} and {} differ in rows", modality.name,
-                                   modalities.front().name));
+      throw ShapeError(fmt::format("MRBM: the sequences of {} and {} differ in their clips' rows",
+                                   modality.name, modalities.front().name));
   }
   for (std::size_t m = 0; m < codes.size(); ++m)
     check_unit_values(codes[m], modalities[m].kind, modalities[m].name);

@@ -93,6 +93,7 @@ std::vector<Axes> reflections(const Motion& motion, const std::vector<int>& oppo
   const Skeleton& skeleton = motion.skeleton;
   const int root = body_root(skeleton);
   std::vector<BoneFit> fits;
+  fits.reserve(skeleton.joints.size());
   for (int j = 0; j < skeleton.joint_count(); ++j)
     fits.push_back(bone_fit(skeleton, opposite, root, j));
   const std::optional<std::size_t> of_all = reflection_of_all(fits);
@@ -116,6 +117,7 @@ std::vector<Axes> reflections(const Motion& motion, const std::vector<int>& oppo
   }
   if (distance > kMostOfBone * length) return {};
   std::vector<Axes> axes;
+  axes.reserve(chosen.size());
   for (const std::size_t reflection : chosen) axes.push_back(kReflections[reflection]);
   return axes;
 }

@@ -11,7 +11,7 @@ namespace mcdbn {
 namespace {
 
 constexpr double kMost_s = 600.0;
-/// As far as the answers are off themselves, the best of ten samples of strangers is 2 mm worse
+/// As far as the answers are off themselves, the best of ten samples of unseen people is 2 mm worse
 /// than the single answer; half as far, it is better, and samples differ as real walks do in both.
 constexpr double kShareOfError = 0.5;
 

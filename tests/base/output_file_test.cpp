@@ -290,8 +290,9 @@ TEST_CASE("a file is not named by a slash at its end, and no folder takes its pl
   for (const char* name : {"new.csv/", "old.csv/"}) {
     CAPTURE(name);
     folder.write("old.csv", "old");
-    CHECK_THROWS_WITH_AS(check_output(folder / name), doctest::Contains("is a folder"), InputError);
-    CHECK_THROWS_WITH_AS(write_text_file(folder / name, "new"), doctest::Contains("is a folder"),
+    CHECK_THROWS_WITH_AS(check_output(folder / name), doctest::Contains("names a folder"),
+                         InputError);
+    CHECK_THROWS_WITH_AS(write_text_file(folder / name, "new"), doctest::Contains("names a folder"),
                          InputError);
   }
   CHECK_THROWS_WITH_AS(check_output(folder / "old.csv/", OutputKind::file_or_folder),

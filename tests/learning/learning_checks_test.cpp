@@ -169,7 +169,8 @@ TEST_CASE("an MRBM refuses sequences that do not belong together") {
     CHECK_THROWS_AS(train.shared(data), ShapeError);
     data = usual_data();
     std::swap(data[kRight].clips[0], data[kRight].clips[1]);  // as many rows, other clips
-    CHECK_THROWS_AS(train.shared(data), ShapeError);
+    CHECK_THROWS_WITH_AS(train.shared(data), doctest::Contains("differ in their clips' rows"),
+                         ShapeError);
 
     std::vector<Sequences> codes{Sequences::from_host(device, usual_data()[kLeft].clips),
                                  Sequences::from_host(device, usual_data()[kRight].clips)};

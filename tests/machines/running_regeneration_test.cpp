@@ -34,6 +34,7 @@ Mcdbn network(Device& device, std::size_t look_ahead, const LowestTrack& lowest 
   CrbmParameters lowest_pose = random_layer(kPose, kHidden, order(4), VisibleKind::gaussian, 30);
   lowest_pose.visible_deviation = MatrixF::Constant(1, kPose, 0.5F);
   lowest_pose.visible_deviation(0, 2) = 1.5F;
+  lowest_pose.visible_mean = random_matrix(1, kPose, 31);
   Cdbn track, pose;
   track.layers.emplace_back(device, lowest_track);
   track.layers.emplace_back(device, random_layer(kHidden, kTop, order(2), VisibleKind::binary, 20));

@@ -201,9 +201,9 @@ struct FineTuningSettings {
                   "a person (with actions given, a person in an action) is drawn with probability "
                   "proportional to frames^power; 1: all frames alike, 0: all people alike"},
           self.people_power);
-    // The loss judges steps from frame to frame, too.
+    // The loss counts steps from frame to frame, too.
     visit(Setting{"window-frames", within(2, 1000), "frames",
-                  "frames of a window that the loss judges"},
+                  "frames of a window that the loss counts"},
           self.window_frames);
     visit(Setting{"settle-frames", within(0, 1000), "frames",
                   "free-running frames before the judged ones, so that these start from the "

@@ -38,8 +38,8 @@ struct PoseLossWeights {
 struct TrainingConfig : CorpusSettings, LearningSettings {
   /// Of fine-tuning's loss on the 3D modality.
   PoseLossWeights pose_loss{.positions = 0.5, .velocities = 0.2, .contacts = 0.1};
-  /// Of few people none is held out: without one of nine CMU walkers the error on strangers is 28.7
-  /// instead of 23.6 mm, and the one held out did better to the end.
+  /// Of few people none is held out: without one of nine CMU walkers the error on unseen people
+  /// is 28.7 instead of 23.6 mm, and the one held out did better to the end.
   std::size_t hold_out_among = 20;
   bool half_precision = false;
 
