@@ -131,7 +131,10 @@ void TrainingOptions::check_used(bool fine_tunes) const {
         flag));
   };
   if (tracks_ == "detector") refuse("--tracks detector");
-  if (preset_ == "general") refuse("--preset general");
+  if (preset_ == "general")
+    throw ConfigError(
+        "--preset general fine-tunes: leave out what turns that off (--stages greedy, "
+        "--fine-tuning-steps 0), or choose another preset");
   for (const GivenSetting& given : flags_)
     if (given.name.starts_with("augment.")) refuse(given.who);
 }

@@ -111,12 +111,12 @@ ClipEvidence::ClipEvidence(const PoseFeatures& features, const Motion& answer,
 }
 
 void ClipEvidence::set_unknowns(const PosePrior& prior, const Modalities& modalities,
-                                bool body_unknown, std::optional<UnknownCamera> camera,
+                                bool body_unknown, const std::optional<UnknownCamera>& camera,
                                 const TrackFitSettings& settings) {
   clip.turn_deviation_rad = fitted_turn_deviations_rad(prior, modalities, settings);
   clip.root_m_s2 = fitted_root_acceleration_deviation_m_s2(prior, modalities, settings);
   clip.body_unknown = body_unknown;
-  clip.camera = std::move(camera);
+  clip.camera = camera;
 }
 
 void ClipEvidence::find_planted(const Motion& motion) {

@@ -30,7 +30,7 @@ class ClipEvidence {
 
   /// How far the prior may be off, and what is not known besides, into `clip`.
   void set_unknowns(const PosePrior& prior, const Modalities& modalities, bool body_unknown,
-                    std::optional<UnknownCamera> camera, const TrackFitSettings& settings);
+                    const std::optional<UnknownCamera>& camera, const TrackFitSettings& settings);
   /// Which feet stand in a motion of the same skeleton's joints, into `clip`: by how low and slow
   /// they are (kPlantedInAnswer), the ground being the lowest foot of the frame.
   void find_planted(const Motion& motion);

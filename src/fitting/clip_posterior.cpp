@@ -106,6 +106,7 @@ std::size_t most_seen(const PosteriorClip& clip, const std::vector<ClipWindow>& 
     return joints;
   };
   std::vector<std::pair<std::ptrdiff_t, std::ptrdiff_t>> ranks;
+  ranks.reserve(windows.size());
   for (const ClipWindow& window : windows)
     ranks.emplace_back(seen_in(window), -std::abs(std::ssize(ranks) - std::ssize(windows) / 2));
   return static_cast<std::size_t>(std::ranges::max_element(ranks) - ranks.begin());

@@ -114,6 +114,17 @@ TEST_CASE("side swaps: seen through a gap, and the sides held for longer are rig
   CHECK(described(find_side_swaps(mostly)) == "legs swapped in frames 91-119");
 }
 
+TEST_CASE("side swaps: a joint that is astray for a frame, however far, makes no swap") {
+  for (const char* place : {"left_ankle", "right_wrist"})
+    for (const double away_px : {150.0, 300.0, -1000.0}) {
+      CAPTURE(place);
+      CAPTURE(away_px);
+      Track2d track = stepping();
+      track.x_px(30, track.find(place)) += away_px;
+      CHECK(find_side_swaps(track).empty());
+    }
+}
+
 TEST_CASE("side swaps: small jumps, long gaps and a track without keypoints are left alone") {
   // Legs so close together that they jump by less than a quarter of the body's height in all.
   Track2d close = stepping(120, 0.05);

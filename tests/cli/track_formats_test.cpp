@@ -106,7 +106,9 @@ TEST_CASE("project: a folder of frames that is not there may be named with a sla
   CHECK(mcdbn::read_tracks(folder / "frames").joint_set == "BODY_25");
   const CliResult table = project("csv", "track.csv/");
   CHECK(table.exit_code == 3);
-  CHECK(table.standard_error.find("track.csv/: is a folder; name a file") != std::string::npos);
+  CHECK(table.standard_error.find(
+            "track.csv/: names a folder, by the slash at its end; name a file") !=
+        std::string::npos);
   CHECK(entries_of(folder / "") == std::set<std::string>{"motion", "frames"});
 }
 

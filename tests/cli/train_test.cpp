@@ -87,7 +87,8 @@ TEST_CASE("train: what is of fine-tuning's views is refused where nothing is fin
   }
   for (const char* stages : {"--stages greedy", "--fine-tuning-steps 0"})
     CHECK(refusal(std::string("--preset general ") + stages) ==
-          "mcdbn-cl: error: --preset general" + why);
+          "mcdbn-cl: error: --preset general fine-tunes: leave out what turns that off (--stages "
+          "greedy, --fine-tuning-steps 0), or choose another preset\n");
   // A sweep of which one configuration is fine-tuned takes them; --force it never takes.
   const auto sweep = [&](const char* steps) {
     const fs::path file =

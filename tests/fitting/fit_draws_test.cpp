@@ -164,11 +164,19 @@ TEST_CASE("fit draws: an unknown body has one length of each bone a draw, and it
   CHECK(length(clip.draws[0], knee) != length(clip.draws[1], knee));
   CHECK(length(clip.draws[0], knee) == doctest::Approx(length(clip.draws[0], other)));
   const TrackFitSettings settings;
-  const double five_deviations =
-      std::exp(5 * settings.draw_width_factor * settings.bone_log_deviation);
+  const auto deviation_of = [&](const std::string& name) {
+    if (name.ends_with("Leg") || name.ends_with("Foot")) return settings.leg_log_deviation;
+    if (name.ends_with("ForeArm") || name.ends_with("Hand")) return settings.arm_log_deviation;
+    return settings.bone_log_deviation;
+  };
   for (const Motion& draw : clip.draws)
-    for (int joint = 1; joint < draw.skeleton.joint_count(); ++joint)
-      CHECK(length(draw, joint) <= five_deviations * length(clip.motion, joint));
+    for (int joint = 1; joint < draw.skeleton.joint_count(); ++joint) {
+      const std::string& name = draw.skeleton.joints[static_cast<std::size_t>(joint)].name;
+      CAPTURE(name);
+      if (name.ends_with("UpLeg") || !(length(clip.motion, joint) > 0)) continue;  // none's bone
+      CHECK(std::abs(std::log(length(draw, joint) / length(clip.motion, joint))) <=
+            5 * settings.draw_width_factor * deviation_of(name));
+    }
 }
 
 TEST_CASE("fit draws: a body that was found elsewhere stays, and draws doubt it all the same") {

@@ -9,9 +9,10 @@ namespace mcdbn {
 /// What the fit takes for likely: of the prior, of the track, of a body that moves, and of a camera
 /// (docs/fit_settings.md). Chosen on clips of training people with other bodies and detector-like
 /// tracks, and on the exact projections of the same: six CMU walks, of a model of walks and of a
-/// general one. `parent_correlation`, `prior_error_time`, `outlier_deviations`, bones and people,
-/// planted feet and ground, `roll_deviation` and `focal_log_deviation` on seven CMU clips and
-/// twelve of Bandai's training halves, of the general model, which never saw Bandai's;
+/// general one. `parent_correlation`, `prior_error_time`, `outlier_deviations`, people, planted
+/// feet and ground, `roll_deviation` and `focal_log_deviation` on seven CMU clips and twelve of
+/// Bandai's training halves, of the general model, which never saw Bandai's; bones, `balance_speed`
+/// and `balance_bent_legs` on 37 and 24 such clips, and on some whose legs are hidden or who sit;
 /// `exact_prior_weight`, `exact_energy_ratio` and `most_alternatives` on the exact projections of
 /// the same; `exact_parent_correlation`, `measured_prior_error_time` and `measured_noise_factor` on
 /// fourteen others of CMU's and 24 of Bandai's, exact and with noise of 2 and 5 px;

@@ -205,10 +205,12 @@ struct FineTuningSettings {
     visit(Setting{"window-frames", within(2, 1000), "frames",
                   "frames of a window that the loss counts"},
           self.window_frames);
-    visit(Setting{"settle-frames", within(0, 1000), "frames",
-                  "free-running frames before the judged ones, so that these start from the "
-                  "network's own errors"},
-          self.settle_frames);
+    visit(
+        Setting{
+            "settle-frames", within(0, 1000), "frames",
+            "free-running frames before those that the loss counts, so that these start from the "
+            "network's own errors"},
+        self.settle_frames);
     visit(Setting{"rate", above(0, 100), "",
                   "Adam's learning rate; falls along a cosine to a fiftieth"},
           self.rate);
