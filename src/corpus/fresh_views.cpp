@@ -29,13 +29,13 @@ void add_view(EncodedView view, const ClipStore& clips, const ClipGroups& groups
   groups.add(view.clip, 1, views);
 }
 
-FreshViews::FreshViews(ClipStore clips, Modalities modalities, const CorpusSettings& settings,
+FreshViews::FreshViews(ClipStore clips, Modalities modalities, CorpusSettings settings,
                        std::shared_ptr<const PosePool> pool, std::uint64_t seed,
                        const PieceChoice& choice)
     : clips_(std::move(clips)),
       groups_(clips_),
       modalities_(std::move(modalities)),
-      settings_(settings),
+      settings_(std::move(settings)),
       pool_(std::move(pool)),
       seed_(seed),
       choice_(choice) {

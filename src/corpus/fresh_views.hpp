@@ -39,7 +39,7 @@ class FreshViews {
  public:
   /// @param pool what new poses are made of; none: there are none
   /// @throws InputError if no clip is left
-  FreshViews(ClipStore clips, Modalities modalities, const CorpusSettings& settings,
+  FreshViews(ClipStore clips, Modalities modalities, CorpusSettings settings,
              std::shared_ptr<const PosePool> pool, std::uint64_t seed, const PieceChoice& choice);
 
   /// Several threads may call it at once.

@@ -51,7 +51,8 @@ struct WanderingVector {
 class WanderingArm {
  public:
   WanderingArm(RandomSequence& random, double side, double seconds) : side_(side) {
-    for (double t = 0; t < seconds + 2 * kStep_s; t += kStep_s) places_.push_back(drawn(random));
+    for (int step = 0; step * kStep_s < seconds + 2 * kStep_s; ++step)
+      places_.push_back(drawn(random));
   }
 
   /// chest_from_upper_arm and the elbow's bend at a time.

@@ -57,6 +57,7 @@ std::vector<std::optional<long long>> frame_numbers(const std::vector<std::strin
 std::vector<std::optional<long long>> numbers_of_files(
     const std::vector<std::filesystem::path>& files) {
   std::vector<std::string> names;
+  names.reserve(files.size());
   for (const std::filesystem::path& file : files) names.push_back(file.stem().string());
   std::vector<std::optional<long long>> numbers = frame_numbers(names);
   if (std::ranges::none_of(numbers, [](const auto& number) { return number.has_value(); }))
