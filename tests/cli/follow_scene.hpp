@@ -31,6 +31,16 @@ struct FollowScene {
     return run_program("/bin/bash", fmt::format("-c \"cat '{}' | '{}' {}\"", input.string(),
                                                 MCDBN_CLI, call(options)));
   }
+  /// With a named pipe as its input, which these lines of bash write to as file 3; $program is the
+  /// process. Ends as the program does.
+  CliResult follow_pipe(const std::filesystem::path& output, const std::string& steps) const {
+    const std::filesystem::path script = folder.write(
+        "follow.sh",
+        fmt::format("mkfifo '{0}/pipe'\n'{1}' {2} --input '{0}/pipe' -o '{3}' &\nprogram=$!\n"
+                    "exec 3>'{0}/pipe'\n{4}wait $program\nexit $?\n",
+                    (folder / ".").string(), MCDBN_CLI, call(""), output.string(), steps));
+    return run_program("/bin/bash", fmt::format("'{}'", script.string()));
+  }
   /// A detector's frames, a line of JSON each.
   std::string detected_lines() const {
     const std::filesystem::path detected = folder / "detected";

@@ -46,17 +46,13 @@ TEST_CASE("regenerate --follow: JSON frames before the first person are written 
   const FollowScene scene;
   const fs::path out = scene.folder / "out.jsonl";
   // The input stays open until the frames are there.
-  const fs::path script = scene.folder.write(
-      "follow.sh",
-      fmt::format("mkfifo '{0}/pipe'\n'{1}' {2} --input '{0}/pipe' -o '{3}' &\n"
-                  "program=$!\nexec 3>'{0}/pipe'\n"
-                  "for i in 1 2 3 4 5; do echo '{{\"people\": []}}' >&3; done\n"
-                  "for ((i = 0; i < 3000; ++i)); do\n"
-                  "  (( $(cat '{3}' 2>/dev/null | wc -l) == 5 )) && {{ echo came; "
-                  "break; }}; sleep 0.02\ndone\n"
-                  "exec 3>&-\nwait $program\nexit $?\n",
-                  (scene.folder / ".").string(), MCDBN_CLI, scene.call(""), out.string()));
-  const CliResult result = run_program("/bin/bash", fmt::format("'{}'", script.string()));
+  const CliResult result = scene.follow_pipe(
+      out, fmt::format("for i in 1 2 3 4 5; do echo '{{\"people\": []}}' >&3; done\n"
+                       "for ((i = 0; i < 3000; ++i)); do\n"
+                       "  (( $(cat '{}' 2>/dev/null | wc -l) == 5 )) && {{ echo came; "
+                       "break; }}; sleep 0.02\ndone\n"
+                       "exec 3>&-\n",
+                       out.string()));
   CAPTURE(result.standard_error);
   CHECK(result.exit_code == 0);
   CHECK(result.standard_output == "came\n");
@@ -129,13 +125,7 @@ TEST_CASE("regenerate --follow: a stop before anything came is exit code 0 and l
   const FollowScene scene;
   const fs::path out = scene.folder / "out.bvh";
   // The pipe can be opened for writing once the program has opened it.
-  const fs::path script = scene.folder.write(
-      "stopped.sh",
-      fmt::format("mkfifo '{0}/pipe'\n'{1}' {2} --input '{0}/pipe' -o '{3}' &\n"
-                  "program=$!\nexec 3>'{0}/pipe'\nkill -INT $program\n"
-                  "wait $program\nexit $?\n",
-                  (scene.folder / ".").string(), MCDBN_CLI, scene.call(""), out.string()));
-  const CliResult result = run_program("/bin/bash", fmt::format("'{}'", script.string()));
+  const CliResult result = scene.follow_pipe(out, "kill -INT $program\n");
   CAPTURE(result.standard_error);
   CHECK(result.exit_code == 0);
   CHECK(result.standard_error.find("stopped before the first frame") != std::string::npos);

@@ -75,17 +75,13 @@ TEST_CASE(
   const FollowScene scene;
   const fs::path out = scene.folder / "out.bvh";
   // 30 frames, then nothing until all but the last 8 are there (look-ahead and 3), then Ctrl-C.
-  const fs::path script = scene.folder.write(
-      "follow.sh",
-      fmt::format("mkfifo '{0}/pipe'\n'{1}' {2} --input '{0}/pipe' -o '{3}' & program=$!\n"
-                  "exec 3>'{0}/pipe'\nhead -n 32 '{4}' >&3\n"
-                  "for ((i = 0; i < 3000; ++i)); do\n"
-                  "  lines=$(sed '1,/Frame Time/d' '{3}' 2>/dev/null | wc -l)\n"
-                  "  (( lines >= 22 )) && {{ echo came; break; }}; sleep 0.02\ndone\n"
-                  "kill -INT $program\nwait $program\nexit $?\n",
-                  (scene.folder / ".").string(), MCDBN_CLI, scene.call(""), out.string(),
-                  scene.track.string()));
-  const CliResult result = run_program("/bin/bash", fmt::format("'{}'", script.string()));
+  const CliResult result = scene.follow_pipe(
+      out, fmt::format("head -n 32 '{}' >&3\n"
+                       "for ((i = 0; i < 3000; ++i)); do\n"
+                       "  lines=$(sed '1,/Frame Time/d' '{}' 2>/dev/null | wc -l)\n"
+                       "  (( lines >= 22 )) && {{ echo came; break; }}; sleep 0.02\ndone\n"
+                       "kill -INT $program\n",
+                       scene.track.string(), out.string()));
   CAPTURE(result.standard_error);
   CHECK(result.exit_code == 0);
   CHECK(result.standard_output == "came\n");

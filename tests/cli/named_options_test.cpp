@@ -20,17 +20,9 @@ namespace fs = std::filesystem;
 namespace {
 
 std::set<std::string> options_of_all_commands() {
-  const std::string help = run_cli("--help").standard_output;
-  const auto start = help.find("Subcommands:\n");
-  REQUIRE(start != std::string::npos);
-  std::istringstream lines(help.substr(start));
-  std::string line;
-  std::getline(lines, line);
   std::set<std::string> options;
-  while (std::getline(lines, line) && line.starts_with("  ")) {
-    if (line[2] == ' ') continue;  // a description that ran on
-    options.merge(options_in_help(line.substr(2, line.find(' ', 2) - 2)));
-  }
+  for (const auto& [command, description] : commands_in_help())
+    options.merge(options_in_help(command));
   return options;
 }
 

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -48,6 +49,22 @@ void check_no_such_device(const std::string& call) {
 }
 
 }  // namespace
+
+std::map<std::string, std::string> commands_in_help() {
+  const std::string help = run_cli("--help").standard_output;
+  const auto start = help.find("Subcommands:\n");
+  REQUIRE(start != std::string::npos);
+  std::istringstream lines(help.substr(start));
+  std::string line;
+  std::getline(lines, line);
+  std::map<std::string, std::string> commands;
+  while (std::getline(lines, line) && line.starts_with("  ")) {
+    if (line[2] == ' ') continue;  // a description that ran on
+    const auto end = std::min(line.find(' ', 2), line.size());
+    commands.emplace(line.substr(2, end - 2), line.substr(end));
+  }
+  return commands;
+}
 
 std::set<std::string> options_in_help(const std::string& command) {
   const CliResult help = run_cli(command + " --help");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@ struct OptionRow {
   std::string option;
   std::function<void()> check;
 };
+
+/// The commands that `--help` lists, and the line beside each that tells what it does.
+std::map<std::string, std::string> commands_in_help();
 
 /// What `COMMAND --help` lists: long options with their dashes, positional arguments by name;
 /// without --help itself.
