@@ -11,7 +11,7 @@
 #include "device/peak.hpp"
 #include "device/tuner.hpp"
 #include "learning/bench_steps.hpp"
-#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/learning/learning_settings.hpp"
 #include "roofline.hpp"
 #include "setting_flags.hpp"
 
@@ -78,7 +78,7 @@ void print_line(const BenchStep& step, const nlohmann::ordered_json& result) {
   std::cout << std::endl;
 }
 
-/// Those of the layers, or all but the epochs, which are long.
+/// The steps of the layers that were named; without any, all but the epochs, which are long.
 std::vector<BenchStepMaker> wanted_steps(const std::vector<std::string>& layers) {
   std::vector<BenchStepMaker> makers = bench_steps();
   if (layers.empty()) return makers;
@@ -117,7 +117,7 @@ void tune_by_steps(Device& device, double seconds) {
 
 void run_bench(const CommandContext& context, const BenchOptions& options) {
   if (options.tune && options.seconds == 0)
-    throw ConfigError("--tune with --seconds 0: single runs would decide; give it more seconds");
+    throw ConfigError("--tune needs more than one run: give --seconds above 0");
   Device device = Device::open({context.platform, context.device});
   if (options.tune) tune_by_steps(device, options.seconds);
   const double peak_gflops = measure_peak_gflops(device);
@@ -185,8 +185,7 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
   add_json_option(*command, context);
   add_quiet_option(*command, context);
   command->footer("Example:\n  mcdbn-cl bench --only gaussian_crbm --json");
-  command->callback(
-      [&context, options] { context.run = [&context, options] { run_bench(context, *options); }; });
+  run_with(*command, context, options, run_bench);
 }
 
 }  // namespace mcdbn::cli

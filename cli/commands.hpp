@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
@@ -12,8 +13,9 @@
 
 namespace mcdbn::cli {
 
-/// What every command shares. A command adds the options it obeys with the functions below, and its
-/// callback sets `run`; main calls `run` once the whole command line has been understood.
+/// Context of every command. A command adds the options it obeys with the functions below, and
+/// sets `run`, mostly by run_with; main calls `run` once the whole command line has been
+/// understood.
 struct CommandContext {
   std::string platform;  ///< name part or index, empty: any (also MCDBN_PLATFORM)
   std::string device;    ///< name part or index, empty: a GPU if there is one (also MCDBN_DEVICE)
@@ -34,6 +36,15 @@ void add_json_option(CLI::App& command, CommandContext& context);     ///< --jso
 /// and must be none that another option reads.
 CLI::Option* mark_output(CLI::Option* option, CommandContext& context,
                          OutputKind kind = OutputKind::file);
+
+/// Once the whole command line has been understood, the command is `run(context, *options)`.
+template <typename Options, typename Run>
+void run_with(CLI::App& command, CommandContext& context, std::shared_ptr<Options> options,
+              Run run) {
+  command.callback([&context, options, run] {
+    context.run = [&context, options, run] { run(context, *options); };
+  });
+}
 
 /// JSON as text; bytes of names in files that are no text become U+FFFD.
 /// @param indent of lines; -1: one line

@@ -20,7 +20,7 @@ void add_device_options(CLI::App& command, CommandContext& context) {
 }
 
 void add_seed_option(CLI::App& command, CommandContext& context) {
-  add_setting_flag(command, "--seed", {"seed", any_seed(), "", "Seed of everything random"},
+  add_setting_flag(command, "--seed", {"seed", any_seed(), "", "seed of all random numbers"},
                    context.seed);
 }
 

@@ -163,9 +163,7 @@ void add_corpus_command(CLI::App& app, CommandContext& context) {
   command->footer(
       "Example:\n  mcdbn-cl corpus motion/\n"
       "  mcdbn-cl corpus motion/ -o corpus.toml && mcdbn-cl train corpus.toml -o run");
-  command->callback([&context, options] {
-    context.run = [&context, options] { run_corpus(context, *options); };
-  });
+  run_with(*command, context, options, run_corpus);
 }
 
 }  // namespace mcdbn::cli

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/named_errors.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/formats/track_file.hpp"
@@ -34,11 +35,9 @@ DetectorViews detector_like(const std::string& name_or_file) {
         "{}: shows no person's hip, knee and ankle as a detector names them; its noise cannot be "
         "measured",
         name_or_file));
-  try {
+  return with_name(name_or_file, [&]() -> DetectorViews {
     return {seen_keypoints(track), measured_noise(track, height_px), {}, {}};
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", name_or_file, error.what()));
-  }
+  });
 }
 
 std::vector<CLI::Option*> add_detector_camera_flags(CLI::App& command, DetectorCameras& cameras) {

@@ -12,6 +12,7 @@
 #include "base/shown.hpp"
 #include "camera_options.hpp"
 #include "commands.hpp"
+#include "comparison/report_clips.hpp"
 #include "comparison/training_views.hpp"
 #include "default_model.hpp"
 #include "detector_options.hpp"
@@ -140,8 +141,8 @@ void print_table(const EvaluationReport& report) {
                printable(verdict.text));
 }
 
-/// Simpler methods are fitted on the model's training clips. Those of the model that comes with the
-/// program are elsewhere.
+/// Leaves out the simpler methods where the training clips that they are fitted on are not here, as
+/// for the model that comes with the program.
 void leave_out_baselines(const Model& model, EvaluateOptions& options) {
   const bool gone = std::ranges::any_of(model.training_clips, [](const TrainingClip& clip) {
     return !std::filesystem::exists(clip.path);
@@ -279,7 +280,7 @@ void add_regeneration_options(CLI::App& command, EvaluateOptions& options) {
       .add_option("--uncertainty-draws", options.uncertainty_draws,
                   "Motions drawn from each clip's posterior, to estimate the uncertainty of the "
                   "model's single answer and how often its intervals hold the truth; 0: skip this")
-      ->check(CLI::Range(0, 10000))
+      ->check(in_range(within(0, 10000)))
       ->capture_default_str();
   add_view_flags(command, options.azimuth_deg, options.elevation_deg);
   for (const char* flag : {"--camera-azimuth", "--camera-elevation"})
@@ -343,9 +344,7 @@ void add_evaluate_command(CLI::App& app, CommandContext& context) {
       "report\n"
       "  mcdbn-cl evaluate --model run/model.safetensors --test held_out/ --json\n"
       "  mcdbn-cl evaluate --model run/model.safetensors --test held_out/ --tracks detector");
-  command->callback([&context, options] {
-    context.run = [&context, options] { run_evaluate(context, *options); };
-  });
+  run_with(*command, context, options, run_evaluate);
 }
 
 }  // namespace mcdbn::cli

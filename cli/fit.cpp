@@ -13,8 +13,9 @@
 #include "base/utf8.hpp"
 #include "commands.hpp"
 #include "epoch_progress.hpp"
+#include "fit_data.hpp"
 #include "learning/metrics_log.hpp"
-#include "learning/unit_values.hpp"
+#include "machine_settings.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/learning/machine_fit.hpp"
 #include "mcdbn/machines/size_limits.hpp"
@@ -60,10 +61,9 @@ struct FitOptions {
   bool standardize = false;
   MachineSettings settings;
   std::vector<std::size_t> widths, orders;  ///< of each layer, where they differ
-  /// To check whether they were given.
-  const CLI::Option *order = nullptr, *layers = nullptr, *each_width = nullptr,
-                    *each_order = nullptr, *gaussian_flag = nullptr;
+  const CLI::App* command = nullptr;
 
+  bool is_given(const std::string& flag) const { return command->get_option(flag)->count() > 0; }
   const MachineKind& kind() const {
     return *std::find_if(kKinds.begin(), kKinds.end(),
                          [&](const MachineKind& one) { return machine == one.name; });
@@ -75,21 +75,20 @@ void check_flags(const FitOptions& options) {
     throw ConfigError(
         fmt::format("--output {}: a machine's file is a .safetensors", options.output.string()));
   const bool is_mrbm = options.machine == kMrbm;
-  const auto refuse = [&](const CLI::Option* flag, const char* what) {
-    if (flag->count() > 0)
-      throw ConfigError(
-          fmt::format("{}: --machine {} has no {}", flag->get_name(), options.machine, what));
+  const auto refuse = [&](const char* flag, const char* what) {
+    if (options.is_given(flag))
+      throw ConfigError(fmt::format("{}: --machine {} has no {}", flag, options.machine, what));
   };
   if (is_mrbm || !options.kind().has_history) {
-    refuse(options.order, "history");
-    refuse(options.each_order, "history");
+    refuse("--order", "history");
+    refuse("--orders", "history");
   }
   if (is_mrbm || !options.kind().is_stack) {
-    refuse(options.layers, "layers but one");
-    refuse(options.each_width, "layers but one");
-    refuse(options.each_order, "layers but one");
+    refuse("--layers", "layers but one");
+    refuse("--widths", "layers but one");
+    refuse("--orders", "layers but one");
   }
-  if (!is_mrbm) refuse(options.gaussian_flag, "modalities");
+  if (!is_mrbm) refuse("--gaussian", "modalities");
   if (is_mrbm != options.data.files.empty() || is_mrbm == options.modalities.empty())
     throw ConfigError(
         "data: --machine mrbm wants --modality NAME=FILE for each modality, every other machine "
@@ -97,17 +96,25 @@ void check_flags(const FitOptions& options) {
   if (options.standardize && !is_mrbm && options.kind().visible == VisibleKind::binary)
     throw ConfigError(fmt::format(
         "--standardize: --machine {} wants values from 0 to 1 as they are", options.machine));
+  if (options.standardize && is_mrbm && options.gaussian.empty())
+    throw ConfigError(
+        "--standardize: no modality is --gaussian, and binary ones want values from 0 to 1 as they "
+        "are");
 }
 
-/// The data of one modality, checked, and scaled if that was asked for.
-ColumnScale prepare(std::vector<MatrixF>& data, const MatrixInput& input, VisibleKind kind,
-                    bool standardize) {
-  for (std::size_t i = 0; i < data.size(); ++i)
-    check_unit_values(data[i], kind, input.files[i].string());
-  if (!standardize || kind == VisibleKind::binary) return {};
-  ColumnScale scale = ColumnScale::of(data);
-  for (MatrixF& values : data) values = scale.apply(values);
-  return scale;
+/// Checks the flags alone: a settings file may serve several machines.
+/// @throws ConfigError naming a flag of a setting that has no effect on this machine
+void check_settings_used(const FitOptions& options, const MachineParts& machine) {
+  const MachineSettings& settings = options.settings;
+  visit_settings(settings, [&](const Setting& setting, const auto&) {
+    const std::string flag = flag_of(setting.name);
+    if (!options.is_given(flag)) return;
+    std::string why = why_unused(machine, setting.name);
+    if (why.empty()) why = why_unused(settings.gaussian, settings.binary, setting.name);
+    if (!why.empty())
+      throw ConfigError(
+          fmt::format("--machine {}: {} {}; leave it out", options.machine, flag, why));
+  });
 }
 
 /// A machine that could not be saved where it belongs, as on a full disk, is kept among temporary
@@ -126,20 +133,36 @@ std::string keep_elsewhere(const SavedMachine& machine, const std::filesystem::p
                      elsewhere.string(), output.string());
 }
 
+/// Where the data are why a training diverges, no rate helps.
+/// @throws DivergenceError, with the advice
+template <typename Fit>
+SavedMachine with_advice(const std::string& advice, const Fit& fit) {
+  try {
+    return fit();
+  } catch (const DivergenceError& error) {
+    if (advice.empty()) throw;
+    throw DivergenceError(fmt::format("{}; {}", error.what(), advice));
+  }
+}
+
 /// Fits with the progress, the metrics and the way to stop that all machines share, and saves.
+/// @param unscaled what far_from_standardized says of the data, or nothing
 /// @param fit makes a SavedMachine on a device, given an observer
 template <typename Fit>
-void fit_and_save(const CommandContext& context, const FitOptions& options, Fit&& fit) {
+void fit_and_save(const CommandContext& context, const FitOptions& options,
+                  const std::string& unscaled, Fit&& fit) {
+  if (!unscaled.empty()) spdlog::warn("{}", unscaled);
   Device device = Device::open({context.platform, context.device});
   std::filesystem::path metrics_path = options.output;
   OutputFile metrics_file(metrics_path.replace_extension(".metrics.jsonl"));
   MetricsLog metrics(metrics_file.temporary());
   ProgressLine progress(context.quiet);
   const EpochObserver show = shown_on(progress, device);
-  SavedMachine saved = fit(device, [&](const EpochReport& report) {
+  const auto observe = [&](const EpochReport& report) {
     metrics.add(report);
     show(report);
-  });
+  };
+  SavedMachine saved = with_advice(unscaled, [&] { return fit(device, observe); });
   saved.config = settings_record(options.settings);
   saved.config["machine"] = options.machine;
   if (!options.widths.empty()) saved.config["widths"] = options.widths;
@@ -155,6 +178,7 @@ void fit_and_save(const CommandContext& context, const FitOptions& options, Fit&
 }
 
 void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
+  check_settings_used(options, {.layers = {}, .has_mrbm = true});
   std::vector<ModalityData> inputs = read_modalities(options.modalities, options.data.tensor);
   if (inputs.size() < 2) throw ConfigError("--modality: give at least two");
   for (const std::string& name : options.gaussian)
@@ -162,6 +186,7 @@ void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
       throw ConfigError(fmt::format("--gaussian {}: there is no such --modality", name));
   std::vector<Modality> modalities;
   std::vector<ColumnScale> scales;
+  std::string unscaled;
   for (ModalityData& input : inputs) {
     require_utf8(input.name, "--modality: a name");
     const bool is_gaussian = std::ranges::count(options.gaussian, input.name) > 0;
@@ -170,8 +195,10 @@ void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
     ColumnScale scale =
         prepare(input.data, input.files, modalities.back().kind, options.standardize);
     if (options.standardize) scales.push_back(std::move(scale));
+    if (is_gaussian && unscaled.empty())
+      unscaled = far_from_standardized(input.data, input.files, false);
   }
-  fit_and_save(context, options, [&](Device& device, const EpochObserver& observer) {
+  fit_and_save(context, options, unscaled, [&](Device& device, const EpochObserver& observer) {
     std::vector<Sequences> data;
     data.reserve(inputs.size());
     for (const ModalityData& input : inputs)
@@ -184,22 +211,28 @@ void run_fit_mrbm(const CommandContext& context, const FitOptions& options) {
 
 /// The layers from below, by --widths and --orders where they are given.
 std::vector<LayerSize> layer_sizes(const FitOptions& options) {
-  const MachineKind& kind = options.kind();
   const auto &widths = options.widths, &orders = options.orders;
-  const std::size_t layers = !widths.empty()   ? widths.size()
-                             : !orders.empty() ? orders.size()
-                             : kind.is_stack   ? options.settings.layers
-                                               : 1;
+  std::vector<LayerSize> sizes = equal_layers(options.settings, options.kind().has_history);
+  const std::size_t layers = !widths.empty()           ? widths.size()
+                             : !orders.empty()         ? orders.size()
+                             : options.kind().is_stack ? sizes.size()
+                                                       : 1;
   if (!orders.empty() && orders.size() != layers)
     throw ConfigError(
         fmt::format("--orders: {} numbers, but --widths has {}", orders.size(), widths.size()));
-  std::vector<LayerSize> sizes;
-  for (std::size_t i = 0; i < layers; ++i)
-    sizes.push_back({widths.empty() ? options.settings.hidden : widths[i],
-                     !kind.has_history ? 0
-                     : orders.empty()  ? options.settings.order
-                                       : orders[i]});
+  sizes.resize(layers, sizes.front());
+  for (std::size_t i = 0; i < layers; ++i) {
+    if (!widths.empty()) sizes[i].hidden = widths[i];
+    if (!orders.empty()) sizes[i].order = orders[i];
+  }
   return sizes;
+}
+
+MachineParts parts_of(VisibleKind lowest, const std::vector<LayerSize>& layers) {
+  MachineParts parts;
+  for (const LayerSize& layer : layers)
+    parts.layers.push_back({parts.layers.empty() ? lowest : VisibleKind::binary, layer.order > 0});
+  return parts;
 }
 
 void run_fit(const CommandContext& context, const FitOptions& options) {
@@ -208,12 +241,18 @@ void run_fit(const CommandContext& context, const FitOptions& options) {
   if (options.machine == kMrbm) return run_fit_mrbm(context, options);
   const MachineKind& kind = options.kind();
   const std::vector<LayerSize> layers = layer_sizes(options);
+  check_settings_used(options, parts_of(kind.visible, layers));
   std::size_t history = 0;
   for (const LayerSize& layer : layers) history += layer.order;
   std::vector<MatrixF> data = options.data.read();
   const ColumnScale scale = prepare(data, options.data, kind.visible, options.standardize);
   check_lengths(data, history, options.data.files);
-  fit_and_save(context, options, [&](Device& device, const EpochObserver& observer) {
+  const bool learns_deviation =
+      options.settings.gaussian.deviation_rate > 0 && layers.front().order == 0;
+  const std::string unscaled = kind.visible == VisibleKind::gaussian
+                                   ? far_from_standardized(data, options.data, learns_deviation)
+                                   : std::string();
+  fit_and_save(context, options, unscaled, [&](Device& device, const EpochObserver& observer) {
     const Sequences sequences = Sequences::from_host(device, data);
     spdlog::info("{}, {} of {} on {}", counted(data.size(), "file"),
                  counted(sequences.values.rows(), "row"),
@@ -252,14 +291,12 @@ void add_layer_options(CLI::App& command, FitOptions& options) {
         ->type_name(unit)
         ->excludes(command.get_option("--layers"));
   };
-  options.each_width =
-      add("--widths", options.widths, "Hidden units of each layer of a stack, from below: 300,150",
-          in_range(size_limits::kUnits), "UNITS,…")
-          ->excludes(command.get_option("--hidden"));
-  options.each_order =
-      add("--orders", options.orders, "History of each layer of a stack, from below: 5,3",
-          in_range(size_limits::kHistory), "FRAMES,…")
-          ->excludes(command.get_option("--order"));
+  add("--widths", options.widths, "Hidden units of each layer of a stack, from below: 300,150",
+      in_range(size_limits::kUnits), "UNITS,…")
+      ->excludes(command.get_option("--hidden"));
+  add("--orders", options.orders, "History of each layer of a stack, from below: 5,3",
+      in_range(size_limits::kHistory), "FRAMES,…")
+      ->excludes(command.get_option("--order"));
 }
 
 }  // namespace
@@ -267,17 +304,17 @@ void add_layer_options(CLI::App& command, FitOptions& options) {
 void add_fit_command(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<FitOptions>();
   CLI::App* command = app.add_subcommand("fit", "Fits a single machine to matrices of any data");
+  options->command = command;
   add_matrix_input(*command, options->data, "data",
                    "Matrices, a row for each case or frame; each file is a sequence of its own");
   add_modality_option(
       *command, options->modalities,
       "Matrices of an MRBM's modalities, each with its name; the files of a name are "
       "sequences, as many and as long as those of every other name");
-  options->gaussian_flag =
-      command
-          ->add_option("--gaussian", options->gaussian,
-                       "Modalities of an MRBM whose units are Gaussian; the others are binary")
-          ->type_name("NAME");
+  command
+      ->add_option("--gaussian", options->gaussian,
+                   "Modalities of an MRBM whose units are Gaussian; the others are binary")
+      ->type_name("NAME");
   command
       ->add_option("--machine", options->machine,
                    "rbm, gaussian-rbm: without history; crbm (Gaussian), binary-crbm: with "
@@ -297,8 +334,6 @@ void add_fit_command(CLI::App& app, CommandContext& context) {
   add_config_option(*command, options->settings);
   add_setting_flags(*command, options->settings);
   add_layer_options(*command, *options);
-  options->order = command->get_option("--order");
-  options->layers = command->get_option("--layers");
   add_device_options(*command, context);
   add_quiet_option(*command, context);
   command->footer(
@@ -306,8 +341,7 @@ void add_fit_command(CLI::App& app, CommandContext& context) {
       "  mcdbn-cl fit a.csv b.csv --machine crbm --order 5 --standardize -o walk.safetensors\n"
       "  mcdbn-cl fit --machine mrbm --modality left=l.npy --modality right=r.npy -o "
       "m.safetensors");
-  command->callback(
-      [&context, options] { context.run = [&context, options] { run_fit(context, *options); }; });
+  run_with(*command, context, options, run_fit);
 }
 
 }  // namespace mcdbn::cli

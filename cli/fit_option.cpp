@@ -7,8 +7,8 @@ namespace mcdbn::cli {
 void add_fit_option(CLI::App& command, std::string& fit, const std::string& note) {
   command
       .add_option("--fit", fit,
-                  fmt::format("track: turn the answer's joints to where the 2D track shows them; "
-                              "none: leave the answer as it is ({})",
+                  fmt::format("track: fit the answer to the 2D track; none: leave the answer "
+                              "unchanged ({})",
                               note))
       ->check(CLI::IsMember({kFitTrack, kFitNone}));
 }

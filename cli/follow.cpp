@@ -1,6 +1,7 @@
 #include "follow.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <fstream>
@@ -12,14 +13,19 @@
 #include <vector>
 
 #include "base/interruption.hpp"
+#include "base/named_errors.hpp"
 #include "base/output_file.hpp"
+#include "camera/keypoint_map.hpp"
 #include "camera_options.hpp"
 #include "formats/track_reading.hpp"
 #include "line_source.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/frame_stream.hpp"
 #include "mcdbn/formats/track_lines.hpp"
+#include "mcdbn/machines/size_limits.hpp"
+#include "motion_model/keypoint_columns.hpp"
 #include "output_ending.hpp"
+#include "regeneration_reports.hpp"
 #include "setting_flags.hpp"
 
 namespace mcdbn::cli {
@@ -94,6 +100,23 @@ class FrameOutput {
   bool shows_somebody_ = false;
 };
 
+/// The model's joints of which the track has no column.
+/// @param like the track without frames, from which the model can regenerate
+std::vector<std::string> joints_without_column(const Modalities& modalities, const Track2d& like,
+                                               const ClipPlacement& placement) {
+  const TrackFeatures& features = modalities.track_features;
+  const Skeleton& skeleton =
+      placement.skeleton ? *placement.skeleton : modalities.pose_features.skeleton();
+  const Track2d shown = joined_by_name(like, features)
+                            ? like
+                            : KeypointMap(keypoints_of_columns(like), skeleton,
+                                          skeleton_roles(skeleton, placement.joint_map))
+                                  .joints_of(like);
+  std::vector<std::string> missing = features.joint_names();
+  std::erase_if(missing, [&](const std::string& joint) { return shown.find(joint) >= 0; });
+  return missing;
+}
+
 /// Regenerates a track frame by frame.
 class Following {
  public:
@@ -132,6 +155,7 @@ class Following {
     if (!frames_) return 0;
     if (live_) frames_->write(live_->skeleton(), live_->finish());
     frames_->finish();
+    if (live_ && !placement_.camera && shows_somebody()) report_assumed(live_->camera(), "");
     return frames_->written();
   }
 
@@ -144,11 +168,12 @@ class Following {
   void begin(const Track2d& like) {
     joints_ = like.joint_count();
     if (placement_.camera) placement_.camera = camera_of_track(*placement_.camera, like, name_);
-    try {
-      live_ = std::make_unique<LiveRegeneration>(model_, like, placement_, options_.look_ahead);
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", name_, error.what()));
-    }
+    live_ = with_name(name_, [&] {
+      return std::make_unique<LiveRegeneration>(model_, like, placement_, options_.look_ahead);
+    });
+    if (const auto missing = joints_without_column(model_.modalities, like, placement_);
+        !missing.empty())
+      spdlog::warn("{}: {} are never seen: inferred", name_, fmt::join(missing, ", "));
     frames(like.fps);
     spdlog::info("a frame is written at most {} frames (of {:g} a second) after it came in",
                  live_->latency_frames(), model_.modalities.fps);
@@ -200,7 +225,7 @@ void add_follow_options(CLI::App& command, FollowOptions& options) {
           "Frames to come that an answer waits for, at the model's rate, at most the model's own; "
           "the fit waits for 3 more. With fewer than the model was trained with the rest is "
           "extrapolated from the track (default: the model's)")
-      ->check(CLI::Range(0, 1000))
+      ->check(in_range(size_limits::kLookAhead))
       ->type_name("FRAMES")
       ->group(kGroup);
   command

@@ -10,8 +10,6 @@
 #include "clip_options.hpp"
 #include "commands.hpp"
 #include "default_model.hpp"
-#include "mcdbn/base/errors.hpp"
-#include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/machines/size_limits.hpp"
 #include "mcdbn/motion_model/clip_generation.hpp"
@@ -23,8 +21,8 @@
 namespace mcdbn::cli {
 namespace {
 
-/// Of 172 sequences of 33 s that follow walks of training subjects five end at less than half their
-/// clip's speed at temperature 1, and none at 2 (docs/generation.md).
+/// Usual temperature. At 1, five of 172 sequences of 33 s that follow walks of training subjects
+/// end at less than half their clip's speed; at 2, none does (docs/generation.md).
 constexpr double kUsualTemperature = 2.0;
 
 struct GenerateOptions {
@@ -146,9 +144,7 @@ void add_generate_command(CLI::App& app, CommandContext& context) {
   command->footer(
       "Example:\n  mcdbn-cl generate --model run/model.safetensors --seed-clip walk.bvh -o out.bvh "
       "--frames 1000");
-  command->callback([&context, options] {
-    context.run = [&context, options] { run_generate(context, *options); };
-  });
+  run_with(*command, context, options, run_generate);
 }
 
 }  // namespace mcdbn::cli

@@ -216,7 +216,7 @@ void print_value(const std::string& key, const json& value, const std::string& i
   std::cout << fmt::format("{}{:<{}} {}\n", indent, key, width, text);
 }
 
-/// That of the longest key whose value stands beside it.
+/// Width of the longest key whose value stands beside it.
 std::size_t width_of_keys(const json& object) {
   std::size_t width = 21;
   for (const auto& [key, value] : object.items())

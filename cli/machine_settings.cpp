@@ -1,8 +1,12 @@
 #include "machine_settings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace mcdbn::cli {
@@ -22,44 +26,36 @@ std::vector<json> layers_of(const json& description) {
   return layers;
 }
 
-bool has_history(const json& layer) {
-  return layer.contains("order") && layer["order"] != 0;
+MachineParts parts_of(const json& description) {
+  MachineParts parts;
+  const auto kind = description.value("kind", json());
+  parts.has_mrbm = kind == "mrbm" || kind == "mcdbn";
+  for (const json& layer : layers_of(description))
+    parts.layers.push_back(
+        {layer.value("kind", json()) == "gaussian" ? VisibleKind::gaussian : VisibleKind::binary,
+         layer.contains("order") && layer["order"] != 0});
+  return parts;
 }
 
 class Used {
  public:
   explicit Used(const json& description)
-      : layers_(layers_of(description)),
+      : parts_(parts_of(description)),
         kind_(description.value("kind", json())),
         config_(description["config"]) {}
 
   /// @param name with dots
   bool operator()(const std::string& name) const {
-    for (const char* group : {"gaussian", "binary"})
-      if (const std::string prefix = std::string(group) + "."; name.starts_with(prefix))
-        return of_units(group, name.substr(prefix.size()));
-    if (name.starts_with("mrbm.")) return kind_ == "mrbm" || kind_ == "mcdbn";
-    if (name == "order") return any_layer(has_history) && !config_.contains("orders");
+    if (name == "order")
+      return std::ranges::any_of(parts_.layers, &MachineParts::Layer::has_history) &&
+             !config_.contains("orders");
     if (name == "layers") return kind_ != "crbm" && kind_ != "mrbm" && !config_.contains("widths");
     if (name == "hidden") return !config_.contains("widths");
-    return true;
+    return why_unused(parts_, name).empty();
   }
 
  private:
-  template <typename Test>
-  bool any_layer(const Test& test) const {
-    return std::ranges::any_of(layers_, test);
-  }
-  bool of_units(const std::string& kind, const std::string& name) const {
-    return any_layer([&](const json& layer) {
-      if (!layer.contains("kind") || layer["kind"] != kind) return false;
-      if (name == "rate-A" || name == "rate-B" || name == "history-noise")
-        return has_history(layer);
-      return name != "deviation-rate" || (kind == "gaussian" && !has_history(layer));
-    });
-  }
-
-  std::vector<json> layers_;
+  MachineParts parts_;
   json kind_;
   const json& config_;
 };
@@ -75,6 +71,39 @@ void add_settings(const json& record, const std::string& prefix, const Used& is_
 }
 
 }  // namespace
+
+std::string why_unused(const MachineParts& machine, const std::string& setting) {
+  const std::string group = setting.substr(0, setting.find('.'));
+  if (group == "mrbm") return machine.has_mrbm ? "" : "is of MRBMs, and there is none";
+  if (group != "gaussian" && group != "binary") return {};
+  const auto visible = group == "gaussian" ? VisibleKind::gaussian : VisibleKind::binary;
+  const auto any = [&](auto&& test) {
+    return std::ranges::any_of(machine.layers, [&](const MachineParts::Layer& layer) {
+      return layer.visible == visible && test(layer);
+    });
+  };
+  const auto is_any = [](const MachineParts::Layer&) { return true; };
+  const auto has_history = [](const MachineParts::Layer& layer) { return layer.has_history; };
+  if (!any(is_any))
+    return fmt::format("is of layers with {} visible units, and there is none",
+                       visible == VisibleKind::gaussian ? "Gaussian" : "binary");
+  const std::string name = setting.substr(group.size() + 1);
+  if ((name == "rate-A" || name == "rate-B" || name == "history-noise") && !any(has_history))
+    return "is of layers with history, and there is none";
+  const bool learns_deviation = visible == VisibleKind::gaussian && any(std::not_fn(has_history));
+  if (name == "deviation-rate" && !learns_deviation)
+    return "is of Gaussian units without history, and there are none";
+  return {};
+}
+
+std::string why_unused(const CdSettings& gaussian, const CdSettings& binary,
+                       const std::string& setting) {
+  for (const auto& [group, settings] :
+       {std::pair{"gaussian", &gaussian}, std::pair{"binary", &binary}})
+    if (setting == fmt::format("{}.fast-rate", group) && !settings->persistent)
+      return fmt::format("is of persistent chains, and --{}-persistent is off", group);
+  return {};
+}
 
 json settings_of(const json& description) {
   json settings = json::object();

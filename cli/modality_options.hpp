@@ -38,8 +38,9 @@ const Mrbm& mrbm_of(const SavedMachine& saved, const std::filesystem::path& file
 /// @param option that gave the name  @throws ConfigError for a name that the MRBM has not
 std::size_t modality_of(const Mrbm& mrbm, const std::string& name, const char* option);
 
-/// What was read, in the machine's order and by its scales, all rows `copies` times over; so many
-/// rows if nothing was read. @throws ConfigError, InputError for data that are not the machine's
+/// The data that were read, in the machine's order and by its scales, all rows `copies` times over;
+/// `copies` rows if nothing was read.
+/// @throws ConfigError, InputError for data that are not the machine's
 MrbmUnits mrbm_units(Device& device, const SavedMachine& saved, const Mrbm& mrbm,
                      const std::vector<ModalityData>& inputs, std::size_t copies = 1);
 

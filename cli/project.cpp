@@ -97,9 +97,7 @@ void add_project_command(CLI::App& app, CommandContext& context) {
       "track.csv\n"
       "  mcdbn-cl project walk.bvh --like openpose --random-camera --write-camera camera.yaml -o "
       "track.csv");
-  command->callback([&context, options] {
-    context.run = [&context, options] { run_project(context, *options); };
-  });
+  run_with(*command, context, options, run_project);
 }
 
 }  // namespace mcdbn::cli

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/named_errors.hpp"
 #include "camera/shown_body.hpp"
 #include "camera_options.hpp"
 #include "clip_options.hpp"
@@ -34,16 +35,6 @@
 
 namespace mcdbn::cli {
 namespace {
-
-/// What `work` returns. Errors of an input begin with the name.
-template <typename Work>
-auto with_name(const std::string& name, const Work& work) {
-  try {
-    return work();
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", name, error.what()));
-  }
-}
 
 /// By the model, or by a simpler method if there is one. Errors of the track begin with its name.
 std::vector<Motion> regenerate_named(const std::string& name, const Model& model,
@@ -136,10 +127,11 @@ std::string shows_angles(const Modalities& modalities, const ClipPlacement& plac
   return shows_feet(track) ? "feet on level ground" : "the posture: no foot is seen";
 }
 
-/// Of a camera without calibration: warns what is assumed, and where the film may be stored turned.
-void report_unknown_camera(const std::string& name, Track2d track, const Modalities& modalities,
-                           const ClipPlacement& placement, const Camera& assumed) {
-  track.keypoints = keypoints_of_columns(track);
+/// Warns what is assumed of a camera without calibration, and where the film may be stored turned.
+/// @param track with keypoints
+void report_unknown_camera(const std::string& name, const Track2d& track,
+                           const Modalities& modalities, const ClipPlacement& placement,
+                           const Camera& assumed) {
   if (!placement.view.roll_deg) report_turned(name, track);
   report_assumed(assumed, shows_angles(modalities, placement, track));
 }
@@ -168,6 +160,7 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
   TrackReadOptions reading = options.track;
   if (camera) reading.camera_image = {camera->width_px, camera->height_px};
   const TrackReading read = read_tracks_with_notices(options.input, reading);
+  report_first_frame(options.input, read.frame_numbers);
   const std::vector<Track2d>& people = read.people;
   if (camera) placement.camera = camera_of_track(*camera, people.front(), options.input.string());
   const std::unique_ptr<Baseline> simpler =
@@ -188,9 +181,12 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
       continue;
     }
     anybody = true;
-    report_findings(name, people[person], read.frame_numbers, findings);
+    Track2d track = people[person];
+    track.keypoints = keypoints_of_columns(track);
+    report_findings(name, track, read.frame_numbers, findings);
+    report_sliding_feet(name, track, motions.front());
     if (!placement.camera) {
-      report_unknown_camera(name, people[person], model.modalities, placement, findings.camera);
+      report_unknown_camera(name, track, model.modalities, placement, findings.camera);
       placement.camera = findings.camera;  // all others stand in the first one's world
     }
     write_person(options, person, people.size(), motions, findings);
@@ -311,9 +307,7 @@ void add_regenerate_command(CLI::App& app, CommandContext& context) {
       "5\n"
       "  mcdbn-cl regenerate --model run/model.safetensors --to track --input walk.bvh -o "
       "track.csv");
-  command->callback([&context, options] {
-    context.run = [&context, options] { run_regenerate(context, *options); };
-  });
+  run_with(*command, context, options, run_regenerate);
 }
 
 }  // namespace mcdbn::cli

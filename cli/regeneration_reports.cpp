@@ -13,13 +13,26 @@
 #include "base/counted.hpp"
 #include "base/numbers.hpp"
 #include "camera/quarter_roll.hpp"
+#include "camera/shown_body.hpp"
 #include "mcdbn/camera/level_view.hpp"
 #include "mcdbn/camera/track_stretches.hpp"
+#include "mcdbn/features/track_features.hpp"
+#include "motion/body_root.hpp"
+#include "motion/sliding_feet.hpp"
 
 namespace mcdbn::cli {
 
 void report_written(const std::filesystem::path& path, int frames, double fps) {
   spdlog::info("{}: {} at {:.4g} fps", path.string(), counted(frames, "frame"), fps);
+}
+
+void report_first_frame(const std::filesystem::path& file, const std::vector<long long>& numbers) {
+  if (numbers.size() < 2 || numbers.front() < 2) return;
+  if (numbers.back() - numbers.front() + 1 != std::ssize(numbers)) return;
+  spdlog::warn(
+      "{}: its first frame is number {}, and the motion begins there: to draw it over the whole "
+      "film, render --over-from {} (or {}, if the film's first frame is number 1)",
+      file.string(), numbers.front(), numbers.front(), numbers.front() - 1);
 }
 
 void report_turned(const std::string& name, const Track2d& track) {
@@ -60,7 +73,11 @@ void report_findings(const std::string& name, const Track2d& track,
     spdlog::warn("{}: another person in frames {}: left out", name, described(strays, numbers));
   if (!findings.swaps.empty())
     spdlog::warn("{}: {}; put right", name, described(findings.swaps, numbers));
-  if (const auto nobody = frames_of_nobody(track); !nobody.empty())
+  auto nobody = frames_of_nobody(track);
+  std::erase_if(nobody, [&](const FrameRange& gap) {
+    return gap.frames <= TrackFeatures::kLongestGap_s * track.fps;  // interpolated
+  });
+  if (!nobody.empty())
     spdlog::warn("{}: nobody is seen in frames {}: the motion there is made up", name,
                  described(nobody, numbers));
   if (!filled.unseen.empty())
@@ -82,11 +99,20 @@ void report_findings(const std::string& name, const Track2d& track,
         name);
 }
 
+void report_sliding_feet(const std::string& name, const Track2d& track, const Motion& motion) {
+  if (share_of_sliding(motion, frames_of_feet(track)) <= 0.5) return;
+  spdlog::warn(
+      "{}: in most frames the feet slide, faster than the body gets on: did the camera move? It "
+      "has to stand still, else the path is wrong, and heights may be (on a treadmill they slide, "
+      "too)",
+      name);
+}
+
 void report_uncertainty(const Motion& motion, const MatrixD& deviations) {
   if (deviations.size() == 0) return;
   const Skeleton& skeleton = motion.skeleton;
   std::vector<std::pair<double, std::string>> joints;
-  for (int joint = 1; joint < skeleton.joint_count(); ++joint)
+  for (int joint = body_root(skeleton) + 1; joint < skeleton.joint_count(); ++joint)
     joints.emplace_back(std::sqrt(deviations.middleCols(3 * joint, 3).squaredNorm() /
                                   static_cast<double>(3 * deviations.rows())),
                         skeleton.joints[static_cast<std::size_t>(joint)].name);

@@ -64,6 +64,7 @@ void add_render_command(CLI::App& app, CommandContext& context) {
       command->add_option("--columns", render.sheet_columns, "Frames in a row of a contact sheet")
           ->check(in_range(within(1, 64)))
           ->capture_default_str();
+  options->preparation.fps = 0;  // a film shows every frame
   add_clip_options(*command, options->preparation);
   add_camera_options(*command, options->camera);
   CLI::Option* const camera = command->get_option("--camera");

@@ -72,7 +72,7 @@ MatrixF mrbm_samples(Device& device, const SavedMachine& saved, const SampleOpti
   return unscaled(saved, drawn[wanted].to_host(), wanted);
 }
 
-/// Of an RBM, a CRBM or a stack of them.
+/// Samples of an RBM, a CRBM or a stack of them.
 MatrixF stack_samples(Device& device, const SavedMachine& saved, const SampleOptions& options) {
   const Cdbn stack = stack_of(saved, options.model);
   return unscaled(saved, options.given.files.empty()
@@ -118,9 +118,7 @@ void add_sample_command(CLI::App& app, CommandContext& context) {
       "Example:\n  mcdbn-cl sample --model digits.safetensors --count 64 -o digits.npy\n"
       "  mcdbn-cl sample --model digits.safetensors --given left_halves.csv --means >whole.csv\n"
       "  mcdbn-cl sample --model m.safetensors --modality left=l.npy --infer right -o r.npy");
-  command->callback([&context, options] {
-    context.run = [&context, options] { run_sample(context, *options); };
-  });
+  run_with(*command, context, options, run_sample);
 }
 
 }  // namespace mcdbn::cli

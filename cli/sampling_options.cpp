@@ -12,8 +12,8 @@ namespace {
 constexpr int kMost = 1000;
 /// Draws ten times as far from their mean as the model's carry no information any more.
 constexpr double kHottest = 10.0;
-/// Of several samples of a calibrated model: at temperature 1 they deviate half as far as its
-/// answers are off, at 2 as far. Of ten on detectors' tracks the best is 18 % better than their
+/// Usual temperature of several samples of a calibrated model: at 1 they deviate half as far as its
+/// answers are off, at 2 as far. The best of ten on detectors' tracks is 18 % better than their
 /// mean at 2, and 10 % at 1 (docs/results.md).
 constexpr double kSeveral = 2.0;
 
@@ -60,8 +60,8 @@ void add_sampling_options(CLI::App& command, SamplingOptions& options, const cha
   command
       .add_option("--temperature", options.temperature,
                   "0: the mean-field answer; the higher, the further variations are from it "
-                  "(default: 2 with several samples; 1 if they are drawn anew in every frame or "
-                  "the model was trained to be sampled; else 0)")
+                  "(default: 2 with several samples; 1 with --gibbs-steps or --mrbm-gibbs-steps, "
+                  "or for a model trained with --regeneration-sampled; else 0)")
       ->check(in_range(within(0, kHottest)));
   command
       .add_option(

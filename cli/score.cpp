@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -103,7 +102,7 @@ Scores stack_scores(Device& device, const SavedMachine& saved, const ScoreOption
   return scores;
 }
 
-/// Of each row of all modalities together, and the reconstruction error of each modality.
+/// Scores of each row of all modalities together, and the reconstruction error of each modality.
 Scores mrbm_scores(Device& device, const SavedMachine& saved, const ScoreOptions& options) {
   const Mrbm& mrbm = mrbm_of(saved, options.model, "--modality");
   if (options.log_partition)
@@ -142,7 +141,9 @@ void print_scores(const CommandContext& context, const Scores& scores) {
   std::size_t width = 24;
   for (const auto& [name, value] : report.items()) width = std::max(width, name.size() + 1);
   for (const auto& [name, value] : report.items())
-    std::cout << fmt::format("{:<{}}{:.6g}\n", name, width, value.get<double>());
+    std::cout << fmt::format(
+        "{:<{}}{}\n", name, width,
+        value.is_number_integer() ? value.dump() : fmt::format("{:.6g}", value.get<double>()));
 }
 
 void run_score(const CommandContext& context, const ScoreOptions& options) {
@@ -196,8 +197,7 @@ void add_score_command(CLI::App& app, CommandContext& context) {
       "reconstruction error. Where `fit --standardize` scaled the data, all but the "
       "log-likelihood\n"
       "are of the scaled data.");
-  command->callback(
-      [&context, options] { context.run = [&context, options] { run_score(context, *options); }; });
+  run_with(*command, context, options, run_score);
 }
 
 }  // namespace mcdbn::cli

@@ -19,6 +19,14 @@ std::string type_name(const Setting& setting) {
   return name;
 }
 
+/// The help of a setting, which begins in lower case, as that of a flag. A symbol stays as it is:
+/// "k of CD-k".
+std::string as_sentence(std::string help) {
+  const bool symbol = help.size() < 2 || (help[1] == ' ' && help[0] != 'a');
+  if (!symbol) help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
+  return help;
+}
+
 }  // namespace
 
 std::string flag_of(const std::string& setting) {
@@ -52,8 +60,8 @@ CLI::Option* add_number_flag(CLI::App& command, const std::string& flag, const S
                              const std::function<void(const nlohmann::json&)>& set) {
   const auto take = [set](const std::string& text) { set(number_in(text)); };
   return command
-      .add_option_function<std::string>(flag, take,
-                                        fmt::format("{} ({})", setting.help, setting.range.text()))
+      .add_option_function<std::string>(
+          flag, take, fmt::format("{} ({})", as_sentence(setting.help), setting.range.text()))
       ->run_callback_for_default(false)
       ->type_name(type_name(setting));
 }
@@ -63,7 +71,7 @@ CLI::Option* add_switch_flag(CLI::App& command, const std::string& flag, const S
   const auto take = [set](std::int64_t count) { set(count > 0); };
   return command.add_flag_function(
       flag + ",!--no" + flag.substr(1), take,
-      fmt::format("{} (default: {})", setting.help, usual ? "on" : "off"));
+      fmt::format("{} (default: {})", as_sentence(setting.help), usual ? "on" : "off"));
 }
 
 }  // namespace mcdbn::cli

@@ -40,7 +40,7 @@ CLI::Option* add_setting_flag(CLI::App& command, const std::string& flag, const 
       ->default_str(nlohmann::json(member).dump());
 }
 
-/// The same of a member that keeps its value if the flag is not given.
+/// As add_setting_flag() above, for a member that stays unset if the flag is not given.
 template <typename Member>
 CLI::Option* add_setting_flag(CLI::App& command, const std::string& flag, const Setting& setting,
                               std::optional<Member>& member) {

@@ -1,6 +1,5 @@
 #include "mcdbn/synthesis/synthesize.hpp"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
@@ -10,7 +9,6 @@
 
 #include "base/counted.hpp"
 #include "base/interruption.hpp"
-#include "base/text_file.hpp"
 #include "commands.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "setting_flags.hpp"
@@ -85,9 +83,7 @@ void add_synthesize_command(CLI::App& app, CommandContext& context) {
   add_seed_option(*command, context);
   add_quiet_option(*command, context);
   command->footer("Example:\n  mcdbn-cl synthesize --action walk --clips 20 --seed 1 -o clips/");
-  command->callback([&context, options] {
-    context.run = [&context, options] { run_synthesize(context, *options); };
-  });
+  run_with(*command, context, options, run_synthesize);
 }
 
 }  // namespace mcdbn::cli

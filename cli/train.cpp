@@ -130,20 +130,15 @@ void print_record(const nlohmann::ordered_json& record) {
     fmt::print("{:<44}  failed: {}\n", name, printable(record.value("error", "")));
 }
 
-bool fine_tunes(const TrainingConfig& config) {
-  return config.fine_tuning.steps > 0;
-}
-
 /// Checks the settings of all configurations before anything is trained.
 /// @throws ConfigError for the first that are out of range
 void check_sweep(const TrainingOptions& settings, const SweepFile& file) {
-  bool any_fine_tunes = false;
+  std::vector<TrainingConfig> configs;
   for (const SweepConfiguration& configuration : file.configurations) {
-    const TrainingConfig config = settings.resolve(configuration);
-    config.validate();
-    any_fine_tunes |= fine_tunes(config);
+    configs.push_back(settings.resolve(configuration));
+    configs.back().validate();
   }
-  settings.check_used(any_fine_tunes);
+  settings.check_used(configs);
 }
 
 void train_sweep(const CommandContext& context, Device& device, const TrainOptions& options,
@@ -192,14 +187,14 @@ TrainingConfig config_from(const Model& start, const TrainingOptions& settings) 
   return config;
 }
 
-/// Those that a training with these options would have.
+/// Prints the settings that a training with these options would have.
 void print_settings(const CommandContext& context, const TrainOptions& options) {
   TrainingConfig config = options.settings.resolve();
   if (const std::filesystem::path from = start_of(options); !from.empty()) {
     Device device = Device::open({context.platform, context.device});
     config = config_from(load_model(device, from), options.settings);
   }
-  options.settings.check_used(fine_tunes(config));
+  options.settings.check_used({config});
   fmt::print("{}", settings_toml(config));
 }
 
@@ -210,7 +205,7 @@ void run_train(const CommandContext& context, const TrainOptions& options,
     return resume(context, options);
   }
   if (!options.from.empty() && !options.sweep.empty())
-    throw ConfigError("--sweep compares trainings from nothing; leave --from out");
+    throw ConfigError("--sweep trains from random weights; leave --from out");
   if (options.force && !options.sweep.empty())
     throw ConfigError(
         "--force does not apply to --sweep, which trains only configurations without a score; to "
@@ -219,15 +214,18 @@ void run_train(const CommandContext& context, const TrainOptions& options,
   if (options.data.empty() || options.run.empty())
     throw ConfigError("give clips to train on and --output RUN, or --resume RUN");
   TrainingConfig config = options.settings.resolve();
-  if (options.sweep.empty()) options.settings.check_used(fine_tunes(config));
+  const std::filesystem::path from = start_of(options);
+  if (options.sweep.empty() && from.empty()) options.settings.check_used({config});
   const auto clips = find_listed_clips(options.data);
   std::optional<SweepFile> sweep;
   if (!options.sweep.empty()) sweep = read_sweep_file(options.sweep);
   if (sweep) check_sweep(options.settings, *sweep);
   Device device = Device::open({context.platform, context.device});
   if (sweep) return train_sweep(context, device, options, clips, *sweep);
-  const std::filesystem::path from = start_of(options);
-  if (!from.empty()) config = config_from(load_model(device, from), options.settings);
+  if (!from.empty()) {
+    config = config_from(load_model(device, from), options.settings);
+    options.settings.check_used({config});
+  }
   train_once(context, device, options,
              RunFolder::begin(options.run, config, clips, options.force, from));
 }
@@ -279,10 +277,14 @@ void add_train_command(CLI::App& app, CommandContext& context) {
       "  mcdbn-cl train walks/ -o sweep --sweep sweep.toml\n"
       "A sweep file: test = ['held_out/'] and [grid] with order = [3, 5], hidden = [100, 300] …, "
       "all\n"
-      "combinations, or [[configuration]] tables of settings.");
-  command->callback([&context, options, command] {
-    context.run = [&context, options, command] { run_train(context, *options, *command); };
-  });
+      "combinations, or [[configuration]] tables of settings.\n"
+      "Without fine-tuning other defaults hold: 100 --gaussian-epochs, 50 --binary-epochs, 30\n"
+      "--mrbm-epochs, 2 --layers of --order 5 and 300 units. With it no --*-initial-deviation is\n"
+      "used: the greedy stages begin with the first weights of fine-tuning.");
+  run_with(*command, context, options,
+           [command](const CommandContext& shared, const TrainOptions& chosen) {
+             run_train(shared, chosen, *command);
+           });
 }
 
 }  // namespace mcdbn::cli

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <utility>
 #include <vector>
 
+#include "machine_settings.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/joint_map.hpp"
 #include "setting_flags.hpp"
@@ -30,6 +32,29 @@ std::string group_of(const std::string& setting) {
   return dot == std::string::npos ? "Settings" : "Settings of " + setting.substr(0, dot);
 }
 
+bool fine_tunes(const TrainingConfig& config) {
+  return config.fine_tuning.steps > 0;
+}
+
+/// Why a training with these settings does not depend on one of them; empty if it does.
+std::string why_ignored(const TrainingConfig& config, const std::string& setting) {
+  const auto is_of = [&](const char* group) { return setting.starts_with(group); };
+  if (!fine_tunes(config)) {
+    if (is_of("augment."))
+      return "is of the views that fine-tuning learns from, and nothing is fine-tuned";
+    if (is_of("fine-tuning.") && setting != "fine-tuning.steps")
+      return "is of fine-tuning, and nothing is fine-tuned";
+  }
+  constexpr std::array kOfGreedyStages{"batch", "least-batches", "people-power"};
+  const bool is_greedy = is_of("gaussian.") || is_of("binary.") || is_of("mrbm.") ||
+                         std::ranges::count(kOfGreedyStages, setting) > 0;
+  if (is_greedy && fine_tunes(config) && !config.fine_tuning.from_greedy)
+    return "is of the greedy stages, which are left out";
+  if (is_of("binary.") && config.layers == 1)
+    return "is of the layers above the lowest, and there is one layer";
+  return why_unused(config.gaussian, config.binary, setting);
+}
+
 }  // namespace
 
 void TrainingOptions::add_to(CLI::App& command) {
@@ -37,8 +62,8 @@ void TrainingOptions::add_to(CLI::App& command) {
       .add_option(
           "--preset", preset_,
           "default; paper: the paper's own settings, which diverge; paper-stable: the same at "
-          "rates that do not; generation: the greedy stages alone, for `generate`, whose motion "
-          "would come to rest otherwise; general: for many people, actions and skeletons and for "
+          "rates that do not; generation: the greedy stages alone, for `generate`: motion of other "
+          "presets stops after a while; general: for many people, actions and skeletons and for "
           "detectors' tracks, as the model that comes with the program is trained")
       ->check(CLI::IsMember(kPresets))
       ->capture_default_str();
@@ -48,14 +73,17 @@ void TrainingOptions::add_to(CLI::App& command) {
           "greedy: layer by layer, as in the paper, by default with two layers of order 5 and 300 "
           "units; fine-tuning: the whole network by back-propagation, from random weights; both: "
           "some greedy epochs, then fine-tuning (default, unless a preset says otherwise)")
-      ->check(CLI::IsMember({"greedy", "fine-tuning", "joint", "both"}));
+      ->check(CLI::IsMember({"greedy", "fine-tuning", "both"}))
+      ->transform([](const std::string& stages) {
+        return stages == "joint" ? "fine-tuning" : stages;  // its name up to version 0.1
+      });
   command
       .add_option("--tracks", tracks_,
                   "exact: the clips' own joints; detector: fine-tuning learns from what detectors "
-                  "see through cameras all around, in 0.8 of the views unless --augment-detector "
-                  "sets another share")
-      ->check(CLI::IsMember({"exact", "detector"}))
-      ->capture_default_str();
+                  "see through cameras all around, in 0.8 of the views unless the preset or "
+                  "--config sets another share. --augment-detector overrides both (default: exact, "
+                  "unless a preset says otherwise)")
+      ->check(CLI::IsMember({"exact", "detector"}));
   command
       .add_option("--skeleton", skeleton_,
                   "own: the clips' own, which all of them must share; canonical: a humanoid onto "
@@ -123,20 +151,19 @@ TrainingConfig TrainingOptions::resolve(const std::vector<GivenSetting>& last,
   return greedy ? applied_to(TrainingConfig::greedy()) : config;
 }
 
-void TrainingOptions::check_used(bool fine_tunes) const {
-  if (fine_tunes) return;
-  const auto refuse = [](const std::string& flag) {
-    throw ConfigError(fmt::format(
-        "{} is of the views that fine-tuning learns from, and nothing is fine-tuned; leave it out",
-        flag));
+void TrainingOptions::check_used(const std::vector<TrainingConfig>& trained) const {
+  const auto refuse_unused = [&](const std::string& setting, const std::string& flag) {
+    std::string why;
+    for (const TrainingConfig& config : trained)
+      if ((why = why_ignored(config, setting)).empty()) return;
+    throw ConfigError(fmt::format("{} {}; leave it out", flag, why));
   };
-  if (tracks_ == "detector") refuse("--tracks detector");
-  if (preset_ == "general")
+  if (tracks_ == "detector") refuse_unused("augment.detector", "--tracks detector");
+  if (preset_ == "general" && std::ranges::none_of(trained, fine_tunes))
     throw ConfigError(
         "--preset general fine-tunes: leave out what turns that off (--stages greedy, "
         "--fine-tuning-steps 0), or choose another preset");
-  for (const GivenSetting& given : flags_)
-    if (given.name.starts_with("augment.")) refuse(given.who);
+  for (const GivenSetting& given : flags_) refuse_unused(given.name, given.who);
 }
 
 void TrainingOptions::apply_stages(TrainingConfig& config) const {
@@ -145,12 +172,14 @@ void TrainingOptions::apply_stages(TrainingConfig& config) const {
     config.fine_tuning.steps = 0;
   else if (config.fine_tuning.steps == 0)
     config.fine_tuning.steps = FineTuningSettings{}.steps;
-  config.fine_tuning.from_greedy = stages_ != "fine-tuning" && stages_ != "joint";
+  config.fine_tuning.from_greedy = stages_ != "fine-tuning";
 }
 
 void TrainingOptions::apply_tracks(TrainingConfig& config) const {
-  if (tracks_ == "detector" && config.augment.detector == 0)
-    config.augment.detector = TrainingConfig::kShareOfDetectorViews;
+  double& share = config.augment.detector;
+  if (std::ranges::count(flags_, "augment.detector", &GivenSetting::name) > 0) return;
+  if (tracks_ == "exact") share = 0;
+  if (tracks_ == "detector" && share == 0) share = TrainingConfig::kShareOfDetectorViews;
 }
 
 void TrainingOptions::apply_skeleton(TrainingConfig& config) const {

@@ -20,9 +20,10 @@ class TrainingOptions {
   /// @throws ConfigError
   TrainingConfig resolve(const std::vector<GivenSetting>& last = {},
                          const std::vector<GivenSetting>& start = {}) const;
-  /// @throws ConfigError naming a flag or a preset that is of fine-tuning's views, if nothing is
-  ///         fine-tuned
-  void check_used(bool fine_tunes) const;
+  /// @param trained the settings of each training that there will be
+  /// @throws ConfigError naming a flag that affects none of them, or a preset that fine-tunes where
+  ///         nothing is fine-tuned
+  void check_used(const std::vector<TrainingConfig>& trained) const;
 
  private:
   void add_setting(CLI::App& command, const Setting& setting, const nlohmann::json& usual);
@@ -30,7 +31,7 @@ class TrainingOptions {
   void apply_tracks(TrainingConfig& config) const;
   void apply_skeleton(TrainingConfig& config) const;
 
-  std::string preset_ = "default", stages_, tracks_ = "exact", skeleton_;
+  std::string preset_ = "default", stages_, tracks_, skeleton_;
   std::vector<GivenSetting> file_, flags_;
   JointMap joint_map_;
 };

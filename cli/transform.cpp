@@ -92,9 +92,7 @@ void add_transform_command(CLI::App& app, CommandContext& context) {
       "Example:\n  mcdbn-cl transform --model digits.safetensors digits.npy -o code.npy\n"
       "  mcdbn-cl transform --model digits.safetensors digits.npy --inverse -o again.npy\n"
       "  mcdbn-cl transform --model m.safetensors --modality left=l.npy --infer right -o r.npy");
-  command->callback([&context, options] {
-    context.run = [&context, options] { run_transform(context, *options); };
-  });
+  run_with(*command, context, options, run_transform);
 }
 
 }  // namespace mcdbn::cli

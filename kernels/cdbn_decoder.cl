@@ -92,10 +92,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_samples(
         if (k == gibbs_steps) {
           store_frame(sum, count, state, start, sequences - row0, frame, column);
         } else {
-          keep_tile(sum, count, v, V_LD, column);
-          for (int c = 0; c < count; ++c)
-            draw_rows(v, V_LD, column + c * VEC, row0, temperature,
-                      (uint4)(random.xyz, random.w + (uint)(2 * k)));
+          keep_draws(sum, count, v, V_LD, column, row0, temperature,
+                     (uint4)(random.xyz, random.w + (uint)(2 * k)));
         }
       });
       SYNC();
@@ -104,10 +102,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void decode_samples(
           load_tile(sum, count, bias_h, H_LD, column);
           add_products(sum, count, v, V_LD, VISIBLE, w, H_LD, column);
           apply_sigmoid(sum, count, column, HIDDEN);
-          keep_tile(sum, count, h, H_LD, column);
-          for (int c = 0; c < count; ++c)
-            draw_rows(h, H_LD, column + c * VEC, row0, temperature,
-                      (uint4)(random.xyz, random.w + (uint)(2 * k + 1)));
+          keep_draws(sum, count, h, H_LD, column, row0, temperature,
+                     (uint4)(random.xyz, random.w + (uint)(2 * k + 1)));
         });
       SYNC();
     }

@@ -67,7 +67,7 @@ INLINE void add_rows(floatN sum[TILE_ROWS][COLUMNS], const int first, const int 
   }
 }
 
-// The same of Aᵀ: row i of A has its TILE_ROWS values side by side.
+// add_rows() for Aᵀ: row i of A has its TILE_ROWS values side by side.
 INLINE void add_outer_rows(floatN sum[TILE_ROWS][COLUMNS], const int first, const int count,
                            global const float* a, int a_offset, int lda, global const int* a_rows,
                            int a_first, int a_shift, int row0, global const float* b, int ldb,

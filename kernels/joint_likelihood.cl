@@ -11,7 +11,7 @@
 // rows past `rows` repeat the block's last one. loss[m · stride + row] = Σ (v data − v end)² of modality m.
 // SAMPLE_VISIBLE=1 draws the visible units of every step, too. PERSISTENT=1 takes the first step's hidden
 // units from `particles` [stride x H_LD], and leaves those of the last step there; where `fresh`, the
-// chains start from the data.
+// chains start from the data. PERSISTENT=0 uses neither of the two arguments: any buffer will do.
 //
 // Variants that `scripts/lint kernels` compiles:
 //   VEC=1,4,8,16 GROUP=1,64 SAMPLE= STEPS= ALL_UNITS=
@@ -22,7 +22,7 @@
 
 #undef SAMPLE
 #define SAMPLE 1
-#include "tile.clh"
+#include "persistent_chain.clh"
 #include "mrbm_shape.clh"
 
 #ifndef ALL_UNITS
@@ -31,29 +31,19 @@
 #ifndef SAMPLE_VISIBLE
 #define SAMPLE_VISIBLE 0
 #endif
-#ifndef PERSISTENT
-#define PERSISTENT 0
-#endif
 
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void joint_chain(
     global const int* layout, int rows, int stride, global const float* parameters,
     global const float* transposed, global const float* codes, global float* visible,
     global float* hidden_data, global float* hidden, global float* loss, int gibbs_steps,
-    uint4 random
-#if PERSISTENT
-    ,
-    global float* particles, int fresh
-#endif
-) {
+    uint4 random, global float* particles, int fresh) {
   local float x[ROWS * ALL_UNITS];
   local float h[ROWS * H_LD];
   const int row0 = get_group_id(0) * ROWS;
   const int present_rows = min(ROWS, rows - row0);
   hidden_data += row0 * H_LD;
   hidden += row0 * H_LD;
-#if PERSISTENT
   particles += row0 * H_LD;
-#endif
   floatN sum[ROWS][COLUMNS];
 
   for (int m = 0; m < MODALITIES; ++m) {
@@ -76,25 +66,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void joint_chain(
       apply_sigmoid(sum, count, column, HIDDEN);
       if (step == 0) store_tile(sum, count, hidden_data, H_LD, column);
       if (last) store_tile(sum, count, hidden, H_LD, column);
-#if PERSISTENT
-      if (step == 0 && !fresh) {
-        load_tile(sum, count, particles, H_LD, column);
-        keep_tile(sum, count, h, H_LD, column);
-      } else {
-#else
-      if (!last) {
-#endif
-        keep_tile(sum, count, h, H_LD, column);
-        for (int c = 0; c < count; ++c)
-          draw_rows(h, H_LD, column + c * VEC, row0, 1.0f,
+      start_or_draw(sum, count, h, H_LD, particles, fresh, step, last, column, row0,
                     (uint4)(random.xyz, random.w + (uint)step));
-      }
-#if PERSISTENT
-      if (last) {
-        load_kept_tile(sum, count, h, H_LD, column);
-        store_tile(sum, count, particles, H_LD, column);
-      }
-#endif
     });
     SYNC();
     if (last) break;

@@ -4,13 +4,14 @@ activity, saturation and the weights' norms of every stage.
 
     scripts/plot_metrics.py RUN [-o metrics.png]
 
-Of a training that still runs it draws the epochs so far (RUN/unfinished).
+While a training runs, it draws the epochs so far (RUN/unfinished).
 """
 
 import argparse
-import json
 import pathlib
 import sys
+
+from plotting import json_lines, pyplot
 
 # What is drawn: key of metrics.jsonl, title, and whether the axis is logarithmic.
 PANELS = [
@@ -26,13 +27,9 @@ PANELS = [
 
 
 def read_metrics(path):
-    """Lines of each stage, in the order of training; a last line that was cut off is left out."""
+    """Lines of each stage, in the order of training."""
     stages = {}
-    for line in path.read_text(encoding="utf-8").splitlines():
-        try:
-            entry = json.loads(line)
-        except ValueError:
-            continue
+    for entry in json_lines(path):
         stages.setdefault(entry["stage"], []).append(entry)
     return stages
 
@@ -46,13 +43,7 @@ def metrics_of(run):
 
 
 def draw(stages, title, output):
-    try:
-        import matplotlib
-    except ImportError:
-        sys.exit("matplotlib is missing: scripts/install_dependencies --plots installs it")
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
-
+    plt = pyplot()
     panels = [panel for panel in PANELS
               if any(panel[0] in entry for entries in stages.values() for entry in entries)]
     columns = 2 if len(panels) <= 4 else 4

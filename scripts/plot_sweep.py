@@ -6,9 +6,10 @@ point a configuration, the best marked.
 """
 
 import argparse
-import json
 import pathlib
 import sys
+
+from plotting import json_lines, pyplot
 
 TITLES = {"pcc_channel": "mean PCC per channel", "pcc_flat": "mean PCC, flattened",
           "mpjpe_mm": "MPJPE (mm)"}
@@ -17,11 +18,7 @@ TITLES = {"pcc_channel": "mean PCC per channel", "pcc_flat": "mean PCC, flattene
 def read_sweep(path):
     """Configurations that were scored, and how many failed."""
     scored, failed = [], 0
-    for line in path.read_text(encoding="utf-8").splitlines():
-        try:
-            record = json.loads(line)
-        except ValueError:
-            continue
+    for record in json_lines(path):
         if record.get("status") == "ok":
             scored.append(record)
         else:
@@ -44,13 +41,7 @@ def best_of(records, measure):
 
 
 def draw(records, measure, output):
-    try:
-        import matplotlib
-    except ImportError:
-        sys.exit("matplotlib is missing: scripts/install_dependencies --plots installs it")
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
-
+    plt = pyplot()
     best = best_of(records, measure)
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.8), sharey=True)
     panels = [("training_s", "training time (s)"),

@@ -2,8 +2,9 @@
 """Makes a model ready to be passed on: share_model.py MODEL OUT ACKNOWLEDGEMENT [START]
 
 Training clips, and the model that the training began with, keep their names and fingerprints and
-lose the folders that they lay in; the acknowledgement goes into the metadata. Numbers stay as they
-are. START is that model's file: which models it is a mean of (`mean_of`), if any, is put down, too.
+lose the folders that they lay in, and clips the people and actions in them; the acknowledgement
+goes into the metadata. Numbers stay as they are. START is that model's file: which models it is a
+mean of (`mean_of`), if any, is put down, too.
 """
 
 import json
@@ -17,6 +18,8 @@ def shared(header: dict, acknowledgement: str) -> dict:
     about = json.loads(header["__metadata__"]["mcdbn"])
     for clip in about["training_clips"]:
         clip["path"] = pathlib.Path(clip["path"]).name
+        clip.pop("person", None)
+        clip.pop("action", None)
     if "started_from" in about:
         start = about["started_from"]
         start["model"] = pathlib.Path(start["model"]).name

@@ -8,7 +8,7 @@ namespace mcdbn {
 /// from a signal handler.
 void request_interruption() noexcept;
 
-/// Withdraws the request.
+/// Withdraws the request. For tests.
 void clear_interruption() noexcept;
 
 bool interruption_requested() noexcept;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -97,7 +96,7 @@ class CsvReader {
     ++rows_;
   }
 
-  /// Of a file of one column: an empty line is an empty cell.
+  /// Adds the empty lines of a file of one column, where each is an empty cell.
   void add_unknown_rows() {
     values_.insert(values_.end(), empty_, std::numeric_limits<float>::quiet_NaN());
     rows_ += static_cast<Eigen::Index>(empty_);

@@ -10,9 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <vector>
 

@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <string>
 #include <system_error>
-#include <utility>
 
 #include "mcdbn/base/errors.hpp"
 
@@ -66,7 +65,7 @@ fs::path temporary_beside(const fs::path& place) {
          fmt::format(".mcdbn-{}-{}{}", ::getpid(), ++count, place.extension().string());
 }
 
-/// What it is called in full, whether it exists or not.
+/// The full path, whether it exists or not.
 fs::path place_of(const fs::path& path) {
   std::error_code error;
   return fs::weakly_canonical(fs::absolute(path, error), error);
@@ -148,7 +147,7 @@ void check_replaceable(const fs::path& path) {
 
 OutputFile::OutputFile(const fs::path& path)
     : named_(path), path_(followed(without_slash(path))), temporary_(temporary_beside(path_)) {
-  // As it was named: a link of the system's own, /dev/stdout, leads to no name.
+  // Checks the path as it was given: a link of the system's own, /dev/stdout, leads to no name.
   check_replaceable(path);
 }
 
@@ -177,7 +176,7 @@ OutputBatch::~OutputBatch() {
   current = nullptr;
   std::error_code ignored;
   for (const Waiting& waiting : waiting_) fs::remove_all(waiting.temporary, ignored);
-  // Those with something in them stay.
+  // Folders with something in them stay.
   std::for_each(made_folders_.rbegin(), made_folders_.rend(),
                 [&](const fs::path& folder) { fs::remove(folder, ignored); });
 }

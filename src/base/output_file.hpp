@@ -10,7 +10,7 @@
 
 namespace mcdbn {
 
-/// What a command may write to one place.
+/// Kind of output that a command may write to one place.
 enum class OutputKind { file, file_or_folder };
 
 /// A file, or a folder of files, that is written under a temporary name beside its place and put
@@ -64,7 +64,7 @@ class OutputBatch {
   struct Waiting {
     std::filesystem::path temporary, place;
   };
-  /// What a file is, whatever it is called: its device and its number there.
+  /// Identity of a file, whatever its name: its device and its number there.
   using FileIdentity = std::pair<std::uintmax_t, std::uintmax_t>;
   static std::optional<FileIdentity> identity_of(const std::filesystem::path& path);
   static thread_local OutputBatch* current;
@@ -96,7 +96,7 @@ void note_input(const std::filesystem::path& path);
 /// @throws InputError if the place is taken by what is not to be replaced, as for OutputFile
 void check_replaceable(const std::filesystem::path& path);
 
-/// What there is that is no regular file, in words: "a pipe".
+/// Kind of something that is not a regular file, in words: "a pipe".
 std::string_view kind_of(std::filesystem::file_type type);
 
 /// Checks what can be checked of an output before the work is done.

@@ -6,8 +6,8 @@
 /// would draw the same.
 namespace mcdbn::random_streams {
 
-/// Of a CDBN's first layer, and one more for each further one: CDBN 0 is trained first. Those of
-/// two modalities lie before the MRBM's, further ones behind all others.
+/// Stream of a CDBN's first layer; each further layer has the next one. CDBN 0 is trained first.
+/// Streams of two modalities lie before the MRBM's, those of further ones behind all others.
 constexpr std::uint16_t layers_of(std::size_t cdbn) {
   return static_cast<std::uint16_t>(cdbn < 2 ? 64 * cdbn : 0x1000 + 64 * (cdbn - 2));
 }
@@ -22,7 +22,7 @@ inline constexpr std::uint16_t kScalingViews =
 inline constexpr std::uint16_t kDrawnPairs = 197;  ///< of a report
 inline constexpr std::uint16_t kDecoder = 200;
 inline constexpr std::uint16_t kMrbmChain = 201;
-// Of tracks: augmented views' and evaluations'.
+// Streams of tracks: augmented views' and evaluations'.
 inline constexpr std::uint16_t kPixelNoise = 202;
 inline constexpr std::uint16_t kMissingJoints = 203;
 inline constexpr std::uint16_t kHiddenArm = 204;
@@ -35,7 +35,7 @@ inline constexpr std::uint16_t kOtherBody = 213;
 inline constexpr std::uint16_t kNewPoses = 214;        ///< of augmented views
 inline constexpr std::uint16_t kPosteriorDraws = 215;  ///< of the fit
 inline constexpr std::uint16_t kFreshViews = 216;
-// Of a single machine (machines/sampling.hpp, energy.hpp, partition.hpp).
+// Streams of a single machine (machines/sampling.hpp, energy.hpp, partition.hpp).
 inline constexpr std::uint16_t kChains = 210;
 inline constexpr std::uint16_t kFlippedUnits = 211;
 inline constexpr std::uint16_t kAnnealing = 212;

@@ -10,10 +10,10 @@ namespace mcdbn {
 /// writing too, and what is no UTF-8 replaced.
 std::string printable(std::string_view text);
 
-/// The same in one line: line ends are spaces.
+/// As printable(), in one line: line ends become spaces.
 std::string printable_line(std::string text);
 
-/// The same, of a text that is longer its end.
+/// As printable(), of a longer text only the end.
 std::string printable_end(const std::string& text, std::size_t longest);
 
 /// A piece of input in quotes, for messages: not more than its beginning, and printable.

@@ -11,8 +11,8 @@ namespace mcdbn {
 /// The whole file, byte for byte. @throws InputError if it cannot be read or is a folder
 std::string read_text_file(const std::filesystem::path& path);
 
-/// As an OutputFile: readers see the old file or the whole new one, and no partial file is left
-/// behind. @throws InputError if it cannot be written
+/// Writes the file as an OutputFile: readers see the old file or the whole new one, and no partial
+/// file is left behind. @throws InputError if it cannot be written
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace mcdbn

@@ -32,9 +32,9 @@ std::optional<fs::path> entry_path(const std::string& kind, const std::string& k
   return *folder / fmt::format("{}-{:016x}.bin", kind, fnv1a(key));
 }
 
-/// What an entry of this key and value must begin with.
+/// Beginning of an entry of this key and value.
 std::string header(const std::string& key, const std::string& value) {
-  // What follows the same characters as the file's name would only repeat it.
+  // Hashed behind a line end, unlike for the file's name: else the two hashes would be the same.
   return fmt::format("mcdbn-cl cache 2 {:016x} {} {:016x}\n", fnv1a('\n' + key), value.size(),
                      fnv1a(value));
 }

@@ -12,12 +12,23 @@ namespace {
 
 constexpr double kPower = 2.5, kMost = 1.5;
 
-/// The median of what is above 0; 0 where nothing is.
+/// Confidences above this share of the highest are of joints that the camera sees.
+constexpr double kOfVisible = 0.5;
+/// The highest, but for outliers: that many are below it.
+constexpr double kHighest = 0.9;
+
+/// The median of visible joints' confidences; 0 where nothing is above 0. Where most of a body lies
+/// outside of the image, hidden joints would else give the scale.
 double usual_confidence(const MatrixD& confidence) {
   std::vector<double> seen;
   std::ranges::copy_if(confidence.reshaped(), std::back_inserter(seen),
                        [](double value) { return value > 0; });
-  return seen.empty() ? 0 : upper_median(std::move(seen));
+  if (seen.empty()) return 0;
+  const auto highest = seen.begin() + static_cast<std::ptrdiff_t>(kHighest * (seen.size() - 1));
+  std::ranges::nth_element(seen, highest);
+  const double visible = kOfVisible * *highest;
+  std::erase_if(seen, [&](double value) { return value < visible; });
+  return upper_median(std::move(seen));
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "base/numbers.hpp"
 #include "base/random_sequence.hpp"

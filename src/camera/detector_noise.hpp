@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -46,21 +45,22 @@ struct DetectorNoise {
     visit(
         Setting{"stray", share_below_one(), "", "share of the frames in which a joint is far off"},
         self.stray);
-    visit(Setting{"stray-hands", share_below_one(), "", "the same of wrists and hands"},
+    visit(Setting{"stray-hands", share_below_one(), "", "as stray, of wrists and hands"},
           self.stray_hands);
-    visit(Setting{"stray-hidden", share_below_one(), "", "the same of hidden joints"},
+    visit(Setting{"stray-hidden", share_below_one(), "", "as stray, of hidden joints"},
           self.stray_hidden);
     visit(Setting{"stray-size", above(0, 100), "", "how far, in the middle"}, self.stray_size);
     visit(Setting{"stray-time", above(0), "seconds", "how long, on average"}, self.stray_s);
     visit(Setting{"lost", share_below_one(), "", "share of the frames in which a joint is missing"},
           self.lost);
-    visit(Setting{"lost-hidden", share_below_one(), "", "the same of hidden joints"},
+    visit(Setting{"lost-hidden", share_below_one(), "", "as lost, of hidden joints"},
           self.lost_hidden);
     visit(Setting{"lost-time", above(0), "seconds", "how long, on average"}, self.lost_s);
     visit(Setting{"swapped-legs", share_below_one(), "",
                   "share of the frames with the legs close to each other in which left is right"},
           self.swapped_legs);
-    visit(Setting{"swapped-arms", share_below_one(), "", "the same of arms"}, self.swapped_arms);
+    visit(Setting{"swapped-arms", share_below_one(), "", "as swapped-legs, of arms"},
+          self.swapped_arms);
     visit(Setting{"swap-time", above(0), "seconds", "how long, on average"}, self.swap_s);
     visit(Setting{"confidence", within(0, 1), "", "mean, of a visible joint"}, self.confidence);
     visit(Setting{"confidence-spread", within(0, 100), "", "its deviation; twice it if hidden"},
@@ -97,8 +97,8 @@ std::vector<Keypoint> seen_keypoints(const Track2d& track);
 /// they look longest. NaN without those joints.
 double person_height_px(const Track2d& track);
 
-/// Turns exact places of keypoints into a detector's. The same seed gives the same; the noise of a
-/// column does not depend on other columns, but for swaps, which exchange limbs of all roles at
+/// Turns exact places of keypoints into a detector's. A seed always gives the same noise, which in
+/// one column does not depend on other columns, but for swaps, which exchange limbs of all roles at
 /// once.
 /// @param track exact, with keypoints  @param hidden [frames x joints] hidden from the camera
 /// @param height_px [frames] of the body in the image

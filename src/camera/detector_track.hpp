@@ -8,13 +8,14 @@
 
 namespace mcdbn {
 
-/// Keypoints of a clip as the camera sees them, exactly: confidence 1, NaN and 0 where one is
+/// Keypoints as the camera sees them, exactly: confidence 1; NaN and confidence 0 where one is
 /// behind the camera, outside of its image, or not on the body.
-Track2d project_keypoints(const Motion& motion, const SkeletonRoles& roles,
-                          const std::vector<Keypoint>& keypoints, const Camera& camera);
+/// @param places [frames x 3·keypoints] in the world, as keypoint_places() has them
+Track2d exact_track(const MatrixD& places, const std::vector<Keypoint>& keypoints,
+                    const Camera& camera, double fps);
 
-/// What a detector would make of the clip: its joints with its noise, of which there is more where
-/// the body is in its own way. The same seed gives the same.
+/// Track that a detector would make of the clip: its joints with its noise, with more noise where
+/// the body occludes itself. A seed always gives the same track.
 /// @throws ConfigError if a setting is out of range
 Track2d detector_track(const Motion& motion, const SkeletonRoles& roles,
                        const std::vector<Keypoint>& keypoints, const Camera& camera,

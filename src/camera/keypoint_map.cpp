@@ -31,7 +31,7 @@ constexpr double kTurn_rad = 0.3;
 
 /// The weight of a place whose offset from its joint is uncertain by so much, in body heights,
 /// relative to that of the joint itself.
-double sureness(double uncertain) {
+double weight_of_uncertainty(double uncertain) {
   return kHit * kHit / (kHit * kHit + uncertain * uncertain);
 }
 
@@ -78,62 +78,86 @@ void hide_column(Track2d& track, int column) {
 
 }  // namespace
 
+/// The skeleton at rest, as places on the body are read from it.
+struct KeypointMap::RestBody {
+  RestBody(const Skeleton& of, const SkeletonRoles& roles, const std::vector<Keypoint>& keypoints)
+      : skeleton(of),
+        pose(unturned_pose(of)),
+        trunk(trunk_axes(pose, roles).value_or(Eigen::Matrix3d::Identity())),
+        places(rest_places(of, roles, keypoints)),
+        height(body_height(of)) {}
+
+  const Skeleton& skeleton;
+  WorldPose pose;
+  Eigen::Matrix3d trunk;  ///< left, up, forward
+  MatrixD places;         ///< of the keypoints [1 x 3·keypoints]
+  double height;
+};
+
 KeypointMap::KeypointMap(const std::vector<Keypoint>& keypoints, const Skeleton& skeleton,
                          const SkeletonRoles& roles)
     : keypoints_(keypoints), roles_(roles) {
-  const double height = body_height(skeleton);
-  const WorldPose rest = rest_pose(skeleton);
-  const auto axes = trunk_axes(rest, roles).value_or(Eigen::Matrix3d::Identity());
-  const MatrixD places = rest_places(skeleton, roles, keypoints);
-  const auto add = [&](JointRole role, std::vector<int> columns) {
-    if (!roles.has(role)) return;
-    Eigen::Vector3d place(0, 0, 0);
-    for (const int column : columns)
-      place +=
-          places.row(0).segment<3>(3 * column).transpose() / static_cast<double>(columns.size());
-    if (!place.allFinite()) return;
-    const int joint = roles.joint(role);
-    const auto known = std::ranges::find(joints_, joint);
-    const auto index = static_cast<std::size_t>(known - joints_.begin());
-    if (known == joints_.end()) {
-      joints_.push_back(joint);
-      names_.push_back(skeleton.joints[static_cast<std::size_t>(joint)].name);
-    }
-    const Eigen::Vector3d offset = place - rest.position[static_cast<std::size_t>(joint)];
-    const auto& halfway = keypoints[static_cast<std::size_t>(columns.front())].halfway;
-    const bool own =
-        columns.size() == 1 && !(halfway && column_of(keypoints, halfway->first) >= 0 &&
-                                 column_of(keypoints, halfway->second) >= 0);
-    readings_.push_back({index, std::move(columns), axes.transpose() * offset / height, own});
-  };
+  const RestBody rest(skeleton, roles, keypoints);
   for (std::size_t k = 0; k < keypoints.size(); ++k)
-    if (keypoints[k].role) add(*keypoints[k].role, {static_cast<int>(k)});
+    if (keypoints[k].role) add_reading(rest, *keypoints[k].role, {static_cast<int>(k)});
   for (const auto& [role, left] : kBetween) {
     const int left_column = column_of(keypoints, left),
               right_column = column_of(keypoints, other_side(left));
-    const bool observed = std::ranges::find(joints_, roles.joint(role)) != joints_.end();
-    if (!observed && left_column >= 0 && right_column >= 0) add(role, {left_column, right_column});
+    if (!shows(role) && left_column >= 0 && right_column >= 0)
+      add_reading(rest, role, {left_column, right_column});
   }
-  const bool has_pelvis = std::ranges::find(joints_, roles.joint(pelvis)) != joints_.end();
-  if (joints_.size() < kFewestJoints || !has_pelvis)
-    throw InputError(fmt::format(
-        "the 2D track shows too little of the body: {} of the model's joints{}; at least {} are "
-        "needed, the pelvis or both hips among them{}",
-        joints_.size(),
-        names_.empty() ? std::string() : fmt::format(" ({})", fmt::join(names_, ", ")),
-        kFewestJoints, advice_on_names(keypoints)));
+  require_enough_joints();
+  measure_trunk(rest);
+}
 
-  const auto centre = [&](JointRole left) -> Eigen::Vector3d {
-    return 0.5 * (rest.position[static_cast<std::size_t>(roles.joint(left))] +
-                  rest.position[static_cast<std::size_t>(roles.joint(other_side(left)))]);
+bool KeypointMap::shows(JointRole role) const {
+  return std::ranges::find(joints_, roles_.joint(role)) != joints_.end();
+}
+
+void KeypointMap::add_reading(const RestBody& rest, JointRole role, std::vector<int> columns) {
+  if (!roles_.has(role)) return;
+  Eigen::Vector3d place(0, 0, 0);
+  for (const int column : columns)
+    place +=
+        rest.places.row(0).segment<3>(3 * column).transpose() / static_cast<double>(columns.size());
+  if (!place.allFinite()) return;
+  const int joint = roles_.joint(role);
+  const auto known = std::ranges::find(joints_, joint);
+  const auto index = static_cast<std::size_t>(known - joints_.begin());
+  if (known == joints_.end()) {
+    joints_.push_back(joint);
+    names_.push_back(rest.skeleton.joints[static_cast<std::size_t>(joint)].name);
+  }
+  const Eigen::Vector3d offset = place - rest.pose.position[static_cast<std::size_t>(joint)];
+  const auto& halfway = keypoints_[static_cast<std::size_t>(columns.front())].halfway;
+  const bool is_marked_itself =
+      columns.size() == 1 && !(halfway && column_of(keypoints_, halfway->first) >= 0 &&
+                               column_of(keypoints_, halfway->second) >= 0);
+  readings_.push_back(
+      {index, std::move(columns), rest.trunk.transpose() * offset / rest.height, is_marked_itself});
+}
+
+void KeypointMap::require_enough_joints() const {
+  if (joints_.size() >= kFewestJoints && shows(pelvis)) return;
+  throw InputError(fmt::format(
+      "the 2D track shows too little of the body: {} of the model's joints{}; at least {} are "
+      "needed, the pelvis or both hips among them{}",
+      joints_.size(),
+      names_.empty() ? std::string() : fmt::format(" ({})", fmt::join(names_, ", ")), kFewestJoints,
+      advice_on_names(keypoints_)));
+}
+
+void KeypointMap::measure_trunk(const RestBody& rest) {
+  const auto position = [&](JointRole role) -> const Eigen::Vector3d& {
+    return rest.pose.position[static_cast<std::size_t>(roles_.joint(role))];
   };
-  if (!roles.has(left_hip) || !roles.has(right_hip)) return;
-  hip_width_ = (rest.position[static_cast<std::size_t>(roles.joint(left_hip))] -
-                rest.position[static_cast<std::size_t>(roles.joint(right_hip))])
-                   .norm() /
-               height;
-  if (roles.has(left_shoulder) && roles.has(right_shoulder))
-    trunk_length_ = (centre(left_shoulder) - centre(left_hip)).norm() / height;
+  const auto centre = [&](JointRole left) -> Eigen::Vector3d {
+    return 0.5 * (position(left) + position(other_side(left)));
+  };
+  if (!roles_.has(left_hip) || !roles_.has(right_hip)) return;
+  hip_width_ = (position(left_hip) - position(right_hip)).norm() / rest.height;
+  if (roles_.has(left_shoulder) && roles_.has(right_shoulder))
+    trunk_length_ = (centre(left_shoulder) - centre(left_hip)).norm() / rest.height;
 }
 
 KeypointMap::Displacements KeypointMap::seen_displacements(const Track2d& track) const {
@@ -178,7 +202,7 @@ Track2d KeypointMap::without(const Track2d& track, const Displacements& displace
       if (!place.allFinite() || !shift.allFinite()) continue;
       const double confidence = std::min(track.confidence(t, reading.columns.front()),
                                          track.confidence(t, reading.columns.back()));
-      const double weight = confidence * sureness(displacements.uncertain[k]);
+      const double weight = confidence * weight_of_uncertainty(displacements.uncertain[k]);
       weights(t, joint) += weight;
       result.x_px(t, joint) += weight * (place - shift).x();
       result.y_px(t, joint) += weight * (place - shift).y();
@@ -220,8 +244,8 @@ Track2d KeypointMap::evidence(Track2d joints) const {
   for (std::size_t joint = 0; joint < names_.size(); ++joint) {
     double trust = 0;
     for (const Reading& reading : readings_)
-      if (reading.joint == joint && reading.own)
-        trust = std::max(trust, sureness(kTurn_rad * reading.offset.norm()));
+      if (reading.joint == joint && reading.is_marked_itself)
+        trust = std::max(trust, weight_of_uncertainty(kTurn_rad * reading.offset.norm()));
     if (trust > 0)
       joints.confidence.col(static_cast<Eigen::Index>(joint)) *= trust;
     else

@@ -38,12 +38,13 @@ class KeypointMap {
   Track2d evidence(Track2d joints) const;
 
  private:
+  struct RestBody;
   /// An observation of a joint: the mean of some columns.
   struct Reading {
-    std::size_t joint = 0;     ///< index into joints_
-    std::vector<int> columns;  ///< one, or those of both sides
-    Eigen::Vector3d offset;    ///< of the place from the joint: left, up, forward; body heights
-    bool own = true;           ///< by a place of its own, not by other joints that are observed
+    std::size_t joint = 0;         ///< index into joints_
+    std::vector<int> columns;      ///< one, or those of both sides
+    Eigen::Vector3d offset;        ///< of the place from the joint: left, up, forward; body heights
+    bool is_marked_itself = true;  ///< not by other joints that are observed
   };
   /// Pixels from joint to place for each reading in turn, and how far off that may be, in body
   /// heights. [frames x 2·readings]
@@ -51,6 +52,14 @@ class KeypointMap {
     MatrixD px;
     std::vector<double> uncertain;
   };
+
+  bool shows(JointRole role) const;
+  /// Adds an observation of the role's joint, if the skeleton has it and all the keypoints' places.
+  void add_reading(const RestBody& rest, JointRole role, std::vector<int> columns);
+  /// @throws InputError
+  void require_enough_joints() const;
+  /// Sets hip_width_ and trunk_length_; 0 where the skeleton lacks hips or shoulders.
+  void measure_trunk(const RestBody& rest);
 
   Displacements seen_displacements(const Track2d& track) const;
   Track2d without(const Track2d& track, const Displacements& displacements) const;

@@ -5,7 +5,7 @@
 namespace mcdbn {
 namespace {
 
-/// Of the opposite role, where the other's mirror image lies.
+/// Whether the two have opposite roles and places that mirror each other.
 bool are_mirrored(const Keypoint& left, const Keypoint& right) {
   const Eigen::Vector3d mirror(-1, 1, 1);
   return right.role == other_side(*left.role) &&

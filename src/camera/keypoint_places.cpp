@@ -27,7 +27,7 @@ std::optional<Eigen::Matrix3d> standing_axes(const WorldPose& rest, const Skelet
 std::vector<Eigen::Matrix3d> joint_from_upright(const Motion& motion, const SkeletonRoles& roles,
                                                 const std::vector<WorldPose>& poses) {
   const auto joints = motion.skeleton.joints.size();
-  const WorldPose rest = rest_pose(motion.skeleton);
+  const WorldPose rest = unturned_pose(motion.skeleton);
   if (const auto axes = standing_axes(rest, roles)) {
     std::vector<Eigen::Matrix3d> turns;
     for (const Eigen::Matrix3d& joint : rest.world_from_joint)
@@ -82,7 +82,7 @@ std::optional<Eigen::Matrix3d> trunk_axes(const WorldPose& pose, const SkeletonR
   return {};
 }
 
-WorldPose rest_pose(const Skeleton& skeleton) {
+WorldPose unturned_pose(const Skeleton& skeleton) {
   return forward_kinematics(skeleton, rest_channels(skeleton));
 }
 

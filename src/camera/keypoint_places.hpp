@@ -13,8 +13,8 @@ namespace mcdbn {
 /// joint above them.
 std::optional<Eigen::Matrix3d> trunk_axes(const WorldPose& pose, const SkeletonRoles& roles);
 
-/// All rotations zero.
-WorldPose rest_pose(const Skeleton& skeleton);
+/// No joint turned, each at its offset, the root too.
+WorldPose unturned_pose(const Skeleton& skeleton);
 
 /// Where a moving body has the joints of each role. @return [frames x 3·roles] world, in the order
 /// of joint_roles(), NaN where the skeleton has none
@@ -27,7 +27,7 @@ MatrixD role_positions(const Motion& motion, const SkeletonRoles& roles);
 /// @return [frames x 3·keypoints] world, NaN where the skeleton lacks the joint
 MatrixD keypoint_places(const Motion& motion, const SkeletonRoles& roles,
                         const std::vector<Keypoint>& keypoints);
-/// The same of the rest pose. @return [1 x 3·keypoints]
+/// keypoint_places() of unturned_pose(). @return [1 x 3·keypoints]
 MatrixD rest_places(const Skeleton& skeleton, const SkeletonRoles& roles,
                     const std::vector<Keypoint>& keypoints);
 

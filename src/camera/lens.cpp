@@ -12,7 +12,7 @@
 namespace mcdbn {
 namespace {
 
-/// Of a ray that is 84 degrees aside: as x/z and y/z those further out grow without bound.
+/// Bound of the length of a ray (x/z, y/z): one 84 degrees aside. Further out it grows without end.
 constexpr double kSteepest = 10;
 
 cv::Matx33d intrinsics(const Camera& camera) {

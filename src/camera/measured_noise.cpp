@@ -39,7 +39,7 @@ double fourth_difference(const Track2d& track, Eigen::Index frame, Eigen::Index 
   return difference.norm() / std::sqrt(2 * kSquares);
 }
 
-/// What the same of a detector with those settings would be at that speed.
+/// The expected fourth_difference() of a detector with those settings at that speed.
 double expected_difference(const DetectorNoise& noise, double fps, double speed) {
   const double r = std::exp(-1.0 / (noise.drift_s * fps));
   const double of_drift = (70 - 112 * r + 56 * r * r - 16 * r * r * r + 2 * r * r * r * r) / 70;
@@ -71,7 +71,7 @@ struct Gaps {
   double share = 0, mean_frames = 1;
 };
 
-/// Of the joints that the detector has, while it sees anybody.
+/// Gaps of the joints that the detector has, while it sees anybody.
 Gaps gaps_of(const Track2d& track) {
   const auto shows_anybody = (track.confidence.array() > 0).rowwise().any().eval();
   double all = 0, missing = 0, gaps = 0;

@@ -1,7 +1,6 @@
 #include "camera/random_camera.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 
 #include "base/numbers.hpp"
 #include "base/random_sequence.hpp"

@@ -22,8 +22,8 @@ struct DetectorCameras {
     visit(Setting{"elevation-to", within(-89, 89), "degrees", "elevation of the highest camera"},
           self.elevation_to_deg);
     visit(Setting{"roll", within(0, 180), "degrees",
-                  "standard deviation of the camera's turn about its viewing axis: held by hand, "
-                  "or a tripod that is not level"},
+                  "standard deviation of the camera's turn about its viewing axis: hand-held, or a "
+                  "tripod that is not level"},
           self.roll_deg);
     visit(Setting{"fov-from", CameraPlacement::kFieldOfView_deg, "degrees",
                   "smallest vertical field of view"},

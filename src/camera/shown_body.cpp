@@ -51,14 +51,21 @@ std::vector<bool> frames_of_a_body(const Track2d& track) {
   return bodies;
 }
 
-bool shows_feet(const Track2d& track) {
+std::vector<bool> frames_of_feet(const Track2d& track) {
+  std::vector<bool> feet(static_cast<std::size_t>(track.frames()));
   for (std::size_t column = 0; column < track.keypoints.size(); ++column) {
     const auto& role = track.keypoints[column].role;
-    if ((role == left_ankle || role == right_ankle || role == left_toe || role == right_toe) &&
-        (track.confidence.col(static_cast<Eigen::Index>(column)).array() > 0).any())
-      return true;
+    if (role != left_ankle && role != right_ankle && role != left_toe && role != right_toe)
+      continue;
+    for (std::size_t t = 0; t < feet.size(); ++t)
+      feet[t] = feet[t] || track.confidence(static_cast<Eigen::Index>(t),
+                                            static_cast<Eigen::Index>(column)) > 0;
   }
-  return false;
+  return feet;
+}
+
+bool shows_feet(const Track2d& track) {
+  return std::ranges::count(frames_of_feet(track), true) > 0;
 }
 
 }  // namespace mcdbn

@@ -21,11 +21,11 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // When a detector is taken to have exchanged left and right. Chosen on training people (CMU's walks
-// and actions, Bandai's; 200 views at 30 Hz). Of legs swapped for up to a second 99, 99 and 97 % of
-// the frames are found where the track is exact, off by 0.2 % and by 0.5 % of body height, and 99,
-// 99 and 98 % of those found are right; of frames without swaps at most 0.06 % are taken for
-// swapped. Of what OpenPose's own swaps, short and of crossing legs, add to the limbs' error 95 %
-// goes.
+// and actions, Bandai's; 200 views at 30 Hz). Where legs are swapped for up to a second, 99, 99 and
+// 97 % of the frames are found in a track that is exact, off by 0.2 % and by 0.5 % of body height,
+// and 99, 99 and 98 % of those found are right; at most 0.06 % of the frames without swaps are
+// taken for swapped. OpenPose's own swaps are short and of crossing legs: 95 % of their share of
+// the limbs' error is removed.
 
 /// How much less the joints of a limb pair have to jump, all together, for a swap to begin or end,
 /// in body heights.
@@ -38,7 +38,7 @@ constexpr double kSwappedCost_per_s = 0.15;
 
 using Swapped = std::vector<int>;  ///< 1 where swapped, one a frame
 
-/// The same place on both sides, frame by frame; not finite where it is unknown.
+/// One place on both sides, frame by frame; not finite where it is unknown.
 struct PlacePair {
   int left = 0, right = 0;  ///< columns
   std::vector<std::array<Eigen::Vector2d, 2>> seen;
@@ -117,8 +117,8 @@ double residual(const PlacePair& pair, std::size_t t, const std::array<int, 3>& 
   return sum;
 }
 
-/// The same of all pairs. Where a swap begins or ends a pair may stay on its sides: a detector may
-/// exchange the ankles alone.
+/// Sum of all pairs' residuals. Where a swap begins or ends, a pair may stay on its sides: a
+/// detector may exchange the ankles alone.
 double residual(const std::vector<PlacePair>& pairs, std::size_t t,
                 const std::array<int, 3>& swapped) {
   const bool switches = swapped[0] != swapped[1] || swapped[1] != swapped[2];

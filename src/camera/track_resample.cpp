@@ -44,8 +44,8 @@ Track2d frame_at(const Track2d& track, double at, double reach) {
 
 Track2d resample_track(const Track2d& track, double target_hz) {
   const Eigen::Index frames = frames_at_rate(track.frames(), track.fps, target_hz, 0, kSameRate);
+  if (is_same_rate(track.fps, target_hz) || track.frames() == 0) return track;
   const double step = track.fps / target_hz;
-  if (std::abs(step - 1.0) < kSameRate || track.frames() == 0) return track;
   Track2d result = track;
   result.fps = target_hz;
   for (MatrixD* values : {&result.x_px, &result.y_px, &result.confidence})

@@ -116,7 +116,7 @@ bool is_stray(const Run& run, double fps) {
   return frames_of(run) < kShortest_s * fps || !run.shows_a_body;
 }
 
-/// What goes on from a run behind strays is of that run.
+/// The runs of the track. One that goes on behind strays stays one run.
 std::vector<Run> runs_of(const std::vector<Observation>& observations, double fps,
                          std::vector<FrameRange>& strays) {
   std::vector<Run> runs;

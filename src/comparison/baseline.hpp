@@ -9,9 +9,9 @@
 
 namespace mcdbn {
 
-/// A way to get the 3D modality from the 2D one that the model has to beat. All of them see the
-/// same standardized features as the model: [frames x dimension], one matrix a clip. A NaN in a
-/// track (a joint that was not seen) is taken as 0, the training mean.
+/// A simpler method that infers 3D from 2D, to compare the model with. All of them see the same
+/// standardized features as the model: [frames x dimension], one matrix a clip. A NaN in a track (a
+/// joint that was not seen) is taken as 0, the training mean.
 class Baseline {
  public:
   virtual ~Baseline() = default;

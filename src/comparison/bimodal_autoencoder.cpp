@@ -4,6 +4,7 @@
 
 #include "base/random_phases.hpp"
 #include "base/random_streams.hpp"
+#include "comparison/bimodal_data.hpp"
 #include "comparison/bimodal_network.hpp"
 #include "comparison/clip_pairs.hpp"
 #include "comparison/pretrained_rbm.hpp"
@@ -16,15 +17,13 @@ namespace {
 
 constexpr std::uint16_t kAutoencoderStream = random_streams::kAutoencoder;
 
-using Shape = BimodalNetwork::Shape;
-
 DenseLayer transposed(const DenseLayer& layer, const MatrixF& bias) {
   return {layer.W.transpose(), bias};
 }
 
 /// Each modality's layer as a Gaussian RBM, the shared one as a binary RBM on both codes; decoders
 /// are their transposes.
-std::vector<DenseLayer> pretrained_layers(Device& device, const Shape& shape,
+std::vector<DenseLayer> pretrained_layers(Device& device, const BimodalShape& shape,
                                           const std::array<MatrixF, 2>& data,
                                           const BimodalAutoencoderSettings& settings) {
   PretrainingSettings pretraining{settings.pretraining_epochs, settings.pretraining_rate,
@@ -39,7 +38,7 @@ std::vector<DenseLayer> pretrained_layers(Device& device, const Shape& shape,
   pretraining.rate *= 10;  // of binary units, as the greedy schedule's
   const CrbmParameters top =
       pretrained_rbm(device, codes,
-                     {shape.hidden[0] + shape.hidden[1], shape.shared, 0, VisibleKind::binary},
+                     {shape.hidden[0] + shape.hidden[1], shape.top, 0, VisibleKind::binary},
                      pretraining, key)
           .parameters;
   std::vector<DenseLayer> layers(8);
@@ -59,7 +58,7 @@ std::vector<DenseLayer> pretrained_layers(Device& device, const Shape& shape,
   return layers;
 }
 
-std::vector<DenseLayer> random_layers(const Shape& shape, std::uint64_t seed) {
+std::vector<DenseLayer> random_layers(const BimodalShape& shape, std::uint64_t seed) {
   RandomKey key{seed, 0, kAutoencoderStream, random_phases::kFirstWeights};
   const auto layer = [&](std::size_t inputs, std::size_t outputs) {
     ++key.step;
@@ -68,8 +67,8 @@ std::vector<DenseLayer> random_layers(const Shape& shape, std::uint64_t seed) {
   std::vector<DenseLayer> layers(8);
   for (std::size_t m = 0; m < 2; ++m) {
     layers[BimodalNetwork::kEncode[m]] = layer(shape.visible[m], shape.hidden[m]);
-    layers[BimodalNetwork::kShare[m]] = layer(shape.hidden[m], shape.shared);
-    layers[BimodalNetwork::kUnshare[m]] = layer(shape.shared, shape.hidden[m]);
+    layers[BimodalNetwork::kShare[m]] = layer(shape.hidden[m], shape.top);
+    layers[BimodalNetwork::kUnshare[m]] = layer(shape.top, shape.hidden[m]);
     layers[BimodalNetwork::kDecode[m]] = layer(shape.hidden[m], shape.visible[m]);
   }
   return layers;
@@ -125,12 +124,9 @@ BimodalAutoencoder::~BimodalAutoencoder() = default;
 
 void BimodalAutoencoder::fit(const std::vector<MatrixF>& tracks,
                              const std::vector<MatrixF>& poses) {
-  WindowPairs pairs = window_pairs(tracks, poses);
-  const std::array<MatrixF, 2> data = {std::move(pairs.windows), std::move(pairs.poses)};
-  const Shape shape{
-      {static_cast<std::size_t>(data[0].cols()), static_cast<std::size_t>(data[1].cols())},
-      {settings_.track_hidden, settings_.pose_hidden},
-      settings_.shared};
+  const std::array<MatrixF, 2> data = bimodal_data(tracks, poses);
+  const BimodalShape shape =
+      bimodal_shape(data, {settings_.track_hidden, settings_.pose_hidden}, settings_.shared);
   network_ = std::make_unique<BimodalNetwork>(
       *device_, shape,
       settings_.pretraining_epochs > 0 ? pretrained_layers(*device_, shape, data, settings_)

@@ -28,25 +28,26 @@ struct BimodalAutoencoderSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"track-hidden", size_limits::kUnits, "units", "of the 2D modality's own layer"},
+    visit(Setting{"track-hidden", size_limits::kUnits, "units",
+                  "size of the 2D modality's own layer"},
           self.track_hidden);
-    visit(Setting{"pose-hidden", size_limits::kUnits, "units", "of the 3D modality's own layer"},
-          self.pose_hidden);
     visit(
-        Setting{"shared", size_limits::kUnits, "units", "of the layer that both modalities share"},
-        self.shared);
+        Setting{"pose-hidden", size_limits::kUnits, "units", "size of the 3D modality's own layer"},
+        self.pose_hidden);
+    visit(Setting{"shared", size_limits::kUnits, "units", "size of the layer that both share"},
+          self.shared);
     visit(Setting{"pretraining-epochs", within(0, 1e7), "epochs",
-                  "rounds of CD-1 for each RBM that a layer starts as; 0 starts from random "
+                  "epochs of CD-1 for each RBM that a layer starts as; 0 starts from random "
                   "weights"},
           self.pretraining_epochs);
     visit(Setting{"pretraining-rate", above(0, 100), "", "learning rate of the RBMs"},
           self.pretraining_rate);
-    visit(Setting{"epochs", within(1, 1e7), "epochs", "rounds of back-propagation"}, self.epochs);
+    visit(Setting{"epochs", within(1, 1e7), "epochs", "epochs of back-propagation"}, self.epochs);
     visit(Setting{"least-batches", within(1, 1e6), "mini-batches",
-                  "of an epoch, at least: few clips are gone over several times in it"},
+                  "least mini-batches in an epoch; a small data set is visited several times"},
           self.least_batches);
     visit(Setting{"batch", within(3, 1e5), "windows",
-                  "of a mini-batch: a third with both modalities, a third with each alone"},
+                  "size of a mini-batch: a third with both modalities, a third with each alone"},
           self.batch);
     visit(Setting{"rate", above(0, 100), "", "Adam's rate; falls in a line over the second half"},
           self.rate);
@@ -56,10 +57,10 @@ struct BimodalAutoencoderSettings {
             "decoupled decay of the weights, times the rate: what generalizes to unseen people"},
         self.weight_decay);
     visit(Setting{"pose-weight", above(0, 1e6), "",
-                  "of a 3D value's squared error where a 2D value's counts once: there are several "
-                  "times as many of those"},
+                  "weight of a 3D value's squared error; a 2D value's is 1, and there are several "
+                  "times as many 2D values"},
           self.pose_weight);
-    visit(Setting{"seed", any_seed(), "", "of every random number"}, self.seed);
+    visit(Setting{"seed", any_seed(), "", "seed of all random numbers"}, self.seed);
   }
 };
 

@@ -4,8 +4,8 @@
 
 namespace mcdbn {
 
-BimodalNetwork::Pass::Pass(Device& device, const Shape& shape, std::size_t rows)
-    : shared(device, rows, shape.shared) {
+BimodalNetwork::Pass::Pass(Device& device, const BimodalShape& shape, std::size_t rows)
+    : shared(device, rows, shape.top) {
   for (std::size_t m = 0; m < 2; ++m) {
     input[m] = Matrix(device, rows, shape.visible[m]);
     hidden[m] = Matrix(device, rows, shape.hidden[m]);
@@ -14,7 +14,7 @@ BimodalNetwork::Pass::Pass(Device& device, const Shape& shape, std::size_t rows)
   }
 }
 
-BimodalNetwork::BimodalNetwork(Device& device, const Shape& shape,
+BimodalNetwork::BimodalNetwork(Device& device, const BimodalShape& shape,
                                const std::vector<DenseLayer>& start)
     : shape_(shape), layers_(device, start) {}
 

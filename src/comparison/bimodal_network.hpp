@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "comparison/bimodal_data.hpp"
 #include "comparison/dense_network.hpp"
 #include "device/losses.hpp"
 
@@ -10,10 +11,6 @@ namespace mcdbn {
 /// The layers of a bimodal autoencoder. In arrays of two the 2D modality comes first.
 class BimodalNetwork {
  public:
-  struct Shape {
-    std::array<std::size_t, 2> visible, hidden;
-    std::size_t shared = 0;
-  };
   /// Numbers of the layers, by modality.
   static constexpr std::array<std::size_t, 2> kEncode = {0, 1};  ///< visible → hidden
   static constexpr std::array<std::size_t, 2> kShare = {2, 3};   ///< hidden → shared
@@ -22,15 +19,15 @@ class BimodalNetwork {
 
   /// All values of a mini-batch.
   struct Pass {
-    Pass(Device& device, const Shape& shape, std::size_t rows);
+    Pass(Device& device, const BimodalShape& shape, std::size_t rows);
     std::array<Matrix, 2> input, hidden, unshared, output;
     Matrix shared;
   };
 
   /// @param start the layers by their numbers
-  BimodalNetwork(Device& device, const Shape& shape, const std::vector<DenseLayer>& start);
+  BimodalNetwork(Device& device, const BimodalShape& shape, const std::vector<DenseLayer>& start);
 
-  const Shape& shape() const { return shape_; }
+  const BimodalShape& shape() const { return shape_; }
   /// From pass.input to pass.output.
   void forward(Pass& pass) const;
   /// The gradient of ½ Σ_m weight[m] · ‖output − target‖² / rows, after forward().
@@ -41,7 +38,7 @@ class BimodalNetwork {
   Device& device() const { return layers_.parameters().device(); }
 
  private:
-  Shape shape_;
+  BimodalShape shape_;
   DenseNetwork layers_;
 };
 

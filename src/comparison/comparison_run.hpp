@@ -11,12 +11,11 @@
 #include <vector>
 
 #include "camera/track_noise.hpp"
+#include "comparison/answer_score.hpp"
 #include "comparison/baseline.hpp"
 #include "corpus/detector_view.hpp"
 #include "corpus/encoded_clip.hpp"
-#include "evaluation/clip_score.hpp"
 #include "evaluation/coverage.hpp"
-#include "evaluation/report_clip.hpp"
 #include "evaluation/track_error.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
@@ -52,27 +51,18 @@ struct TestRunOptions {
   std::function<void(const std::string& notice)> notices;
 };
 
-/// One answer to a clip.
-struct Regeneration {
-  Motion motion;
-  ClipScore score;
-  /// Of the motion's joints along the world's axes, from the root (joint_uncertainty), in mm on a
-  /// 1.7 m body [frames x 3·joints]; 0 x 0 where nothing was drawn.
-  MatrixD deviation_mm = {};
-};
-
 struct ClipResult {
   EncodedClip truth;
   SeenClip seen;  ///< what the model sees of its track
   bool trained_on = false;
   std::string known_person;  ///< from person_of, if a training clip shows the same one
-  std::vector<Regeneration> samples;
+  std::vector<ScoredAnswer> samples;
   /// The baselines by name, and kMeanField, the model's single answer, if samples were drawn.
-  std::map<std::string, Regeneration> others;
+  std::map<std::string, ScoredAnswer> other_answers;
   TrackError track;  ///< 2D from the true 3D, by the model's mean field
-  /// Of the single answer, if uncertainty was drawn: of its judged joints, mm from the root along
-  /// each axis; of the network's own channels, standardized, before any fit, if the camera is known
-  /// and the network has deviations.
+  /// Coverage of the single answer's intervals, if uncertainty was drawn: of its judged joints, mm
+  /// from the root along each axis; of the network's own channels, standardized, before any fit, if
+  /// the camera is known and the network has deviations.
   Coverage joints, channels;
 };
 
@@ -81,21 +71,5 @@ struct ClipResult {
 std::vector<ClipResult> run_test(const Model& model,
                                  const std::vector<std::filesystem::path>& files,
                                  const TestRunOptions& options);
-
-/// Joints are matched by name; those that the answer's skeleton lacks are not judged.
-/// @param regenerated as many frames, its skeleton with a joint `root_name`
-ClipScore score_clip(const EncodedClip& truth, const Motion& regenerated,
-                     const std::string& root_name);
-
-/// Of an answer with deviations, wherever they come from: the share of 90 % intervals of its judged
-/// joints that hold the truth (ClipScore::within_90).
-double share_within_90(const EncodedClip& truth, const Regeneration& answer,
-                       const std::string& root_name);
-
-/// How clips are put under actions: `by_folder` by the name of the folder that they lie in; else
-/// all under "all clips".
-/// @return what a report needs, clips named by their file
-std::vector<ReportClip> report_clips(const Model& model, const std::vector<ClipResult>& results,
-                                     bool by_folder);
 
 }  // namespace mcdbn

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "base/random_streams.hpp"
+#include "device/gemm.hpp"
 #include "device/pointwise.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
 
@@ -14,18 +14,18 @@ std::string name_of(const char* letter, std::size_t m) {
   return std::string(letter) + "_" + kModalityNames[m];
 }
 
-std::vector<ParameterShape> parameter_shapes(const DbmMachine::Shape& shape) {
+std::vector<ParameterShape> parameter_shapes(const BimodalShape& shape) {
   std::vector<ParameterShape> shapes;
   for (std::size_t m = 0; m < 2; ++m) {
     shapes.push_back(
         {.name = name_of("W", m), .rows = shape.visible[m], .columns = shape.hidden[m]});
-    shapes.push_back({.name = name_of("U", m), .rows = shape.hidden[m], .columns = shape.joint});
+    shapes.push_back({.name = name_of("U", m), .rows = shape.hidden[m], .columns = shape.top});
     shapes.push_back(
         {.name = name_of("a", m), .rows = 1, .columns = shape.visible[m], .is_weight = false});
     shapes.push_back(
         {.name = name_of("b", m), .rows = 1, .columns = shape.hidden[m], .is_weight = false});
   }
-  shapes.push_back({.name = "c", .rows = 1, .columns = shape.joint, .is_weight = false});
+  shapes.push_back({.name = "c", .rows = 1, .columns = shape.top, .is_weight = false});
   return shapes;
 }
 
@@ -44,8 +44,8 @@ DbmMachine::Pathway::Pathway(const Parameters& parameters, std::size_t modality)
       a(parameters.matrix(name_of("a", modality))),
       b(parameters.matrix(name_of("b", modality))) {}
 
-DbmMachine::Units::Units(Device& device, const Shape& shape, std::size_t rows)
-    : joint(device, rows, shape.joint) {
+DbmMachine::Units::Units(Device& device, const BimodalShape& shape, std::size_t rows)
+    : joint(device, rows, shape.top) {
   for (std::size_t m = 0; m < 2; ++m) {
     visible[m] = Matrix(device, rows, shape.visible[m]);
     hidden[m] = Matrix(device, rows, shape.hidden[m]);
@@ -54,7 +54,7 @@ DbmMachine::Units::Units(Device& device, const Shape& shape, std::size_t rows)
   }
 }
 
-DbmMachine::DbmMachine(Device& device, const Shape& shape, RandomKey key)
+DbmMachine::DbmMachine(Device& device, const BimodalShape& shape, RandomKey key)
     : shape_(shape),
       parameters_(device, parameter_shapes(shape)),
       pathways_{Pathway(parameters_, 0), Pathway(parameters_, 1)},
@@ -73,7 +73,7 @@ DbmMachine::DbmMachine(Device& device, const Shape& shape, RandomKey key)
   }
   for (std::size_t m = 0; m < 2; ++m) {
     W_transposed_[m] = Matrix(device, shape.hidden[m], shape.visible[m]);
-    U_transposed_[m] = Matrix(device, shape.joint, shape.hidden[m]);
+    U_transposed_[m] = Matrix(device, shape.top, shape.hidden[m]);
   }
   refresh_transposed();
 }

@@ -2,7 +2,8 @@
 
 #include <array>
 
-#include "device/gemm.hpp"
+#include "comparison/bimodal_data.hpp"
+#include "mcdbn/base/random.hpp"
 #include "mcdbn/device/parameters.hpp"
 
 namespace mcdbn {
@@ -16,21 +17,16 @@ namespace mcdbn {
 /// All methods work on rows of one mini-batch, enqueue and return.
 class DbmMachine {
  public:
-  struct Shape {
-    std::array<std::size_t, 2> visible, hidden;
-    std::size_t joint = 0;
-  };
-
   /// One modality's parameters in place.
   struct Pathway {
     Matrix W, U, a, b;
     Pathway(const Parameters& parameters, std::size_t modality);
   };
 
-  /// Units of every layer: of data, of chains, or their means. Those that are drawn beside their
+  /// Units of every layer: of data, of chains, or their means. Units that are drawn beside their
   /// probabilities have a matrix for each.
   struct Units {
-    Units(Device& device, const Shape& shape, std::size_t rows);
+    Units(Device& device, const BimodalShape& shape, std::size_t rows);
     std::array<Matrix, 2> visible, hidden;
     Matrix joint;
     std::array<Matrix, 2> hidden_draws;
@@ -38,9 +34,9 @@ class DbmMachine {
   };
 
   /// W_track, a_track, …, c. Weights from N(0, 0.01²), biases zero.
-  DbmMachine(Device& device, const Shape& shape, RandomKey key);
+  DbmMachine(Device& device, const BimodalShape& shape, RandomKey key);
 
-  const Shape& shape() const { return shape_; }
+  const BimodalShape& shape() const { return shape_; }
   const Parameters& parameters() const { return parameters_; }
   Device& device() const { return parameters_.device(); }
   /// After weights changed.
@@ -52,7 +48,7 @@ class DbmMachine {
   /// p(h_m = 1 | v_m, z) with the input from below; to hidden. With a key, draws to hidden_draws
   /// too.
   void infer_hidden(std::size_t m, Units& units, const RandomKey* draws = nullptr) const;
-  /// The same without z: σ(input_from_below).
+  /// As infer_hidden(), without z: σ(input_from_below).
   void infer_hidden_from_below(std::size_t m, Units& units, const RandomKey* draws = nullptr) const;
   /// p(z = 1 | h) of these hidden units; to joint. With a key the draws take its place.
   void infer_joint(const std::array<Matrix, 2>& hidden, Units& units,
@@ -60,7 +56,7 @@ class DbmMachine {
   /// The mean of v_m given these hidden units; to visible. With a key a draw takes its place.
   void infer_visible(std::size_t m, const Matrix& hidden, Units& units,
                      const RandomKey* draws = nullptr) const;
-  /// What h_m is given z alone, twice over: in the greedy stage of the top nothing is below.
+  /// p(h_m | z) with the input doubled: in the top's greedy stage there is no layer below.
   void infer_hidden_from_above(std::size_t m, Units& units) const;
 
   /// Mean field with v_m clamped for both (`absent` 2) or one of the modalities; the other's starts
@@ -77,7 +73,7 @@ class DbmMachine {
                            const Parameters& gradients) const;
 
  private:
-  Shape shape_;
+  BimodalShape shape_;
   Parameters parameters_;
   std::array<Pathway, 2> pathways_;
   Matrix c_;

@@ -120,7 +120,7 @@ void DbmTraining::learn_all(std::size_t first, float rate, const RandomKey& draw
   RandomKey sweep = draws;
   for (std::size_t k = 0; k < settings_.gibbs_sweeps; ++k, sweep.phase += kPhasesPerSweep)
     machine_.gibbs_sweep(chains_, sweep);
-  // Of the chains' hidden units probabilities carry more information than draws.
+  // Probabilities of the chains' hidden units carry more information than draws.
   for (std::size_t m = 0; m < 2; ++m) {
     machine_.set_input_from_below(m, chains_);
     machine_.infer_hidden(m, chains_);

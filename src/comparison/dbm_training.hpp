@@ -30,7 +30,7 @@ class DbmTraining {
   MinibatchSchedule& schedule() { return schedule_; }
   DbmMachine::Units& chains() { return chains_; }
   const DbmMachine::Units& data() const { return data_; }
-  /// Of the last mini-batch, downhill, where the optimizer keeps them.
+  /// Gradients of the last mini-batch, downhill, in the optimizer's own buffer.
   Parameters gradients() { return machine_.parameters().in(optimizer_.gradients()); }
 
  private:

@@ -30,7 +30,7 @@ class DenseNetwork {
   void forward(std::size_t layer, const Rows& input, const Rows& output,
                Activation activation = Activation::none, bool add = false) const;
 
-  /// What lies between a layer's input and the error that is wanted there.
+  /// The activation between a layer's input and the error that is wanted there.
   struct Slope {
     Activation gradient = Activation::none;
     const Rows* units = nullptr;  ///< values of the activation whose gradient it is
@@ -46,7 +46,7 @@ class DenseNetwork {
   void update(const UpdateRule& rule);
 
   const Parameters& parameters() const { return optimizer_.parameters(); }
-  /// Of the last differentiate() of each layer.
+  /// Gradients of each layer from the last differentiate().
   std::vector<DenseLayer> gradients() const;
   std::vector<DenseLayer> to_host() const;
 

@@ -1,7 +1,6 @@
 #include "comparison/lbfgs.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 
 #include "base/interruption.hpp"
@@ -11,7 +10,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// Of the last steps: how far x went, and by how much the gradient changed.
+/// A recent step: the changes of x and of the gradient.
 struct Step {
   VectorXd x, gradient;
   double curvature;  ///< x·gradient

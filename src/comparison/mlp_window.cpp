@@ -1,9 +1,5 @@
 #include "comparison/mlp_window.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
-
 #include "base/missing_values.hpp"
 #include "base/random_streams.hpp"
 #include "comparison/clip_pairs.hpp"

@@ -2,6 +2,7 @@
 
 #include "base/random_phases.hpp"
 #include "base/random_streams.hpp"
+#include "comparison/bimodal_data.hpp"
 #include "comparison/clip_pairs.hpp"
 #include "comparison/dbm_training.hpp"
 #include "comparison/track_window.hpp"
@@ -17,12 +18,9 @@ MultimodalDbm::MultimodalDbm(Device& device, const MultimodalDbmSettings& settin
 MultimodalDbm::~MultimodalDbm() = default;
 
 void MultimodalDbm::fit(const std::vector<MatrixF>& tracks, const std::vector<MatrixF>& poses) {
-  WindowPairs pairs = window_pairs(tracks, poses);
-  const std::array<MatrixF, 2> data = {std::move(pairs.windows), std::move(pairs.poses)};
-  const DbmMachine::Shape shape{
-      {static_cast<std::size_t>(data[0].cols()), static_cast<std::size_t>(data[1].cols())},
-      {settings_.track_hidden, settings_.pose_hidden},
-      settings_.joint};
+  const std::array<MatrixF, 2> data = bimodal_data(tracks, poses);
+  const BimodalShape shape =
+      bimodal_shape(data, {settings_.track_hidden, settings_.pose_hidden}, settings_.joint);
   machine_ =
       std::make_unique<DbmMachine>(*device_, shape,
                                    RandomKey{settings_.seed, 0, random_streams::kBoltzmannMachine,

@@ -29,42 +29,47 @@ struct MultimodalDbmSettings {
 
   template <typename Self, typename Visit>
   static void visit(Self& self, const Visit& visit) {
-    visit(Setting{"track-hidden", size_limits::kUnits, "units", "of the 2D modality's own layer"},
+    visit(Setting{"track-hidden", size_limits::kUnits, "units",
+                  "size of the 2D modality's own layer"},
           self.track_hidden);
-    visit(Setting{"pose-hidden", size_limits::kUnits, "units", "of the 3D modality's own layer"},
-          self.pose_hidden);
-    visit(Setting{"joint", size_limits::kUnits, "units", "of the layer above both"}, self.joint);
+    visit(
+        Setting{"pose-hidden", size_limits::kUnits, "units", "size of the 3D modality's own layer"},
+        self.pose_hidden);
+    visit(Setting{"joint", size_limits::kUnits, "units", "size of the layer above both"},
+          self.joint);
     visit(Setting{"pretraining-epochs", within(0, 1e7), "epochs",
-                  "rounds of CD-1 for each modality's layer, and then for the joint one"},
+                  "epochs of CD-1 for each modality's layer, and then for the joint one"},
           self.pretraining_epochs);
-    visit(Setting{"epochs", within(0, 1e7), "epochs", "rounds of joint training"}, self.epochs);
+    visit(Setting{"epochs", within(0, 1e7), "epochs", "epochs of joint training"}, self.epochs);
     visit(Setting{"least-batches", within(1, 1e6), "mini-batches",
-                  "of an epoch, at least: few clips are gone over several times in it"},
+                  "least mini-batches in an epoch; a small data set is visited several times"},
           self.least_batches);
-    visit(Setting{"batch", within(1, 1e5), "windows", "of a mini-batch; as many chains run on"},
+    visit(Setting{"batch", within(1, 1e5), "windows", "size of a mini-batch, and number of chains"},
           self.batch);
     visit(Setting{"pretraining-rate", above(0, 100), "",
                   "learning rate of the modalities' own layers; the joint one's is ten times that"},
           self.pretraining_rate);
-    visit(Setting{"rate", above(0, 100), "", "of joint training; falls in a line to a fiftieth"},
+    visit(Setting{"rate", above(0, 100), "",
+                  "learning rate of joint training; falls in a line to a fiftieth"},
           self.rate);
     visit(Setting{"momentum", share_below_one(), "",
-                  "share of a step that goes on in the next: evens out what draws do to it"},
+                  "share of a step that goes on in the next: averages out sampling noise"},
           self.momentum);
     visit(Setting{"weight-decay", within(0, 1000), "",
                   "decay of the weights, times the rate: keeps chains moving"},
           self.weight_decay);
     visit(Setting{"mean-field-steps", size_limits::kMeanFieldSteps, "steps",
-                  "of the data's hidden units"},
+                  "mean-field steps of the data's hidden units"},
           self.mean_field_steps);
     // Each has random numbers of its own.
     visit(Setting{"gibbs-sweeps", within(1, 1000), "sweeps",
-                  "of the chains in each mini-batch: more keep nearer to the model"},
+                  "Gibbs sweeps of the chains in each mini-batch: with more they are nearer to the "
+                  "model"},
           self.gibbs_sweeps);
     visit(Setting{"inference-steps", size_limits::kMeanFieldSteps, "steps",
-                  "of mean field by which the absent pose is inferred"},
+                  "mean-field steps by which the absent pose is inferred"},
           self.inference_steps);
-    visit(Setting{"seed", any_seed(), "", "of every random number"}, self.seed);
+    visit(Setting{"seed", any_seed(), "", "seed of all random numbers"}, self.seed);
   }
 };
 

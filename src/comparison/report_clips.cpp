@@ -1,8 +1,9 @@
+#include "comparison/report_clips.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "comparison/comparison_run.hpp"
 #include "motion/body_size.hpp"
 
 namespace mcdbn {
@@ -60,11 +61,12 @@ class Figure {
   };
 
   static bool every_answer_has(const ClipResult& result, const std::string& joint) {
-    const auto has = [&](const Regeneration& answer) {
+    const auto has = [&](const ScoredAnswer& answer) {
       return answer.motion.skeleton.find(joint) >= 0;
     };
     return std::ranges::all_of(result.samples, has) &&
-           std::ranges::all_of(result.others, [&](const auto& other) { return has(other.second); });
+           std::ranges::all_of(result.other_answers,
+                               [&](const auto& other) { return has(other.second); });
   }
 
   int index_of(int joint) const {
@@ -92,7 +94,7 @@ class Figure {
   std::vector<int> parents_;
 };
 
-ReportMotion report_motion(const Figure& figure, const Regeneration& answer) {
+ReportMotion report_motion(const Figure& figure, const ScoredAnswer& answer) {
   ReportMotion motion{figure.points_mm(answer.motion), answer.score};
   if (answer.deviation_mm.size() == 0) return motion;
   const int joints = figure.joint_count();
@@ -158,9 +160,9 @@ std::vector<ReportClip> report_clips(const Model& model, const std::vector<ClipR
     clip.track_px = track_px(result.seen.joints, names);
     clip.width_px = result.truth.track.width_px;
     clip.height_px = result.truth.track.height_px;
-    for (const Regeneration& sample : result.samples)
+    for (const ScoredAnswer& sample : result.samples)
       clip.samples.push_back(report_motion(figure, sample));
-    for (const auto& [name, other] : result.others)
+    for (const auto& [name, other] : result.other_answers)
       clip.others[name] = report_motion(figure, other);
     clip.track = result.track;
     clips.push_back(std::move(clip));

@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "base/missing_values.hpp"
 #include "comparison/clip_pairs.hpp"

@@ -74,8 +74,8 @@ class Sweep {
     std::vector<nlohmann::ordered_json> records_;
   };
 
-  /// Of what the result depends on beside the settings: the clips' bytes, who does what in them,
-  /// the choice of a skeleton, the joint map.
+  /// Hash of what the result depends on beside the settings: the clips' bytes, person and action of
+  /// each, the choice of a skeleton, the joint map.
   std::string fingerprint_of(const TrainingConfig& config) const;
   void score(const TrainingConfig& config, const Watch& watch, nlohmann::ordered_json& record);
   void report(const std::string& notice);

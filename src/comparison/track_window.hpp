@@ -6,15 +6,15 @@
 
 namespace mcdbn {
 
-/// What baselines see of a track to answer for one frame: so many frames before it, itself, as many
-/// after it. A clip's first and last frames are repeated at its ends.
+/// Frames before and after a frame that baselines see to answer for it. A clip's first and last
+/// frames are repeated at its ends.
 inline constexpr Eigen::Index kWindowReach = 5;
 inline constexpr Eigen::Index kWindowFrames = 2 * kWindowReach + 1;
 
 /// The windows of frames first … first + count − 1, earliest frame first.
 /// @param track [frames x d2], no NaN  @return [count x kWindowFrames·d2]
 MatrixF track_windows(const MatrixF& track, Eigen::Index first, Eigen::Index count);
-/// Of all frames; 0, the training mean, where a joint was not seen.
+/// The windows of all frames; 0, the training mean, where a joint was not seen.
 MatrixF track_windows(const MatrixF& track);
 
 /// All training frames.

@@ -23,11 +23,18 @@ void add_training_views(const Model& model, TestRunOptions& run) {
   const TrainingConfig config = settings_from_json(model.config);
   if (config.fine_tuning.steps == 0) return;
   std::vector<std::filesystem::path> files;
+  std::vector<const TrainingClip*> recorded;
   for (const TrainingClip& clip : model.training_clips) {
     if (!std::filesystem::exists(clip.path)) return;
-    if (files.empty() || files.back() != clip.path) files.emplace_back(clip.path);
+    if (!files.empty() && files.back() == clip.path) continue;
+    files.emplace_back(clip.path);
+    recorded.push_back(&clip);
   }
   std::vector<LoadedClip> clips = load_clips(files, config.keep_first_frame);
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    clips[i].clip.person = recorded[i]->person;
+    clips[i].clip.action = recorded[i]->action;
+  }
   try {
     for (LoadedClip& clip : clips)
       clip.motion = for_skeleton(std::move(clip.motion), model.modalities.pose_features.skeleton(),

@@ -24,18 +24,17 @@ struct TwinGaussianProcessSettings {
                   "their cube"},
           self.neighbours);
     visit(Setting{"track-width", above(0, 1e6), "",
-                  "of the kernel on 2D windows, where 1 is the root mean square distance of two "
+                  "width of the kernel on 2D windows; 1 is the root mean square distance of two "
                   "training windows"},
           self.track_width);
-    visit(Setting{"pose-width", above(0, 1e6), "", "of the kernel on poses, likewise"},
+    visit(Setting{"pose-width", above(0, 1e6), "", "as track-width, of the kernel on poses"},
           self.pose_width);
     visit(Setting{"track-noise", above(0, 1e6), "",
                   "variance of the noise on windows, where the kernel's is 1"},
           self.track_noise);
-    visit(Setting{"pose-noise", above(0, 1e6), "", "variance of the noise on poses, likewise"},
-          self.pose_noise);
+    visit(Setting{"pose-noise", above(0, 1e6), "", "as track-noise, on poses"}, self.pose_noise);
     visit(Setting{"steps", within(0, 1e6), "steps",
-                  "of L-BFGS at most; 0 leaves the answer at Gaussian process regression"},
+                  "largest number of L-BFGS steps; 0: the answer is Gaussian process regression"},
           self.steps);
   }
 };
@@ -46,9 +45,9 @@ class TwinGaussianProcess {
  public:
   struct Kernel {
     double width = 1, noise = 1e-3;
-    /// Of one row against many. @return [rows]
+    /// The kernel of one row with each of many. @return [rows]
     Eigen::VectorXd against(const MatrixD& rows, const Eigen::VectorXd& one) const;
-    /// Of all pairs, with the noise. @return [rows x rows]
+    /// The kernel of all pairs of rows, with the noise. @return [rows x rows]
     MatrixD among(const MatrixD& rows) const;
   };
 

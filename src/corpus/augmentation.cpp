@@ -42,7 +42,7 @@ double within(const RandomKey& key, Draw draw, std::uint32_t column, double most
   return most * (2.0 * uniform(key, draw, column) - 1.0);
 }
 
-/// Of what is drawn one number after another: the views of each stream have their own.
+/// Seed for what draws one number after another: each stream's views have their own.
 std::uint64_t seed_of(const RandomKey& key) {
   return mixed_seed({key.seed, key.step, key.stream});
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/interruption.hpp"
 #include "base/random_streams.hpp"

@@ -9,7 +9,6 @@
 
 #include "base/interruption.hpp"
 #include "base/text_file.hpp"
-#include "base/user_cache.hpp"
 #include "corpus/clip_notices.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/motion_file.hpp"
@@ -55,24 +54,6 @@ Motion prepared(Motion motion, const fs::path& path, const ClipOptions& options,
   return resampling ? resample(motion, options.fps) : motion;
 }
 
-TrainingClip identified(const fs::path& path, const std::string& text) {
-  const auto fingerprint = [](const std::string& bytes) {
-    return fmt::format("{:016x}", fnv1a(bytes));
-  };
-  std::string name = fs::absolute(path).lexically_normal().string();
-  const fs::path skeleton = skeleton_file_of(path);
-  if (skeleton.empty()) return {std::move(name), fingerprint(text)};
-  // A zero, which is in no text, between both.
-  return {std::move(name), fingerprint(text + '\0' + read_text_file(skeleton)), fingerprint(text)};
-}
-
-bool same_clip(const TrainingClip& one, const TrainingClip& other) {
-  const auto by_former = [](const TrainingClip& now, const TrainingClip& recorded) {
-    return !now.former_fingerprint.empty() && now.former_fingerprint == recorded.fingerprint;
-  };
-  return one.fingerprint == other.fingerprint || by_former(one, other) || by_former(other, one);
-}
-
 }  // namespace
 
 void ClipNotices::add_calibration_pose(const fs::path& file) {
@@ -113,7 +94,7 @@ Motion load_clip(const fs::path& path, const ClipOptions& options,
 
 LoadedClip load_clip_as_is(const fs::path& file, bool keep_first_frame, ClipNotices& notices) {
   const std::string text = read_text_file(file);
-  return {identified(file, text),
+  return {identify_clip(file, text),
           prepared(parse_motion(text, file, &notices.lines), file,
                    {.fps = 0, .keep_first_frame = keep_first_frame}, notices)};
 }
@@ -148,15 +129,6 @@ std::vector<fs::path> find_clips(const std::vector<fs::path>& paths) {
   }
   if (clips.empty()) throw InputError("no motion given; name BVH or AMC files or folders of them");
   return clips;
-}
-
-TrainingClip identify_clip(const fs::path& path) {
-  return identified(path, read_text_file(path));
-}
-
-bool is_among(const std::vector<TrainingClip>& clips, const TrainingClip& clip) {
-  return std::ranges::any_of(clips,
-                             [&](const TrainingClip& other) { return same_clip(other, clip); });
 }
 
 }  // namespace mcdbn

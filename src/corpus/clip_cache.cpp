@@ -188,10 +188,9 @@ void ClipCacheWriter::add(const LoadedClip& clip) {
   const auto count = static_cast<std::size_t>(motion.channels.size());
   Checksum checksum;
   checksum.add(motion.channels.data(), count);
-  entries_.push_back(
-      {{clip.clip, clip.person, clip.action, motion.skeleton, motion.frame_time_s, motion.frames()},
-       written_,
-       checksum.value()});
+  entries_.push_back({{clip.clip, motion.skeleton, motion.frame_time_s, motion.frames()},
+                      written_,
+                      checksum.value()});
   write(motion.channels.data(), count * sizeof(double));
 }
 
@@ -202,8 +201,8 @@ void ClipCacheWriter::write_contents() {
     contents["clips"].push_back({{"path", record.clip.path},
                                  {"fingerprint", record.clip.fingerprint},
                                  {"former_fingerprint", record.clip.former_fingerprint},
-                                 {"person", record.person},
-                                 {"action", record.action},
+                                 {"person", record.clip.person},
+                                 {"action", record.clip.action},
                                  {"skeleton", skeleton_json(record.skeleton)},
                                  {"frame_time_s", record.frame_time_s},
                                  {"frames", record.frames},
@@ -247,13 +246,11 @@ ClipStore open_clip_cache(const fs::path& path, const std::string& key) {
     if (contents.at("key") != key)
       throw InputError(fmt::format("{}: a cache of other clips or settings", path.string()));
     for (const json& entry : contents.at("clips")) {
-      records.push_back(
-          {{entry.at("path"), entry.at("fingerprint"), entry.at("former_fingerprint")},
-           entry.at("person"),
-           entry.at("action"),
-           skeleton_from(entry.at("skeleton")),
-           entry.at("frame_time_s"),
-           entry.at("frames")});
+      records.push_back({{entry.at("path"), entry.at("fingerprint"), entry.at("former_fingerprint"),
+                          entry.at("person"), entry.at("action")},
+                         skeleton_from(entry.at("skeleton")),
+                         entry.at("frame_time_s"),
+                         entry.at("frames")});
       extents.push_back({entry.at("first_byte"), records.back().frames,
                          records.back().skeleton.channel_count(), entry.at("checksum")});
       if (extents.back().first_byte + extents.back().count() * sizeof(double) > region.get_size())

@@ -11,13 +11,13 @@ namespace mcdbn {
 
 ClipGroups::ClipGroups(const ClipStore& clips)
     : actions_given_(std::ranges::any_of(
-          clips.records(), [](const ClipRecord& record) { return !record.action.empty(); })) {
+          clips.records(), [](const ClipRecord& record) { return !record.clip.action.empty(); })) {
   PeopleCount count;
   std::map<std::pair<std::size_t, std::string>, std::size_t> numbers;
   for (const ClipRecord& record : clips.records()) {
-    people_.push_back(count.number_of(record.skeleton, record.person));
+    people_.push_back(count.number_of(record.skeleton, record.clip.person));
     groups_.push_back(
-        numbers.try_emplace({people_.back(), record.action}, numbers.size()).first->second);
+        numbers.try_emplace({people_.back(), record.clip.action}, numbers.size()).first->second);
   }
 }
 

@@ -21,7 +21,7 @@ class ClipGroups {
  public:
   explicit ClipGroups(const ClipStore& clips);
 
-  /// Of each clip, counted from 0.
+  /// Person of each clip, counted from 0.
   const std::vector<std::size_t>& people() const { return people_; }
   /// A number for each person and action, or people() where no action is given.
   const std::vector<std::size_t>& groups() const { return actions_given_ ? groups_ : people_; }

@@ -4,7 +4,7 @@
 #include <toml++/toml.h>
 
 #include <iterator>
-#include <set>
+#include <map>
 #include <sstream>
 #include <system_error>
 
@@ -57,6 +57,15 @@ std::string quoted(const std::string& text) {
   return out.str();
 }
 
+/// What is said of a clip, by any list that names it.
+/// @throws InputError where two lists contradict each other
+void merge(const std::string& given, const char* what, const fs::path& file, std::string& known) {
+  if (known.empty()) known = given;
+  if (!given.empty() && given != known)
+    throw InputError(fmt::format("{}: its {} is given as {} and as {}", file.string(), what,
+                                 shown(known), shown(given)));
+}
+
 }  // namespace
 
 std::vector<ListedClip> read_clip_list(const fs::path& path) {
@@ -74,9 +83,13 @@ std::vector<ListedClip> read_clip_list(const fs::path& path) {
 
 std::vector<ListedClip> find_listed_clips(const std::vector<fs::path>& paths) {
   std::vector<ListedClip> clips;
-  std::set<fs::path> seen;
+  std::map<fs::path, std::size_t> seen;
   const auto add = [&](ListedClip clip) {
-    if (seen.insert(fs::weakly_canonical(clip.file)).second) clips.push_back(std::move(clip));
+    const auto [place, is_new] = seen.try_emplace(fs::weakly_canonical(clip.file), clips.size());
+    if (is_new) return clips.push_back(std::move(clip));
+    ListedClip& known = clips[place->second];
+    merge(clip.person, "person", clip.file, known.person);
+    merge(clip.action, "action", clip.file, known.action);
   };
   for (const fs::path& path : paths)
     if (is_list(path))

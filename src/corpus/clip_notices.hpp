@@ -23,7 +23,7 @@ class ClipNotices {
   std::filesystem::path first_posed_;
 };
 
-/// As load_clip with a list of notices, for many clips.
+/// As load_clip() with a list of notices, for many clips.
 Motion load_clip(const std::filesystem::path& path, const ClipOptions& options,
                  ClipNotices& notices);
 

@@ -9,9 +9,9 @@ namespace mcdbn {
 /// Frames of clips, or of views, that are kept in memory all at once: some two hours at 30 a
 /// second.
 inline constexpr double kMostFramesInMemory = 200'000;
-/// Of more only so many are, where some will do for all.
+/// Frames that are kept of a larger corpus, where some stand for all.
 inline constexpr double kSomeFrames = 60'000;
-/// Of a piece of a clip, where pieces are looked at.
+/// Frames of a piece of a clip, where pieces stand for all.
 inline constexpr int kPieceFrames = 150;
 
 /// Some of a clip's frames, at its own rate.

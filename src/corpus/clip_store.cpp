@@ -19,8 +19,7 @@ class ChannelsInMemory : public ClipChannels {
 ClipStore::ClipStore(std::vector<LoadedClip> clips) {
   std::vector<MatrixD> channels;
   for (LoadedClip& loaded : clips) {
-    records_.push_back({std::move(loaded.clip), std::move(loaded.person), std::move(loaded.action),
-                        loaded.motion.skeleton, loaded.motion.frame_time_s,
+    records_.push_back({std::move(loaded.clip), loaded.motion.skeleton, loaded.motion.frame_time_s,
                         loaded.motion.frames()});
     channels.push_back(std::move(loaded.motion.channels));
   }

@@ -133,7 +133,7 @@ class SkeletonCount {
   std::vector<std::vector<std::string>> known_;
 };
 
-/// What is seen of several clips.
+/// Counts over several clips.
 struct Seen {
   SkeletonCount skeletons;
   PeopleCount people;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mcdbn/corpus/clip_list.hpp"
-#include "mcdbn/motion/humanoid_rig.hpp"
+#include "mcdbn/motion/retarget_error.hpp"
 
 namespace mcdbn {
 

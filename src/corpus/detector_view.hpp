@@ -19,7 +19,7 @@ struct DetectorViews {
   OtherBody body;
 };
 
-/// The same seed gives the same view, whatever model it is for.
+/// The clip as a detector would see it in the field. A seed gives the same view for every model.
 /// @param motion at the rate that the track is to have
 AugmentedView detector_view(const Motion& motion, const DetectorViews& views, std::uint64_t seed);
 

@@ -1,10 +1,8 @@
 #include "corpus/encoded_clip.hpp"
 
-#include <fmt/format.h>
-
 #include <utility>
 
-#include "mcdbn/base/errors.hpp"
+#include "base/named_errors.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
 
 namespace mcdbn {
@@ -35,13 +33,11 @@ EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& mod
   ClipNotices ignored;
   Motion motion = load_clip(file, {.fps = modalities.fps, .keep_first_frame = keep_first_frame},
                             notices != nullptr ? *notices : ignored);
-  try {
+  return with_name(file.string(), [&] {
     return encoded(file,
                    for_skeleton(std::move(motion), modalities.pose_features.skeleton(), joint_map),
                    modalities, placement);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
-  }
+  });
 }
 
 EncodedClip encoded_view(const std::filesystem::path& file, const Modalities& modalities,

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "corpus/clip_notices.hpp"
 #include "mcdbn/corpus/augmentation.hpp"
@@ -29,8 +27,8 @@ EncodedClip encode_clip(const std::filesystem::path& file, const Modalities& mod
                         const CameraPlacement& placement, bool keep_first_frame = false,
                         ClipNotices* notices = nullptr, const JointMap& joint_map = {});
 
-/// What another camera saw of other motion, made from that file. The features are those of the pose
-/// alone: whether a network sees the track as it is hangs on its columns.
+/// A view made from that file, with its own motion and camera. The features are the pose's alone:
+/// whether a network can take the track as it is depends on its columns.
 EncodedClip encoded_view(const std::filesystem::path& file, const Modalities& modalities,
                          AugmentedView view);
 

@@ -20,7 +20,7 @@ struct EncodedView {
 };
 
 EncodedView encode_view(const Modalities& modalities, const AugmentedView& view, std::size_t clip);
-/// As one more of a set's sequences.
+/// Appends the view to `views` as one more sequence.
 void add_view(EncodedView view, const ClipStore& clips, const ClipGroups& groups,
               TrainingSet& views);
 
@@ -34,7 +34,7 @@ struct PieceChoice {
 };
 
 /// Any number of augmented views of pieces of clips. View n is the same wherever and whenever it is
-/// made; making it takes as long whatever the corpus.
+/// made; the time for it does not depend on the size of the corpus.
 class FreshViews {
  public:
   /// @param pool what new poses are made of; none: there are none
@@ -44,7 +44,7 @@ class FreshViews {
 
   /// Several threads may call it at once.
   EncodedView make(std::size_t number) const;
-  /// Of a view's clip, as ClipGroups numbers it.
+  /// Group of the view's clip, as ClipGroups numbers it.
   std::size_t group_of(const EncodedView& view) const { return groups_.groups()[view.clip]; }
   /// Frames of each group at the model's rate in the clips that views are made of, by its number.
   const std::vector<double>& group_frames() const { return group_frames_; }

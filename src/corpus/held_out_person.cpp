@@ -23,7 +23,11 @@ TrainingSet selected(const TrainingSet& views, std::size_t person, bool that_per
   return result;
 }
 
-/// What there is of a person.
+std::string file_name(const TrainingClip& clip) {
+  return std::filesystem::path(clip.path).filename().string();
+}
+
+/// Amount of data of a person.
 struct Amount {
   std::set<std::string> clips;
   double duration = 0;
@@ -73,8 +77,15 @@ TrainingSet views_without(const TrainingSet& views, std::size_t person) {
 
 std::vector<std::string> clip_names(const TrainingSet& views) {
   std::set<std::string> names;
-  for (const TrainingClip& clip : views.clips)
-    names.insert(std::filesystem::path(clip.path).filename().string());
+  for (const TrainingClip& clip : views.clips) names.insert(file_name(clip));
+  return {names.begin(), names.end()};
+}
+
+std::vector<std::string> clip_names(const ClipStore& clips, std::size_t person) {
+  const ClipGroups groups(clips);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < clips.count(); ++i)
+    if (groups.people()[i] == person) names.insert(file_name(clips.record(i).clip));
   return {names.begin(), names.end()};
 }
 

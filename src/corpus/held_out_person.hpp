@@ -13,7 +13,7 @@ namespace mcdbn {
 /// @param views with `people` and `clips` for each of `poses`
 std::optional<std::size_t> person_to_hold_out(const TrainingSet& views, std::size_t fewest_people);
 
-/// The same of clips.
+/// As person_to_hold_out() of views, for clips: the person with the least data.
 std::optional<std::size_t> person_to_hold_out(const ClipStore& clips, std::size_t fewest_people);
 
 /// The views of that person alone, or of all others.
@@ -22,5 +22,9 @@ TrainingSet views_without(const TrainingSet& views, std::size_t person);
 
 /// File names of a set's clips, each once.
 std::vector<std::string> clip_names(const TrainingSet& views);
+
+/// File names of all clips of a person, each once.
+/// @param person as ClipGroups numbers them
+std::vector<std::string> clip_names(const ClipStore& clips, std::size_t person);
 
 }  // namespace mcdbn

@@ -40,7 +40,7 @@ class Wandering {
   std::array<Wave, 3> waves_;
 };
 
-/// The same of three numbers at a time.
+/// Three numbers that wander independently.
 struct WanderingVector {
   explicit WanderingVector(RandomSequence& random) : x(random), y(random), z(random) {}
   Vector3d at(double time_s) const { return {x.at(time_s), y.at(time_s), z.at(time_s)}; }

@@ -7,7 +7,7 @@ namespace mcdbn {
 
 /// The motion with poses that no clip holds, each change in its own share of the views: limbs of
 /// other clips, limbs turned at random, arms anywhere, leaning, turning round. Bones keep their
-/// lengths, the lowest foot its height. The same key gives the same.
+/// lengths, the lowest foot its height. A key always gives the same motion.
 /// @param motion of the humanoid, at the pool's rate
 Motion with_new_poses(const Motion& motion, const AugmentationSettings& settings,
                       const PosePool& pool, const RandomKey& key);

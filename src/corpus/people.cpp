@@ -10,7 +10,7 @@
 namespace mcdbn {
 namespace {
 
-/// What the first pattern that the whole of a file's name fits has in brackets.
+/// The group in brackets of the first pattern that matches the whole file name.
 std::optional<std::string> known_by_name(const std::filesystem::path& file, const std::regex& first,
                                          const std::regex& second) {
   const std::string name = file.stem().string();

@@ -1,7 +1,6 @@
 #include "corpus/pose_pool.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "base/interruption.hpp"

@@ -12,8 +12,8 @@
 
 namespace mcdbn {
 
-/// What new poses of the humanoid are made of: the clips of a corpus, and how far joints turn in
-/// them. Left and right are taken together.
+/// Source of new poses of the humanoid: the clips of a corpus, and how far joints turn in them.
+/// Left and right are taken together.
 class PosePool {
  public:
   /// @param clips on the humanoid (load_training_clips)  @throws ConfigError if they are not
@@ -35,7 +35,7 @@ class PosePool {
   std::array<JointLimits, kJointRoleCount> limits_;
 };
 
-/// What views of those people's clips need for new poses; null where the settings have none.
+/// Pool for new poses in views of those people's clips; null where the settings want none.
 std::shared_ptr<const PosePool> pose_pool_for(const ClipStore& clips,
                                               const CorpusSettings& settings,
                                               const PeopleChoice& people = {});

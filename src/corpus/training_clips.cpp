@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/made_ahead.hpp"
+#include "base/named_errors.hpp"
 #include "base/utf8.hpp"
 #include "corpus/clip_cache.hpp"
 #include "corpus/clip_notices.hpp"
@@ -16,6 +17,7 @@
 #include "corpus/people.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
+#include "mcdbn/motion/retarget_error.hpp"
 
 namespace mcdbn {
 namespace {
@@ -40,7 +42,7 @@ class OddOne {
   std::optional<std::string> text_;
 };
 
-/// What of a corpus is lost on the humanoid, in words.
+/// Errors of a corpus on the humanoid, in words.
 class Losses {
  public:
   void add(const std::string& file, const RetargetError& error) {
@@ -67,7 +69,7 @@ class Losses {
   std::string worst_;
 };
 
-/// What a model records is text, and known to be before anything is trained.
+/// Checks, before anything is trained, that the names which a model records are UTF-8.
 void check_names(const LoadedClip& clip) {
   for (const Joint& joint : clip.motion.skeleton.joints)
     require_utf8(joint.name, fmt::format("{}: the joint name {}", clip.clip.path, joint.name));
@@ -84,8 +86,8 @@ struct Brought {
 Brought read_clip(const ListedClip& listed, const CorpusSettings& settings) {
   Brought read;
   read.clip = load_clip_as_is(listed.file, settings.keep_first_frame, read.notices);
-  read.clip.person = listed.person;
-  read.clip.action = listed.action;
+  read.clip.clip.person = listed.person;
+  read.clip.clip.action = listed.action;
   check_names(read.clip);
   return read;
 }
@@ -93,13 +95,11 @@ Brought read_clip(const ListedClip& listed, const CorpusSettings& settings) {
 Brought onto_humanoid(Brought brought, const CorpusSettings& settings) {
   brought.was = brought.clip.motion.skeleton;
   if (is_humanoid(brought.was)) return brought;
-  try {
+  with_name(brought.clip.clip.path, [&] {
     const HumanoidRig rig = rig_of_person(brought.clip.motion, settings.joint_map);
     brought.error = retarget_error(rig, brought.clip.motion);
     brought.clip.motion = rig.to_humanoid(brought.clip.motion);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", brought.clip.clip.path, error.what()));
-  }
+  });
   return brought;
 }
 
@@ -115,8 +115,8 @@ void for_each_clip(std::size_t count, const Make& make, const Take& take) {
 class HumanoidClips {
  public:
   LoadedClip taken(Brought brought) {
-    if (brought.clip.person.empty())
-      brought.clip.person = fmt::format("person {}", people_.number_of(brought.was));
+    std::string& person = brought.clip.clip.person;
+    if (person.empty()) person = fmt::format("person {}", people_.number_of(brought.was));
     if (brought.error) losses_.add(brought.clip.clip.path, *brought.error);
     return std::move(brought.clip);
   }
@@ -151,7 +151,7 @@ ClipSink into_file(const std::filesystem::path& path, const std::string& key) {
 
 LoadedClip clip_of(const ClipStore& clips, std::size_t i) {
   const ClipRecord& record = clips.record(i);
-  return {record.clip, clips.motion(i), record.person, record.action};
+  return {record.clip, clips.motion(i)};
 }
 
 /// Reads clips and brings them where they are to be, onto the humanoid too if they are to be there.
@@ -210,7 +210,7 @@ ClipStore read_clips(const std::vector<ListedClip>& files, const CorpusSettings&
   return clips;
 }
 
-/// What a cache depends on beside what is in the files.
+/// The cache's key: all that it depends on besides the files' contents.
 std::string cache_key(const std::vector<ListedClip>& files, const CorpusSettings& settings) {
   nlohmann::json key = {{"version", 3},
                         {"keep_first_frame", settings.keep_first_frame},

@@ -23,15 +23,13 @@ struct Pair {
   MatrixD track, pose;
 };
 
-std::vector<Motion> resampled_phases(const Motion& raw, const CorpusSettings& settings) {
+std::vector<Motion> resampled_phases(const Motion& raw, double fps, std::size_t wanted) {
   // More grids than source frames in a target frame would only repeat the interpolation.
-  const auto most =
-      static_cast<std::size_t>(std::max(1.0, std::floor(raw.fps() / settings.fps + 1e-6)));
-  const std::size_t phases = std::clamp<std::size_t>(settings.phases, 1, most);
+  const auto most = static_cast<std::size_t>(std::max(1.0, std::floor(raw.fps() / fps + 1e-6)));
+  const std::size_t phases = std::clamp<std::size_t>(wanted, 1, most);
   std::vector<Motion> clips;
   for (std::size_t i = 0; i < phases; ++i)
-    clips.push_back(
-        resample(raw, settings.fps, static_cast<double>(i) / static_cast<double>(phases)));
+    clips.push_back(resample(raw, fps, static_cast<double>(i) / static_cast<double>(phases)));
   return clips;
 }
 
@@ -65,7 +63,7 @@ Pair pair_of(const Motion& motion, const Track2d& track, const Camera& camera,
           modalities.pose_values(motion, camera.camera_from_world)};
 }
 
-/// As the model's camera sees each motion from each of its directions, those of a motion in a row.
+/// Views of each motion by the model's camera from each of its directions, motion by motion.
 std::vector<Pair> seen_pairs(const std::vector<Motion>& motions, const Modalities& modalities) {
   const auto placements = placements_around(modalities.camera, modalities.directions);
   std::vector<Pair> pairs;
@@ -92,22 +90,24 @@ std::vector<const Motion*> pointers(const std::vector<Motion>& motions) {
   return all;
 }
 
-/// What of the clips is looked at, at the model's rate.
+/// The pieces of the clips that are used, and their motion at the model's rate.
 struct SampledClips {
   const ClipStore& clips;
   std::vector<ClipPiece> pieces;
   std::vector<Motion> motions;
   std::vector<std::size_t> phases;  ///< motions of each piece
 
-  SampledClips(const ClipStore& from, const CorpusSettings& settings) : clips(from) {
+  /// @param with_views one phase is enough: what is learnt from are views of the clips themselves
+  SampledClips(const ClipStore& from, const CorpusSettings& settings, bool with_views)
+      : clips(from) {
     if (clips.count() == 0)
       throw InputError("no training clips; name BVH files or folders that hold some");
     pieces = pieces_in_memory(clips, settings.fps);
     for (const ClipPiece& piece : pieces) {
       check_interruption();
       const std::size_t before = motions.size();
-      for (Motion& motion :
-           resampled_phases(clips.piece(piece.clip, piece.first, piece.frames), settings))
+      for (Motion& motion : resampled_phases(clips.piece(piece.clip, piece.first, piece.frames),
+                                             settings.fps, with_views ? 1 : settings.phases))
         motions.push_back(std::move(motion));
       phases.push_back(motions.size() - before);
     }
@@ -154,7 +154,7 @@ std::size_t TrainingSet::frames() const {
 TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& settings,
                               std::uint64_t seed, bool with_views,
                               std::optional<std::size_t> held_out) {
-  const SampledClips sampled(clips, settings);
+  const SampledClips sampled(clips, settings, with_views);
   PoseFeatures pose_features = fitted_features(pointers(sampled.motions), clips);
   TrackFeatures track_features =
       TrackFeatures::for_skeleton(pose_features.skeleton(), pose_features.root());
@@ -189,7 +189,7 @@ TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& sett
 TrainingSet encoded_training_set(const ClipStore& clips, const Modalities& modalities,
                                  const CorpusSettings& settings, bool with_views,
                                  std::optional<std::size_t> held_out) {
-  const SampledClips sampled(clips, settings);
+  const SampledClips sampled(clips, settings, with_views);
   TrainingSet set = sampled.set(modalities);
   if (with_views) set.new_poses = pose_pool_for(clips, settings, {.without = held_out});
   add_pairs(seen_pairs(sampled.motions, modalities), set);

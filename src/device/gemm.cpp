@@ -15,7 +15,7 @@ namespace mcdbn {
 namespace {
 
 /// Accumulator rows of one work-item: enough to hide the fma latency, few enough for the registers.
-/// Of few rows a power of two: each other number would be a kernel of its own to build.
+/// For few rows it is a power of two: each other number would be one more kernel to build.
 int tile_rows_for(const Device& device, std::size_t rows) {
   return std::min(device.tuning().product_rows, to_int(std::bit_ceil(rows)));
 }
@@ -47,7 +47,8 @@ void require_operands(const Rows& a, const Rows& b, const Rows& c, const GemmOpt
           "gemm: an activation's gradient needs its values, and the other way round");
 }
 
-/// What a work-item makes that has its columns of B in local memory (PACKED in gemm.cl).
+/// Rows and columns of C of a work-item that keeps its columns of B in local memory (PACKED in
+/// gemm.cl).
 struct PackedGroup {
   std::size_t rows, columns;
 };
@@ -174,7 +175,7 @@ bool goes_to_clblast(const Rows& a, const Rows& c, std::size_t k, GemmBackend ba
   return from > 0 && static_cast<std::int64_t>(c.count * c.columns * k) >= from;
 }
 
-/// As epilogue.clh calls them.
+/// The activation's name in epilogue.clh.
 const char* name_of(Activation activation) {
   switch (activation) {
     case Activation::sigmoid:

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 #include "device/gemm.hpp"
 #include "device/launch.hpp"
 #include "mcdbn/base/errors.hpp"

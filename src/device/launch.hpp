@@ -32,7 +32,7 @@ void keep_pace(Device& device);
 /// DeviceError
 void enqueue(Device& device, const cl::Kernel& kernel, const LaunchSize& size);
 
-/// What became of a launch, with the kernel's name.
+/// Error of a launch, with the kernel's name.
 DeviceError launch_error(const Device& device, const cl::Kernel& kernel, const cl::Error& error);
 
 /// Enqueues one kernel with its arguments set in order; returns at once, but for keep_pace() and a

@@ -73,7 +73,7 @@ Matrix Matrix::part(std::size_t first, std::size_t rows, std::size_t columns) co
 
 Matrix Matrix::filled_with_row(const Matrix& row, std::size_t rows) {
   if (row.rows() != 1)
-    throw ShapeError(fmt::format("a matrix of one row is wanted, not of {}", row.rows()));
+    throw ShapeError(fmt::format("expected a matrix of one row, not of {}", row.rows()));
   return from_host(row.device(), row.to_host().replicate(static_cast<Eigen::Index>(rows), 1));
 }
 

@@ -24,7 +24,7 @@ struct Failure {
   const char* meaning = nullptr;
 };
 
-/// Those that a driver's state, not a mistake of ours, brings about have a meaning.
+/// OpenCL's errors; those of a driver's state, not of a mistake in this library, have a meaning.
 constexpr std::array kFailures{
     Failure{CL_DEVICE_NOT_FOUND, "CL_DEVICE_NOT_FOUND", kLost},
     Failure{CL_DEVICE_NOT_AVAILABLE, "CL_DEVICE_NOT_AVAILABLE", kLost},

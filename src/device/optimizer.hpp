@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 
 #include "device/program.hpp"
 #include "device/training_state.hpp"
@@ -13,7 +12,7 @@ namespace mcdbn {
 /// gradient.
 enum class OptimizerKind { none, momentum, adam };
 
-/// What one matrix takes of a step.
+/// How one matrix is updated in a step.
 struct UpdateRule {
   float rate = 1e-3F;
   float momentum = 0.0F;      ///< kept of the velocity; Adam's β1, the same in every step
@@ -52,12 +51,12 @@ class Optimizer {
   cl_float8 argument(const UpdateRule& rule) const;
   /// [1 x floats]; without elements before gradients() was asked for by someone who fills it.
   Matrix& gradients();
-  /// What kernels want where they neither write nor read it: some buffer.
+  /// Buffers for a kernel's arguments: any buffer where the kernel does not use it.
   const cl::Buffer& gradient_buffer();
   const cl::Buffer& state_buffer() const;
   /// [states x floats]: the velocity, or the mean and the square; none: empty.
   Matrix& states() { return states_; }
-  /// What it keeps from step to step; the parameters are their machine's.
+  /// State that is kept from step to step; the parameters belong to their machine.
   void visit_state(TrainingState& state);
   /// Floats of one block of states.
   int size() const;

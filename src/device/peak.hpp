@@ -8,7 +8,7 @@ namespace mcdbn {
 /// this device now. Every compute unit has many work-groups to take, so that one that wakes up late
 /// takes fewer; launches follow each other, and their best median counts. Waits for the queue.
 double measure_peak_gflops(Device& device);
-/// The same with vectors of so many floats: 1, 4, 8 or 16.
+/// As measure_peak_gflops(device), with vectors of one width. @param vector_width 1, 4, 8 or 16
 double measure_peak_gflops(Device& device, int vector_width);
 
 /// Whether a core multiplies and adds 16 floats in one pass. Registers of 512 bits do not show

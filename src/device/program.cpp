@@ -45,7 +45,7 @@ std::string options_of(const Defines& defines) {
   return options;
 }
 
-/// What distinguishes a kernel from others. It is needed at every launch: building the options
+/// Key of a kernel in the cache. It is needed at every launch: building the compiler's options
 /// there would take longer than many a launch does.
 std::string key_of(const std::string& file, const std::string& name, const Defines& defines) {
   std::string key;

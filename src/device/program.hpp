@@ -34,7 +34,7 @@ class ProgramCache {
  public:
   ProgramCache(cl::Context context, cl::Device device);
 
-  /// Of every kernel from here on (types.clh).
+  /// Sets the unrolling of every kernel that is built from here on (types.clh).
   void set_unroll(int rounds) { unroll_ = rounds; }
 
   /// @throws DeviceError with the build log

@@ -30,10 +30,10 @@ std::optional<RowTile> choose_row_tile(const Device& device, std::size_t floats_
 /// A kernel's own definitions with those of tile.clh: ROWS, COLUMNS and GROUP.
 Defines with_tile(Defines defines, const RowTile& tile);
 
-/// The same for a kernel that works on panels of gradients (kernels/weight_tile.clh).
+/// with_tile() for a kernel that works on panels of gradients (kernels/weight_tile.clh).
 Defines with_update_tile(Defines defines, const RowTile& tile);
 
-/// Work-groups for the gradient of a weight matrix of so many rows, which a device has padded.
+/// Work-groups for the gradient of a weight matrix. @param rows of the matrix as the device pads it
 std::size_t update_panels(const RowTile& tile, std::size_t rows);
 
 /// Rows of a mini-batch that such a kernel takes at a time. Where there are more, sums that are not

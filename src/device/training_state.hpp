@@ -11,9 +11,9 @@
 
 namespace mcdbn {
 
-/// What a training changes as it goes, by name, on its way into a checkpoint or back out of one.
-/// Whatever has a state names all of it in one function, visit_state(TrainingState&), which serves
-/// both ways. What follows from it, or is made anew in each mini-batch, is no part of it.
+/// Everything that training changes, by name: saved to a checkpoint or restored from it. A class
+/// with such state names all of it in one function, visit_state(TrainingState&), which serves both
+/// ways. What follows from it, or is made anew in each mini-batch, is no part of it.
 class TrainingState {
  public:
   /// The numbers and matrices of one stage, as a checkpoint keeps them.
@@ -31,7 +31,7 @@ class TrainingState {
   /// Whether what is visited is being brought back: what follows from it has to be made anew.
   bool restores() const { return restores_; }
 
-  /// The same with `prefix` before every name, for parts of which there are several.
+  /// This state with `prefix` before every name, for parts of which there are several.
   TrainingState under(const std::string& prefix) const {
     TrainingState state(content_, restores_);
     state.prefix_ = prefix_ + prefix;
@@ -47,10 +47,10 @@ class TrainingState {
     else
       content_.numbers[prefix_ + name] = value;
   }
-  /// Of the shape that it had when it was saved. @throws InputError if there is none
+  /// A matrix, of the shape that it had when it was saved. @throws InputError if there is none
   void matrix(const std::string& name, Matrix& value);
-  /// One that is made when it is first wanted: it is empty where it was.
-  /// @param make an empty one
+  /// A matrix that is made when it is first needed: restored as empty if it was saved so.
+  /// @param make a matrix of its shape
   template <typename Make>
   void matrix_if_any(const std::string& name, Matrix& value, const Make& make) {
     bool any = !value.empty();
@@ -58,7 +58,7 @@ class TrainingState {
     if (any && value.empty()) value = make();
     if (any) matrix(name, value);
   }
-  /// All of them.
+  /// All parameters, as one matrix.
   void parameters(const std::string& name, const Parameters& value) {
     Matrix all = value.all();  // shares the buffer
     matrix(name, all);

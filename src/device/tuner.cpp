@@ -27,7 +27,7 @@ Tuning with_changes(Tuning to, const Tuning& from, const Tuning& usual) {
   return to;
 }
 
-/// What it has otherwise than the default: "vector width 8, group 64".
+/// The values that differ from the default: "vector width 8, group 64".
 std::string described(const Tuning& tuning, const Tuning& usual) {
   std::string text;
   for (const auto& [name, value] : kTuningFields)
@@ -37,7 +37,7 @@ std::string described(const Tuning& tuning, const Tuning& usual) {
   return text.empty() ? "the default" : text;
 }
 
-/// What only products depend on (gemm.cpp).
+/// The values that only products depend on (gemm.cpp).
 auto product_parameters(const Tuning& tuning) {
   return std::tie(tuning.product_rows, tuning.product_columns, tuning.transposed_rows,
                   tuning.transposed_columns, tuning.summed_rows);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <string_view>
 
 #include "base/interruption.hpp"
 #include "base/text_file.hpp"
@@ -95,7 +94,7 @@ MatrixD Panel::framed_points() const {
   return Eigen::Map<const MatrixD>(all.data(), 1, static_cast<Eigen::Index>(all.size()));
 }
 
-/// What the camera goes with.
+/// The point that the camera follows.
 Eigen::Vector3d Panel::origin_at(double t_s) const {
   const Figure& leader = *figures_.front();
   if (!options_.follow_root) return Eigen::Vector3d::Zero();
@@ -269,7 +268,7 @@ void render(const std::vector<RenderClip>& clips, const fs::path& path,
   check(clips, options);
   const bool video = path.extension() == ".mp4";
   if (!video && path.extension() != ".png") {
-    throw InputError(
+    throw ConfigError(
         fmt::format("{}: unknown kind of file; end the name in .mp4 or .png", path.string()));
   }
   std::vector<Figure> figures;

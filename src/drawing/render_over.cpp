@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/interruption.hpp"
+#include "base/named_errors.hpp"
 #include "base/text_file.hpp"
 #include "drawing/film_file.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -17,7 +18,7 @@
 namespace mcdbn::rendering {
 namespace {
 
-/// So many frames of the film show some figure.
+/// Number of the film's frames that show some figure.
 int frames_shown(const std::vector<Figure>& figures, double fps) {
   double longest_s = 0;
   for (const Figure& figure : figures)
@@ -36,14 +37,12 @@ class FilmCamera {
   /// @throws InputError where they have another shape: figures would not lie where they were seen
   Camera of(const cv::Size& picture) {
     std::vector<std::string> notices;
-    try {
+    return with_name(film_, [&] {
       Camera own = of_scaled_images(camera_, picture.width, picture.height, &notices);
       if (auto* to = std::exchange(notices_, nullptr))
         for (const std::string& notice : notices) to->push_back(film_ + ": " + notice);
       return own;
-    } catch (const InputError& error) {
-      throw InputError(film_ + ": " + error.what());
-    }
+    });
   }
 
  private:

@@ -40,7 +40,7 @@ struct ActionReport {
   CorrelationReport flat, channel;  ///< truth against every regeneration: Tables 3 and 6
   CorrelationReport pairs_real;     ///< every two real clips: Fig. 10, 12
   CorrelationReport pairs_all;      ///< every two regenerations: Fig. 9, Table 4
-  /// As many of pairs_all as there are real pairs, drawn at random: Fig. 10, 12, Tables 5, 7.
+  /// Random pairs of pairs_all, as many as there are real pairs: Fig. 10, 12, Tables 5, 7.
   CorrelationReport pairs_drawn;
   /// KL(real ‖ regenerated) of the fitted Weibulls (eq 53), where both could be fitted.
   std::optional<double> weibull_kl;

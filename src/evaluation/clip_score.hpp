@@ -5,6 +5,7 @@
 
 #include "evaluation/foot_slide.hpp"
 #include "mcdbn/evaluation/joint_error.hpp"
+#include "mcdbn/evaluation/limb_error.hpp"
 
 namespace mcdbn {
 

@@ -26,7 +26,7 @@ class Coverage {
   void add(const std::vector<std::string>& names, const MatrixD& truth, const MatrixD& mean,
            const MatrixD& deviation);
 
-  /// What another counted, too.
+  /// Adds another's counts.
   void add(const Coverage& other);
 
   const std::map<std::string, Share>& by_name() const { return shares_; }

@@ -31,7 +31,7 @@ struct EvaluationReport {
   TrackDamage damage;            ///< done to the tracks before any method saw them
   std::vector<ReportClip> clips;
   std::vector<ActionReport> actions;  ///< analyse_actions of the clips
-  /// Of the model's answers, if that was asked for: of joints in mm, of the network's channels.
+  /// Coverage of the model's intervals, if asked for: of joints in mm, of the network's channels.
   Coverage joints, channels;
 };
 

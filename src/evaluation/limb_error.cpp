@@ -1,3 +1,5 @@
+#include "mcdbn/evaluation/limb_error.hpp"
+
 #include <fmt/core.h>
 
 #include <array>

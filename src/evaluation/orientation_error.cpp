@@ -13,7 +13,7 @@
 namespace mcdbn {
 namespace {
 
-/// Of each joint of the truth that turns and that the other has, its index and the other's.
+/// Index in both skeletons of each joint of the truth that turns and that the other has.
 std::vector<std::pair<std::size_t, std::size_t>> turning_joints(const Skeleton& truth,
                                                                 const Skeleton& other) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;

@@ -38,7 +38,7 @@ std::string encoded(const MatrixD& values, int step) {
   return encode_series(kept);
 }
 
-/// Of each point: −1 left, 1 right, 0 neither; an end of a limb is on its joint's side.
+/// Side of each point: −1 left, 1 right, 0 neither; an end of a limb is on its joint's side.
 std::vector<int> sides_of(const ReportClip& clip) {
   std::vector<int> sides;
   for (std::size_t i = 0; i < clip.point_names.size(); ++i) {

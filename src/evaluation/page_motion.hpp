@@ -6,8 +6,8 @@
 
 namespace mcdbn {
 
-/// What the page's viewer plays of the clips, in at most `budget_bytes` of encoded motion. Those
-/// that do not fit are left out; it may be all.
+/// Clips for the page's viewer, in at most `budget_bytes` of encoded motion. Clips that do not fit
+/// are left out; it may be all.
 struct PageMotion {
   nlohmann::ordered_json clips = nlohmann::ordered_json::array();
   std::size_t left_out_clips = 0;

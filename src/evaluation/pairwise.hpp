@@ -6,8 +6,8 @@
 
 namespace mcdbn {
 
-/// Flattened PCC of every pair of clips (Fig. 9, 10, 12). Of two clips of different lengths, the
-/// first frames of the longer one are compared: the shorter length wins.
+/// Flattened PCC of every pair of clips (Fig. 9, 10, 12). Where their lengths differ, the first
+/// frames of the longer one are compared.
 /// @param clips [frames x channels] each, channels equal
 /// @return clips·(clips − 1)/2 values: (0,1), (0,2), …, (1,2), …; NaN where a clip never changes
 /// @throws ShapeError if channels differ or a clip is empty

@@ -14,13 +14,13 @@ namespace mcdbn {
 struct ReportMotion {
   MatrixD points_mm;  ///< [frames x 3·points], as ReportClip::truth_mm
   ClipScore score;
-  /// Of each joint, from the root along the world's axes [frames x 3·joints], the root's own 0;
-  /// 0 x 0 where the answer has none.
+  /// Deviation of each joint from the root, along the world's axes [frames x 3·joints], 0 for the
+  /// root itself; 0 x 0 where the answer has none.
   MatrixD deviation_mm = {};
 };
 
-/// What a report has of one test clip. Points are joints first (the root, then those that are
-/// judged), then the ends of limbs, which are only drawn.
+/// One test clip of a report. Points are joints first (the root, then those that are judged), then
+/// the ends of limbs, which are only drawn.
 struct ReportClip {
   std::string name;    ///< unique in the report
   std::string action;  ///< what it is counted under

@@ -8,7 +8,6 @@
 #include "evaluation/page_files.hpp"
 #include "evaluation/page_motion.hpp"
 #include "evaluation/report_tables.hpp"
-#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {

@@ -77,7 +77,7 @@ void add_flat_warning(std::vector<Verdict>& list, const ClipScore& answer,
                                 pose, constant, answer.pcc_flat)});
   else if (constant > 0.8 && std::isfinite(mean_pose->mean.pcc_channel))
     list.push_back(
-        {Kind::note, fmt::format("Even {} reaches a flattened PCC of {:.4f} (the model: {:.4f}): "
+        {Kind::note, fmt::format("By the flattened PCC, {} reaches {:.4f} (the model: {:.4f}): "
                                  "judge by the per-channel PCC, where it gets {:.3g}.",
                                  pose, constant, answer.pcc_flat, mean_pose->mean.pcc_channel)});
 }

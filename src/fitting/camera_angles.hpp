@@ -15,7 +15,7 @@ inline double pitch_rad(const Eigen::Vector3d& up) {
 inline double roll_rad(const Eigen::Vector3d& up) {
   return std::atan2(-up.x(), -up.y());
 }
-/// The same of one camera less another's, the short way round.
+/// Difference of two cameras' rolls, the short way round.
 inline double roll_from_to_rad(const Eigen::Vector3d& from_up, const Eigen::Vector3d& to_up) {
   return std::remainder(roll_rad(to_up) - roll_rad(from_up), 2 * std::numbers::pi);
 }

@@ -11,13 +11,13 @@
 #include "fitting/camera_angles.hpp"
 #include "fitting/prior_deviations.hpp"
 #include "fitting/robust_residuals.hpp"
-#include "fitting/rotation.hpp"
 #include "fitting/turned_bones.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
 #include "mcdbn/motion/planted_foot.hpp"
 #include "motion/body_size.hpp"
 #include "motion/foot_joints.hpp"
 #include "motion/mirror.hpp"
+#include "motion/rotation_vector.hpp"
 
 namespace mcdbn {
 namespace {
@@ -32,7 +32,7 @@ std::vector<int> length_groups(const PoseFeatures& features, const std::vector<i
     int group = -1;
     for (std::size_t other = 0; other < turn && !opposite.empty(); ++other) {
       if (opposite[static_cast<std::size_t>(joints[turn])] == joints[other] &&
-          !hangs_from(parents, static_cast<int>(turn), static_cast<int>(other)))
+          !is_same_or_below(parents, static_cast<int>(turn), static_cast<int>(other)))
         group = groups[other];
     }
     groups.push_back(group < 0 ? count++ : group);

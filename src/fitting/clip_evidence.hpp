@@ -4,6 +4,7 @@
 #include "fitting/clip_posterior.hpp"
 #include "fitting/stance.hpp"
 #include "mcdbn/features/modalities.hpp"
+#include "mcdbn/fitting/pose_prior.hpp"
 
 namespace mcdbn {
 
@@ -39,7 +40,7 @@ class ClipEvidence {
   /// as before where none does. @return as PosteriorPoint::ground_m
   Eigen::VectorXd ground(const PosteriorPoint& point) const;
   /// How the camera stands if the body's middle is, on average, straight above the feet.
-  /// That is less certain of who moves fast, and so leans, and of who sits or squats.
+  /// This is less certain where the person moves fast, and so leans, and where they sit or squat.
   ExpectedLean balanced(const Stance& stance, const TrackFitSettings& settings) const;
 
   /// The answer's features, turned. @return [frames x dimension] along the camera's axes

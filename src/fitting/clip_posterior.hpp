@@ -10,7 +10,7 @@
 #include "fitting/marginal_prior.hpp"
 #include "fitting/unknown_camera.hpp"
 #include "mcdbn/base/matrices.hpp"
-#include "mcdbn/fitting/track_fit.hpp"
+#include "mcdbn/fitting/track_fit_settings.hpp"
 
 namespace mcdbn {
 
@@ -30,8 +30,8 @@ struct PosteriorClip {
   std::vector<int> lengths;                  ///< by orientation, which length its bones have
   std::vector<BoneKind> length_kinds;        ///< by length, what it is of; none: all of others
   MatrixD turn_deviation_rad;                ///< [frames x orientations] about each axis
-  double root_m_s2 = 1;                      ///< deviation of the acceleration of what is wrong
-                                             ///< with the travelled way
+  double root_m_s2 = 1;                      ///< deviation of the acceleration of the root's
+                                             ///< difference from `travelled`
   MatrixD root;                              ///< [frames x 3] where it is at first
   MatrixD travelled;                         ///< [frames x 3] the prior's velocity, summed up
   std::vector<std::vector<SeenJoint>> seen;  ///< by frame and joint
@@ -50,9 +50,10 @@ struct PosteriorClip {
   Eigen::Index frames() const { return root.rows(); }
 };
 
-/// How far off rays are, x/z and y/z each: a part that is new in every frame and one that lasts.
+/// Deviation of a ray's error, x/z and y/z each.
 struct RayNoise {
-  double white = 0, lasting = 0;
+  double white = 0;       ///< of the part that is new in every frame
+  double lasting = 0;     ///< of the part that lasts for about detector_noise_time
   bool exact = false;     ///< there is next to none compared with a usual detector's
   bool measured = false;  ///< there is some, and it is no detector's: all of it is estimated from
                           ///< the track and a solution
@@ -77,9 +78,9 @@ struct PosteriorPoint {
 
 /// The gain at which a solution of all frames stops.
 inline constexpr double kSmallGainOfAll = 2e-3;
-/// The same of a detector's track, which starts from a rough solution: further steps follow what is
-/// wrong with it as much as the motion. Chosen on 37 clips of training people, tracks like
-/// OpenPose's.
+/// The gain at which a solution of a detector's track stops. It starts from a rough solution:
+/// further steps follow the track's errors as much as the motion. Chosen on 37 clips of training
+/// people, tracks like OpenPose's.
 inline constexpr double kSmallGainOfDetector = 1e-2;
 
 /// What all frames share: body, ground and camera.
@@ -106,9 +107,9 @@ PosteriorPoint map_solution(const PosteriorClip& clip, const RayNoise& noise,
 /// The gain at which coarse_solution stops.
 inline constexpr double kSmallGainOfCoarse = 1e-2;
 
-/// About the same from a frame every TrackFitSettings::first_solution_step_s, in a fraction of the
-/// time: how a motion differs from the prior's mean is slow, and runs straight between those
-/// frames.
+/// About map_solution(), from a frame every TrackFitSettings::first_solution_step_s, in a fraction
+/// of the time: the motion's difference from the prior's mean changes slowly, and is interpolated
+/// between those frames.
 PosteriorPoint coarse_solution(const PosteriorClip& clip, const RayNoise& noise,
                                const TrackFitSettings& settings, PosteriorPoint from);
 

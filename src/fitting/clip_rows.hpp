@@ -2,7 +2,7 @@
 
 #include "mcdbn/base/matrices.hpp"
 #include "mcdbn/camera/track.hpp"
-#include "mcdbn/fitting/track_fit.hpp"
+#include "mcdbn/fitting/pose_prior.hpp"
 
 namespace mcdbn {
 

@@ -4,10 +4,10 @@
 
 namespace mcdbn {
 
-/// A part of a joint's way from the root that one orientation turns: camera axes.
+/// The bones between the root and a joint that one orientation turns, as one vector.
 struct Lever {
-  int turn = 0;  ///< index of the orientation
-  Eigen::Vector3d bone{0, 0, 0};
+  int turn = 0;                   ///< index of the orientation
+  Eigen::Vector3d bone{0, 0, 0};  ///< camera axes
 };
 
 }  // namespace mcdbn

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "fitting/prior_errors.hpp"
-#include "fitting/rotation.hpp"
+#include "motion/rotation_vector.hpp"
 
 namespace mcdbn {
 namespace {
@@ -41,7 +41,7 @@ class LimbInTime {
       for (std::size_t set = 0; set < sets(); ++set) sides_.push_back(with_sides(t, set));
   }
 
-  /// The sequence of the least energy, by frame. Of three frames at least.
+  /// The sequence of the least energy, by frame; there are at least three frames.
   std::vector<std::size_t> likeliest() const {
     const std::size_t sets = this->sets();
     const Eigen::Index frames = clip_.frames();

@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
-#include <algorithm>
 #include <cmath>
 
 #include "base/interruption.hpp"
@@ -74,7 +73,7 @@ Eigen::VectorXd normals(std::uint64_t seed, std::size_t draw, std::uint32_t row,
   });
 }
 
-/// What a window adds to a draw, [frames·(3·orientations + 3)] each.
+/// A window's part of a draw, [frames·(3·orientations + 3)] each.
 struct WindowDraw {
   Eigen::VectorXd own, of_body;
 };

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "mcdbn/features/modalities.hpp"
-#include "mcdbn/fitting/track_fit.hpp"
+#include "mcdbn/fitting/pose_prior.hpp"
+#include "mcdbn/fitting/track_fit_settings.hpp"
 
 namespace mcdbn {
 
@@ -13,17 +14,17 @@ namespace mcdbn {
 MatrixD turn_deviations_rad(const PosePrior& prior, const Modalities& features,
                             const TrackFitSettings& settings);
 
-/// The same as the fit takes them: no smaller than the settings' typical ones. A prior with smaller
-/// deviations has larger errors than these on people that it was not trained on.
+/// turn_deviations_rad() as the fit uses them: at least the settings' typical ones. A prior with
+/// smaller deviations has larger errors than these on people that it was not trained on.
 MatrixD fitted_turn_deviations_rad(const PosePrior& prior, const Modalities& features,
                                    const TrackFitSettings& settings);
 
-/// How much the change of the prior's root velocity is off: its deviation, RMS over the clip,
-/// within the time that errors last. @return m/s² on a 1.7 m body
+/// Deviation of the error of the prior's root acceleration, RMS over the clip, within the time that
+/// errors last. @return m/s² on a 1.7 m body
 double root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities& features,
                                         const TrackFitSettings& settings);
 
-/// The same as the fit takes it, for the same reason: no smaller than the settings' typical one.
+/// root_acceleration_deviation_m_s2() as the fit uses it: at least the settings' typical one.
 double fitted_root_acceleration_deviation_m_s2(const PosePrior& prior, const Modalities& features,
                                                const TrackFitSettings& settings);
 

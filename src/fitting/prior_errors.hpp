@@ -7,7 +7,7 @@
 
 namespace mcdbn {
 
-/// What the errors of the prior's mean are. Where rays are exact its values count for less
+/// Model of the errors of the prior's mean. Where rays are exact its values count for less
 /// (`TrackFitSettings::exact_prior_weight`), its bends as elsewhere. Where their noise is steady a
 /// turn's error depends less on its parent's (`exact_parent_correlation`); where it was measured
 /// errors last longer (`measured_prior_error_time_s`). Keeps the clip.
@@ -15,24 +15,24 @@ class PriorErrors {
  public:
   PriorErrors(const PosteriorClip& clip, const RayNoise& noise, const TrackFitSettings& settings);
 
-  /// In time, about what the parent makes one expect.
+  /// How such an error runs over time, about what the parent predicts.
   const SlowProcess& process() const { return process_; }
 
-  /// What a turn of its parent by one makes one expect of a turn; 0 without a parent.
+  /// Expected turn per turn of the parent; 0 without a parent.
   double share_of_parent(Eigen::Index frame, int turn) const;
 
-  /// What is expected of a turn: to turn with its parent, and for the rest with the world, as the
-  /// camera leans otherwise than the one that the prior's mean was seen by. Radians, camera axes.
+  /// Expected turn: with its parent, and for the rest with the world, where the camera leans
+  /// otherwise than the one that the prior's mean was seen by. Radians, camera axes.
   /// @param parent its parent's turn; without a parent it does not count
   /// @param lean PosteriorPoint::lean
   Eigen::Vector3d expected_turn(Eigen::Index frame, int turn, const Eigen::Vector3d& parent,
                                 const Eigen::Vector3d& lean) const;
-  /// Of that, what neither parent nor lean changes.
+  /// The part of expected_turn() that depends neither on the parent nor on the lean.
   Eigen::Vector3d expected_turn_at_rest(Eigen::Index frame, int turn) const;
-  /// The same of how a turn bends, its second difference about the frame.
+  /// As expected_turn_at_rest(), of the turn's second difference about the frame.
   Eigen::Vector3d expected_bend_at_rest(Eigen::Index frame, int turn) const;
 
-  /// Deviation of a turn from what its parent makes one expect, about each axis.
+  /// Deviation of a turn from what its parent predicts, about each axis.
   double own_deviation_rad(Eigen::Index frame, int turn) const;
 
  private:

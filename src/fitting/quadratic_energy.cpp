@@ -4,7 +4,6 @@
 #include <ceres/loss_function.h>
 
 #include <Eigen/Cholesky>
-#include <cmath>
 
 #include "mcdbn/base/matrices.hpp"
 

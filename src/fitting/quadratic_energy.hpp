@@ -25,8 +25,8 @@ class QuadraticEnergy {
   /// @param term whose other unknowns stay as they are
   void add(const ceres::Problem& problem, ceres::ResidualBlockId term);
 
-  /// What is left when the first so many numbers take their likeliest value, whatever the others
-  /// are: H₂₂ − H₂₁ H₁₁⁻¹ H₁₂ and g₂ − H₂₁ H₁₁⁻¹ g₁, as a sum of squares.
+  /// The energy of the other numbers when the first `numbers` take their likeliest values given
+  /// them: H₂₂ − H₂₁ H₁₁⁻¹ H₁₂ and g₂ − H₂₁ H₁₁⁻¹ g₁, as a sum of squares.
   MarginalPrior without_first(Eigen::Index numbers) const;
 
  private:

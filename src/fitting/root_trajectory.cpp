@@ -26,8 +26,7 @@ constexpr double kFreeAcceleration_m_s2 = 4.0;
 constexpr double kFastest_m_s = 50.0;
 constexpr int kRounds = 12;
 constexpr int kFewestJoints = 3;
-/// Of a body that sizes put there no joint is nearer to the camera than this share of the root's
-/// depth.
+/// Least depth of a joint as a share of the root's, where the body's size gives the root's depth.
 constexpr double kNearestBySize = 0.1;
 
 /// One joint as one frame sees it.
@@ -38,16 +37,16 @@ struct RootObservation {
 };
 
 /// The root as one frame alone determines it.
-struct Fix {
+struct RootEstimate {
   bool known = false;
-  Eigen::Vector3d root{0, 0, 0};  ///< its position, camera axes
+  Eigen::Vector3d root{0, 0, 0};  ///< camera axes
   /// Inverse covariance for a noise of one (in units of a ray).
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   std::vector<double> residuals;  ///< of the rays, two a joint
 };
 
-/// How far off the rays of a frame's joints are, two numbers a joint, and how that changes with the
-/// root's place.
+/// Errors of the rays of a frame's joints, two numbers a joint, and their derivatives with respect
+/// to the root's position.
 struct RayErrors {
   explicit RayErrors(const std::vector<RootObservation>& seen)
       : jacobian(2 * std::ssize(seen), 3), residual(jacobian.rows()), weight(jacobian.rows()) {}
@@ -111,29 +110,30 @@ RayErrors linear_errors(const std::vector<RootObservation>& seen) {
 /// round is linear. To stay with its equations would draw the body nearer, as u and v are noisy;
 /// the later rounds take u and v from the position found.
 /// @return unknown where that puts a joint behind the camera: such a body explains nothing
-Fix locate(const std::vector<RootObservation>& seen) {
-  Fix fix;
-  if (std::ssize(seen) < kFewestJoints) return fix;
+RootEstimate estimate_root(const std::vector<RootObservation>& seen) {
+  RootEstimate estimate;
+  if (std::ssize(seen) < kFewestJoints) return estimate;
   for (int round = 0; round < kRounds; ++round) {
-    if (round > 0 && !all_before_camera(seen, fix.root)) return fix;
-    const RayErrors errors = round == 0 ? linear_errors(seen) : errors_at(seen, fix.root);
-    fix.information = errors.information();
-    const Eigen::LDLT<Eigen::Matrix3d> solver(fix.information);
-    if (solver.info() != Eigen::Success || !(solver.rcond() > 1e-12)) return fix;
-    fix.root -=
+    if (round > 0 && !all_before_camera(seen, estimate.root)) return estimate;
+    const RayErrors errors = round == 0 ? linear_errors(seen) : errors_at(seen, estimate.root);
+    estimate.information = errors.information();
+    const Eigen::LDLT<Eigen::Matrix3d> solver(estimate.information);
+    if (solver.info() != Eigen::Success || !(solver.rcond() > 1e-12)) return estimate;
+    estimate.root -=
         solver.solve(errors.jacobian.transpose() * errors.weight.asDiagonal() * errors.residual);
-    if (round + 1 == kRounds) fix.residuals.assign(errors.residual.begin(), errors.residual.end());
+    if (round + 1 == kRounds)
+      estimate.residuals.assign(errors.residual.begin(), errors.residual.end());
   }
-  fix.known = fix.root.allFinite() && all_before_camera(seen, fix.root);
-  return fix;
+  estimate.known = estimate.root.allFinite() && all_before_camera(seen, estimate.root);
+  return estimate;
 }
 
 /// The root where the joints' middle is on the rays' middle, at the depth Z that sizes give: of the
 /// true pose (x - u·z, y - v·z) + (X, Y) = Z·(u, v), so that both sides spread alike.
 /// @return unknown where all rays, or all joints, are one
-Fix locate_by_size(const std::vector<RootObservation>& seen) {
-  Fix fix;
-  if (std::ssize(seen) < kFewestJoints) return fix;
+RootEstimate estimate_root_by_size(const std::vector<RootObservation>& seen) {
+  RootEstimate estimate;
+  if (std::ssize(seen) < kFewestJoints) return estimate;
   const auto offset = [](const RootObservation& observation) -> Eigen::Vector2d {
     return observation.relative.head<2>() - observation.ray * observation.relative.z();
   };
@@ -153,27 +153,34 @@ Fix locate_by_size(const std::vector<RootObservation>& seen) {
     nearest = std::max(nearest, -observation.relative.z() / (1 - kNearestBySize));
   }
   constexpr double kAtOnePlace = 1e-12;  // squared, in units of a ray
-  if (!(spread > 0) || !(ray_spread > kAtOnePlace * sum)) return fix;
+  if (!(spread > 0) || !(ray_spread > kAtOnePlace * sum)) return estimate;
   const double depth = std::max(nearest, std::sqrt(spread / ray_spread));
-  fix.root << middle_ray * depth - middle, depth;
-  const RayErrors errors = errors_at(seen, fix.root);
-  fix.information = errors.information();
-  fix.residuals.assign(errors.residual.begin(), errors.residual.end());
-  fix.known = fix.root.allFinite();
-  return fix;
+  estimate.root << middle_ray * depth - middle, depth;
+  const RayErrors errors = errors_at(seen, estimate.root);
+  estimate.information = errors.information();
+  estimate.residuals.assign(errors.residual.begin(), errors.residual.end());
+  estimate.known = estimate.root.allFinite();
+  return estimate;
 }
 
-/// @param frames what each of them shows
-/// @param by_size whether the pose matches the rays in less than half of those with enough joints
-/// @throws InputError if none can be located
-std::vector<Fix> located(const std::vector<std::vector<RootObservation>>& frames, bool& by_size) {
-  std::vector<Fix> fixes(frames.size());
-  std::ranges::transform(frames, fixes.begin(), locate);
+/// The root in every frame, and whether body and image sizes gave its depth: where the pose matches
+/// the rays in less than half of the frames that show enough joints.
+struct RootEstimates {
+  std::vector<RootEstimate> frames;
+  bool by_size = false;
+};
+
+/// @param frames what each of them shows  @throws InputError if the root is found in none
+RootEstimates estimate_roots(const std::vector<std::vector<RootObservation>>& frames) {
+  RootEstimates estimates{std::vector<RootEstimate>(frames.size())};
+  std::ranges::transform(frames, estimates.frames.begin(), estimate_root);
   const auto enough = std::ranges::count_if(
       frames, [](const auto& seen) { return std::ssize(seen) >= kFewestJoints; });
-  by_size = 2 * std::ranges::count(fixes, true, &Fix::known) < enough;
-  if (by_size) std::ranges::transform(frames, fixes.begin(), locate_by_size);
-  if (std::ranges::any_of(fixes, &Fix::known)) return fixes;
+  const auto matching = std::ranges::count(estimates.frames, true, &RootEstimate::known);
+  estimates.by_size = 2 * matching < enough;
+  if (estimates.by_size)
+    std::ranges::transform(frames, estimates.frames.begin(), estimate_root_by_size);
+  if (std::ranges::any_of(estimates.frames, &RootEstimate::known)) return estimates;
   constexpr const char* kUnknown = "the root's position cannot be determined";
   if (enough > 0)
     throw InputError(
@@ -184,13 +191,13 @@ std::vector<Fix> located(const std::vector<std::vector<RootObservation>>& frames
 
 /// Noise of the rays over all frames: the bulk of the residuals, counted for the three numbers that
 /// every frame fits to them.
-double ray_noise(const std::vector<Fix>& fixes, const Camera& camera) {
+double ray_noise(const std::vector<RootEstimate>& estimates, const Camera& camera) {
   std::vector<double> residuals;
   std::size_t freedom = 0;
-  for (const Fix& fix : fixes) {
-    if (!fix.known) continue;
-    residuals.insert(residuals.end(), fix.residuals.begin(), fix.residuals.end());
-    freedom += fix.residuals.size() - 3;
+  for (const RootEstimate& estimate : estimates) {
+    if (!estimate.known) continue;
+    residuals.insert(residuals.end(), estimate.residuals.begin(), estimate.residuals.end());
+    freedom += estimate.residuals.size() - 3;
   }
   const double least = kLeastNoise_px / camera.fx_px;
   const double share = static_cast<double>(freedom) / static_cast<double>(residuals.size());
@@ -211,25 +218,25 @@ void add_smoothness(std::vector<Eigen::Triplet<double>>& entries, int frame,
   }
 }
 
-/// The path that best explains all fixes and the smoothness of what the motion model leaves
+/// The path that best explains all estimates and the smoothness of what the motion model leaves
 /// unexplained (`prediction`, the summed-up velocity): a Rauch-Tung-Striebel smoother, written as
-/// the banded least squares that it solves. Each fix counts as sure as it is, so depth is smoothed
-/// most. @param prediction [frames x 3]  @return [frames x 3], both in camera axes
-MatrixD fuse(const std::vector<Fix>& fixes, const MatrixD& prediction, double noise,
-             double acceleration, double speed, double frame_time_s) {
-  const int frames = static_cast<int>(fixes.size());
+/// the banded least squares that it solves. Each estimate counts by its information, so depth is
+/// smoothed most. @param prediction [frames x 3]  @return [frames x 3], both in camera axes
+MatrixD smooth_path(const std::vector<RootEstimate>& estimates, const MatrixD& prediction,
+                    double noise, double acceleration, double speed, double frame_time_s) {
+  const int frames = static_cast<int>(estimates.size());
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd right_side = Eigen::VectorXd::Zero(3 * frames);
   for (int frame = 0; frame < frames; ++frame) {
-    if (!fixes[frame].known) continue;
-    const Eigen::Matrix3d information = fixes[frame].information / (noise * noise);
+    if (!estimates[frame].known) continue;
+    const Eigen::Matrix3d information = estimates[frame].information / (noise * noise);
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) {
         entries.emplace_back(3 * frame + row, 3 * frame + column, information(row, column));
       }
     }
     right_side.segment<3>(3 * frame) =
-        information * (fixes[frame].root - prediction.row(frame).transpose());
+        information * (estimates[frame].root - prediction.row(frame).transpose());
   }
   const double bend = acceleration * frame_time_s * frame_time_s, step = speed * frame_time_s;
   for (int frame = 0; frame + 1 < frames; ++frame) {
@@ -243,6 +250,40 @@ MatrixD fuse(const std::vector<Fix>& fixes, const MatrixD& prediction, double no
       solver(normal);
   const Eigen::VectorXd correction = solver.solve(right_side);
   return prediction + Eigen::Map<const MatrixD>(correction.data(), frames, 3);
+}
+
+/// What a frame shows of the joints.
+std::vector<RootObservation> observations_of(const MatrixD& relative_positions,
+                                             const TrackRays& track, const Camera& camera,
+                                             int frame) {
+  std::vector<RootObservation> observations;
+  for (Eigen::Index k = 0; k < track.joints(); ++k) {
+    if (!track.seen(frame, k)) continue;
+    const Eigen::Vector3d relative = relative_positions.row(frame).segment<3>(3 * track.indices[k]);
+    observations.push_back({camera.camera_from_world * relative,
+                            track.rays.row(frame).segment<2>(2 * k), track.confidence(frame, k)});
+  }
+  return observations;
+}
+
+/// The summed-up velocity. @return [frames x 3] camera axes; zero where no velocity is known
+MatrixD predicted_path(const MatrixD& velocity, const TrackRays& track, const Camera& camera) {
+  MatrixD path = MatrixD::Zero(track.frames(), 3);
+  const double frame_time_s = 1.0 / track.fps;
+  for (Eigen::Index t = 1; t < velocity.rows(); ++t)
+    path.row(t) =
+        path.row(t - 1) + frame_time_s * velocity.row(t) * camera.camera_from_world.transpose();
+  return path;
+}
+
+/// File units in a metre, by the size of the body.
+double units_per_metre(const MatrixD& relative_positions, const TrackRays& track) {
+  double squares = 0;
+  for (int frame = 0; frame < track.frames(); ++frame)
+    for (Eigen::Index k = 0; k < track.joints(); ++k)
+      squares += relative_positions.row(frame).segment<3>(3 * track.indices[k]).squaredNorm();
+  const auto positions = static_cast<double>(track.frames()) * std::ssize(track.indices);
+  return std::sqrt(squares / positions) / kRmsOfBody_m;
 }
 
 void check_shapes(const MatrixD& relative_positions, const TrackRays& track,
@@ -261,45 +302,23 @@ void check_shapes(const MatrixD& relative_positions, const TrackRays& track,
 
 }  // namespace
 
-MatrixD root_trajectory(const MatrixD& relative_positions, const TrackRays& track,
-                        const Camera& camera, const MatrixD& velocity, double velocity_error_m_s2,
-                        bool* by_size) {
+RootPath root_trajectory(const MatrixD& relative_positions, const TrackRays& track,
+                         const Camera& camera, const MatrixD& velocity,
+                         double velocity_error_m_s2) {
   check_shapes(relative_positions, track, velocity);
-  const double frame_time_s = 1.0 / track.fps;
-
   std::vector<std::vector<RootObservation>> seen;
-  MatrixD prediction = MatrixD::Zero(track.frames(), 3);
-  double squares = 0;
-  for (int frame = 0; frame < track.frames(); ++frame) {
-    std::vector<RootObservation> observations;
-    for (Eigen::Index k = 0; k < track.joints(); ++k) {
-      const Eigen::Vector3d relative =
-          relative_positions.row(frame).segment<3>(3 * track.indices[k]);
-      squares += relative.squaredNorm();
-      if (!track.seen(frame, k)) continue;
-      observations.push_back({camera.camera_from_world * relative,
-                              track.rays.row(frame).segment<2>(2 * k), track.confidence(frame, k)});
-    }
-    seen.push_back(std::move(observations));
-    if (frame > 0) {
-      prediction.row(frame) = prediction.row(frame - 1);
-      if (velocity.rows() > 0) {
-        prediction.row(frame) +=
-            frame_time_s * velocity.row(frame) * camera.camera_from_world.transpose();
-      }
-    }
-  }
-  bool sizes_alone = false;
-  const std::vector<Fix> fixes = located(seen, sizes_alone);
-  if (by_size) *by_size = sizes_alone;
-  const double metre =
-      std::sqrt(squares / static_cast<double>(fixes.size() * track.indices.size())) / kRmsOfBody_m;
-  const MatrixD path =
-      fuse(fixes, prediction, ray_noise(fixes, camera),
-           metre * (velocity.rows() > 0 ? velocity_error_m_s2 : kFreeAcceleration_m_s2),
-           metre * kFastest_m_s, frame_time_s);
+  for (int frame = 0; frame < track.frames(); ++frame)
+    seen.push_back(observations_of(relative_positions, track, camera, frame));
+  const RootEstimates estimates = estimate_roots(seen);
+  const double metre = units_per_metre(relative_positions, track);
+  const double acceleration =
+      metre * (velocity.rows() > 0 ? velocity_error_m_s2 : kFreeAcceleration_m_s2);
+  const MatrixD path = smooth_path(estimates.frames, predicted_path(velocity, track, camera),
+                                   ray_noise(estimates.frames, camera), acceleration,
+                                   metre * kFastest_m_s, 1.0 / track.fps);
   // x_camera = R·x_world + t, row by row.
-  return (path.rowwise() - camera.translation.transpose()) * camera.camera_from_world;
+  return {(path.rowwise() - camera.translation.transpose()) * camera.camera_from_world,
+          estimates.by_size};
 }
 
 MatrixD travelled_way(const MatrixD& velocity, double fps) {

@@ -16,8 +16,9 @@ constexpr double kResidualOfNoise = 0.88;
 constexpr double kMost = 3;
 /// The most noise that counts as exact, as a share of a detector's.
 constexpr double kExact = 0.5;
-/// The same of the part that is new in every frame. A solution may be as far off an exact track as
-/// off a noisy one, but the track itself distinguishes them.
+/// The most noise that is new in every frame and counts as exact, as a share of a detector's. A
+/// solution may be as far off an exact track as off a noisy one, but the track itself distinguishes
+/// them.
 constexpr double kExactOfTrack = 0.25;
 /// A noise that changes by less is not worth another solution.
 constexpr double kSmallChange = 0.1;

@@ -62,18 +62,6 @@ double weight_of(const Measured& measured, const Measured& used, const State& st
 
 }  // namespace
 
-SeriesDynamics SeriesDynamics::around_zero(double variance, double correlation_s,
-                                           double frame_time_s) {
-  const double rate = std::sqrt(3.0) / correlation_s;
-  SeriesDynamics result;
-  result.start << variance, 0, 0, rate * rate * variance;
-  result.step << 1 + rate * frame_time_s, frame_time_s, -rate * rate * frame_time_s,
-      1 - rate * frame_time_s;
-  result.step *= std::exp(-rate * frame_time_s);
-  result.noise = result.start - result.step * result.start * result.step.transpose();
-  return result;
-}
-
 SeriesDynamics SeriesDynamics::with_velocity(double density, double frame_time_s) {
   const double time = frame_time_s;
   SeriesDynamics result;

@@ -17,8 +17,6 @@ struct SeriesDynamics {
   Eigen::Matrix2d step;   ///< of the mean
   Eigen::Matrix2d noise;  ///< covariance that a step adds
 
-  /// Around zero, once differentiable, remembering for about `correlation_s` (Matérn 3/2).
-  static SeriesDynamics around_zero(double variance, double correlation_s, double frame_time_s);
   /// With a velocity that white acceleration of that spectral density changes: what is not measured
   /// becomes a cubic spline.
   static SeriesDynamics with_velocity(double density, double frame_time_s);

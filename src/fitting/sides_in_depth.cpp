@@ -14,25 +14,26 @@ namespace {
 
 /// Frames about a stretch that are solved with it: three times what a prior's error lasts.
 constexpr double kAround_s = 0.5;
-/// What other sides have to be likelier by, as −log: less is the solver's own rest.
+/// Least decrease of the energy for other sides to be taken: less may be the solver's own error.
 constexpr double kLikelier = 0.3;
 /// How many times the energy may be once the limb alone has settled on other sides: what moves with
 /// it lowers that.
 constexpr double kLimbAlone = 1.1;
-/// Steps of a try: whether it is likelier shows by then.
-constexpr int kStepsOfTry = 8;
-/// How many times less noise is tried at once.
-constexpr double kLess = 3;
-/// More than so many times the energy by less noise comes of noise: other sides do not mend it.
+/// Steps with an alternative: whether it is likelier shows by then.
+constexpr int kStepsOfAlternative = 8;
+/// Factor by which the noise is lowered at each step.
+constexpr double kNoiseStep = 3;
+/// An energy that grows by more than this factor as the noise is lowered is that of noise in the
+/// track: other sides do not lower it.
 constexpr double kNoise = 2;
 
-/// A limb's other sides, and what becomes of them.
-struct Try {
+/// A limb's other sides, and the solution from there.
+struct Alternative {
   std::size_t limb = 0;
   OtherSides sides;
   ClipWindow window;     ///< about their stretch
   PosteriorPoint found;  ///< of the window, from there
-  double gain = 0;       ///< of energy, over what stands
+  double gain = 0;       ///< how much lower the energy is than without
 };
 
 class SidesInDepth {
@@ -44,13 +45,14 @@ class SidesInDepth {
         limbs_(limbs_of(clip)),
         around_(std::lround(kAround_s / clip.frame_time_s)) {}
 
-  /// What is likelier of each limb by itself, in windows which meet one of those that are given.
-  std::vector<Try> tries(const PosteriorPoint& point, const std::vector<ClipWindow>& within) const {
+  /// Other sides that are likelier for a limb by itself, in windows that overlap one of `within`.
+  std::vector<Alternative> alternatives(const PosteriorPoint& point,
+                                        const std::vector<ClipWindow>& within) const {
     std::vector<std::vector<OtherSides>> others(limbs_.size());
     on_two_threads(limbs_.size(), [&](std::size_t limb) {
       others[limb] = likelier_sides(clip_, noise_, settings_, point, limbs_[limb]);
     });
-    std::vector<Try> all;
+    std::vector<Alternative> all;
     for (std::size_t limb = 0; limb < limbs_.size(); ++limb)
       for (OtherSides& sides : others[limb]) {
         const ClipWindow window = window_about(sides.stretch);
@@ -61,11 +63,11 @@ class SidesInDepth {
     return all;
   }
 
-  /// Those that are likelier, each limb over its stretch. @return their windows
-  std::vector<ClipWindow> take_likelier(const std::vector<Try>& tries,
+  /// Puts the likelier alternatives into `point`, each limb over its stretch. @return their windows
+  std::vector<ClipWindow> take_likelier(const std::vector<Alternative>& alternatives,
                                         PosteriorPoint& point) const {
     std::vector<ClipWindow> taken;
-    for (const Try& one : tries) {
+    for (const Alternative& one : alternatives) {
       if (!(one.gain > kLikelier)) continue;
       const ClipWindow& stretch = one.sides.stretch;
       for (const Bone& bone : limbs_[one.limb])
@@ -86,7 +88,7 @@ class SidesInDepth {
     return {first, std::min(clip_.frames(), stretch.end() + around_) - first};
   }
 
-  void solve(const PosteriorPoint& point, Try& one) const {
+  void solve(const PosteriorPoint& point, Alternative& one) const {
     const ClipWindow& stretch = one.sides.stretch;
     PosteriorPoint other = point;
     std::vector<int> turns;
@@ -98,14 +100,14 @@ class SidesInDepth {
     WindowProblem problem(clip_, noise_, settings_, point, one.window.first, one.window.frames);
     const double stands = problem.energy();
     problem.start_from(other);
-    problem.solve_turns(turns, kSmallGainOfAll, kStepsOfTry);
+    problem.solve_turns(turns, kSmallGainOfAll, kStepsOfAlternative);
     if (problem.energy() > kLimbAlone * stands) return;
-    problem.solve(false, kSmallGainOfAll, kStepsOfTry);
+    problem.solve(false, kSmallGainOfAll, kStepsOfAlternative);
     one.found = problem.solution();
-    // What stands only gets likelier once it has settled too.
+    // The solution so far only gets likelier once it has settled, too.
     if (!(stands - one.found.energy > kLikelier)) return;
     problem.start_from(point);
-    problem.solve(false, kSmallGainOfAll, kStepsOfTry);
+    problem.solve(false, kSmallGainOfAll, kStepsOfAlternative);
     one.gain = problem.solution().energy - one.found.energy;
   }
 
@@ -123,7 +125,7 @@ PosteriorPoint likeliest_in_depth(const PosteriorClip& clip, const RayNoise& noi
   const SidesInDepth sides(clip, noise, settings);
   std::vector<ClipWindow> changed{{0, clip.frames()}};
   for (std::size_t round = 0; round < settings.most_alternatives; ++round) {
-    changed = sides.take_likelier(sides.tries(point, changed), point);
+    changed = sides.take_likelier(sides.alternatives(point, changed), point);
     if (changed.empty()) break;
     point = map_solution(clip, noise, settings, std::move(point));
   }
@@ -136,7 +138,7 @@ PosteriorPoint likeliest_of_exact(const PosteriorClip& clip, RayNoise& noise,
   point = likeliest_in_depth(clip, noise, settings, std::move(point));
   while (noise.white > least) {
     RayNoise less = noise;
-    less.white = std::max(least, noise.white / kLess);
+    less.white = std::max(least, noise.white / kNoiseStep);
     less.lasting = 0;
     PosteriorPoint nearer = map_solution(clip, less, settings, point);
     if (!(nearer.energy < kNoise * point.energy)) break;

@@ -14,12 +14,12 @@ namespace mcdbn {
 PosteriorPoint likeliest_in_depth(const PosteriorClip& clip, const RayNoise& noise,
                                   const TrackFitSettings& settings, PosteriorPoint point);
 
-/// The same for a track that seems to be exact, with rays of less noise, again and again: where
-/// there is none of that noise they cost next to no energy and distinguish sides better; where
-/// there is some a solution follows it, which costs more than
-/// `TrackFitSettings::exact_energy_ratio`.
+/// As likeliest_in_depth(), for a track that seems to be exact: solved again and again, each time
+/// with rays of less noise. Where the track has no such noise, the energy hardly grows and sides
+/// are distinguished better; where it has some, a solution follows it, and the energy grows by more
+/// than `TrackFitSettings::exact_energy_ratio`.
 /// @param noise in: as estimated from the track; out: as it was lowered to
-/// @param least not lowered below, as the rays
+/// @param least lower bound of `noise.white`
 PosteriorPoint likeliest_of_exact(const PosteriorClip& clip, RayNoise& noise,
                                   const TrackFitSettings& settings, double least,
                                   PosteriorPoint point);

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/interruption.hpp"
-#include "base/numbers.hpp"
 #include "base/upper_median.hpp"
 #include "fitting/prior_deviations.hpp"
 #include "fitting/root_trajectory.hpp"
@@ -22,29 +21,28 @@ namespace {
 constexpr int kIterations = 2;
 /// A step that lowers the energy by less than this share is the last one.
 constexpr double kSmallGain = 1e-3;
-/// Solutions of so long a time give an estimate of the track's lasting noise.
+/// Time whose solutions give an estimate of the track's lasting noise.
 constexpr double kLearned_s = 0.2;
-/// So much of the past is solved again: the window of fit_to_track that finds body and camera is as
-/// long. With 8 s the answer is 0.6 mm further from that of the whole clip.
+/// Length of the past that is solved again: that of the window in which fit_to_track finds body and
+/// camera. With 8 s the answer is 0.6 mm further from that of the whole clip.
 constexpr double kPastSolution_s = 15;
 /// How often it is; while the clip is short, after half as many frames again.
 constexpr double kPastSolutionEvery_s = 0.5;
 constexpr long long kPastSolutionAfter = 4;
-/// The result is taken when the next solution of the past begins, so that frames need not wait for
-/// it. Up to so long a past they do wait: it takes no longer than a frame or two, and is worth two
-/// millimetres.
+/// Longest past whose solution the frames wait for: it takes no longer than a frame or two, and is
+/// worth two millimetres. A longer one's result is taken when the next solution of the past begins.
 constexpr double kWaitedFor_s = 3;
 /// Settled frames that the held ones' prior is computed from, once the body has changed.
 constexpr Eigen::Index kBeforeHeld = 8;
 
-/// The last rows are others; there may be more of them than before.
+/// Replaces the rows from `kept` on; there may be more of them than before.
 template <typename Rows>
 void replace_tail(Rows& rows, Eigen::Index kept, const Rows& more) {
   rows.conservativeResize(kept + more.rows(), more.cols());
   rows.bottomRows(more.rows()) = more;
 }
 
-/// So many rows; those that are new are as the last, or 0 where there is none.
+/// Extends to `count` rows: new rows repeat the last one, or are 0 where there is none.
 void extend_with_last_row(MatrixD& rows, Eigen::Index count, Eigen::Index columns) {
   const Eigen::Index before = rows.rows();
   const Eigen::RowVectorXd last =
@@ -98,7 +96,8 @@ MatrixD SlidingFit::placed_root(const MatrixD& velocity_m_s) const {
   const MatrixD root =
       root_trajectory(relative, track_rays(names_, rows_.track, camera_), camera_,
                       units_per_m_ * velocity_m_s * camera_.camera_from_world,
-                      fitted_root_acceleration_deviation_m_s2(rows_.prior, modalities_, settings_));
+                      fitted_root_acceleration_deviation_m_s2(rows_.prior, modalities_, settings_))
+          .root;
   return ((root * camera_.camera_from_world.transpose()).rowwise() +
           camera_.translation.transpose()) /
          units_per_m_;
@@ -123,7 +122,7 @@ void SlidingFit::place_root() {
     rows_.root_m.row(t) = rows_.root_m.row(t - 1) + velocity_m_s.row(t) / modalities_.fps;
 }
 
-/// As the prior's mean has them, where their roots were found.
+/// The prior's mean motion, its roots placed by the track.
 Motion SlidingFit::prior_motion(const ClipRows& rows) const {
   const MatrixD root = ((rows.root_m * units_per_m_).rowwise() - assumed_.translation.transpose()) *
                        assumed_.camera_from_world;
@@ -157,7 +156,7 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
   if (point_.log_lengths.size() == 0) point_ = PosteriorPoint::zero(clip);
   extend_with_last_row(point_.turns, clip.frames(), point_.turns.cols());
   point_.shift = MatrixD::Zero(clip.frames(), 3);
-  take(point_);
+  set_solution(point_);
   evidence_->find_planted(motion_);
   expect_balance(*evidence_);
   // From the solution before it would not leave a local minimum that few frames had led into.
@@ -173,8 +172,8 @@ void SlidingFit::solve(const PosePrior& prior, const Track2d& track, double trac
   problem_->solve(!past_, kSmallGain, past_ ? kIterations : WindowProblem::kMostIterations);
   point_ = problem_->solution();
   rows_.root_m = clip.root + point_.shift;
-  const bool other_noise = learn(noise);
-  take(point_);
+  const bool other_noise = update_noise(noise);
+  set_solution(point_);
   fade();
   if (other_noise) begin_fade();
   shown_ = project_motion(motion_, camera_);
@@ -248,10 +247,11 @@ void SlidingFit::fade() {
   }
 }
 
-/// As often as in a whole clip, each time from other solutions. Of the held frames: open ones, with
-/// few or none behind them, come nearer to the rays than a whole clip's do.
+/// Learns the lasting noise from the residuals of the held frames, at most most_solutions − 1
+/// times, as in a whole clip. Open frames are left out: with few or none behind them, they come
+/// nearer to the rays than those of a whole clip.
 /// @return whether the next solution is given other noise
-bool SlidingFit::learn(SeenNoise& noise) {
+bool SlidingFit::update_noise(SeenNoise& noise) {
   if (!past_ || learned_ + 1 >= settings_.most_solutions) return false;
   if (const double residual = evidence_->usual_residual(point_, held_); residual > 0)
     residuals_.push_back(residual);
@@ -263,7 +263,7 @@ bool SlidingFit::learn(SeenNoise& noise) {
   return true;
 }
 
-void SlidingFit::take(const PosteriorPoint& point) {
+void SlidingFit::set_solution(const PosteriorPoint& point) {
   auto [body, scale] = evidence_->body(point);
   body_ = std::move(body);
   if (!camera_known_)

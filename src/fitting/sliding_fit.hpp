@@ -10,7 +10,10 @@
 #include "fitting/clip_rows.hpp"
 #include "fitting/seen_noise.hpp"
 #include "fitting/window_problem.hpp"
-#include "mcdbn/fitting/track_fit.hpp"
+#include "mcdbn/features/modalities.hpp"
+#include "mcdbn/fitting/known_of_clip.hpp"
+#include "mcdbn/fitting/pose_prior.hpp"
+#include "mcdbn/fitting/track_fit_settings.hpp"
 
 namespace mcdbn {
 
@@ -44,7 +47,7 @@ class SlidingFit {
   Eigen::Index settle(Eigen::Index frames);
   /// Frames of the last solution that are settled and held.
   Eigen::Index held() const { return held_; }
-  /// Of the last solution: held and open frames, on the body as it is estimated by now.
+  /// Motion of the last solution: held and open frames, on the body as it is estimated by now.
   const Motion& motion() const { return motion_; }
   /// Its joints as the camera sees them.
   const Track2d& shown() const { return shown_; }
@@ -61,8 +64,8 @@ class SlidingFit {
   ClipEvidence evidence_of(const ClipRows& rows, const Motion& answer) const;
   void place_root();
   MatrixD placed_root(const MatrixD& velocity_m_s) const;
-  bool learn(SeenNoise& noise);
-  void take(const PosteriorPoint& point);
+  bool update_noise(SeenNoise& noise);
+  void set_solution(const PosteriorPoint& point);
   ClipEvidence evidence_of_past(const ClipRows& rows) const;
   PosteriorPoint start_of(const ClipEvidence& evidence) const;
   void start_past_solution();
@@ -84,21 +87,21 @@ class SlidingFit {
   double lasting_noise_ = 1;       ///< as a share of a usual detector's
   std::size_t learned_ = 0;        ///< how often it was estimated
   std::vector<double> residuals_;  ///< what solutions since left
-  // Of the frames of the last solution, held and open:
+  // Frames of the last solution, held and open:
   Eigen::Index held_ = 0;
   ClipRows rows_;
   RayNoise rays_;
   PosteriorPoint point_;
   std::unique_ptr<ClipEvidence> evidence_;
   std::unique_ptr<WindowProblem> problem_;
-  // Of frames before:
+  // Frames before these:
   std::optional<MarginalPrior> past_;
   ClipRows past_rows_;                         ///< of the last seconds
   long long next_past_solution_ = 0;           ///< when so many frames have settled
   std::future<PosteriorPoint> past_solution_;  ///< only what all frames share is taken from it
   MatrixD fading_;  ///< channels of frames that were open when it began, as they were
   Eigen::Index fading_frames_ = 0;  ///< as many as they were
-  // Of all frames that have settled:
+  // All frames that have settled:
   Stance settled_stance_;
   long long settled_ = 0;
   Eigen::Vector3d first_root_{0, 0, 0};

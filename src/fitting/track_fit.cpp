@@ -30,22 +30,22 @@ namespace {
 /// The error of the root's velocity where the prior has no deviation and no fit follows.
 constexpr double kVelocityError_m_s2 = 1.0;
 
-/// Those that the posterior's width is computed with.
+/// The settings for the posterior's width.
 TrackFitSettings settings_of_draws(TrackFitSettings settings) {
   settings.detector_noise_time_s = settings.draws_noise_time_s;
   return settings;
 }
 
-void check(const PosePrior& prior, const Modalities& features, const Track2d& track) {
+void check(const PosePrior& prior, const Modalities& modalities, const Track2d& track) {
   const auto frames = prior.mean.rows(), columns = prior.mean.cols();
   const bool same = prior.deviation.rows() == frames && prior.deviation.cols() == columns;
-  if (columns != features.pose_scale.output_dimension() || frames != track.frames() ||
+  if (columns != modalities.pose_scale.output_dimension() || frames != track.frames() ||
       (prior.has_deviation() && !same)) {
     throw ShapeError(fmt::format(
         "fit_to_track: a mean of {}x{} and a deviation of {}x{}, expected {} columns, and as many "
         "rows as the track has frames ({})",
         frames, columns, prior.deviation.rows(), prior.deviation.cols(),
-        features.pose_scale.output_dimension(), track.frames()));
+        modalities.pose_scale.output_dimension(), track.frames()));
   }
   if (!prior.deviation.allFinite() || (prior.deviation.array() < 0).any()) {
     throw InputError("a prior's deviation is negative or not finite; give 0 or more");
@@ -63,10 +63,13 @@ struct FittedState {
 /// The fit of one clip to its track.
 class ClipFit {
  public:
-  /// @param body that it begins with
+  /// @param prior, modalities, track, known have to outlive this  @param body that it begins with
   ClipFit(const PosePrior& prior, const Modalities& modalities, const Track2d& track,
           const KnownOfClip& known, const Skeleton& body)
-      : modalities_(modalities),
+      : prior_(prior),
+        modalities_(modalities),
+        image_(track),
+        known_(known),
         assumed_(in_file_units(known.camera_of(track, modalities), body)),
         names_(tracked_joints(modalities.track_features)),
         track_(track_rays(names_, track, assumed_)),
@@ -81,21 +84,21 @@ class ClipFit {
   }
 
   void place_root() {
-    now_.root =
-        root_trajectory(positions_about(modalities_.root_name(), names_, decoded(now_)), track_,
-                        assumed_, velocity_, velocity_error_m_s2_, &placed_by_size_);
+    const MatrixD about_root = positions_about(modalities_.root_name(), names_, decoded(now_));
+    RootPath path = root_trajectory(about_root, track_, assumed_, velocity_, velocity_error_m_s2_);
+    now_.root = std::move(path.root);
+    placed_by_size_ = path.by_size;
   }
 
-  /// After place_root.
-  /// @param known as the constructor's; without a skeleton its proportions are unknown
-  void meet_track(const PosePrior& prior, double track_noise_px, const KnownOfClip& known,
-                  const Track2d& track, const TrackFitSettings& settings) {
-    const bool may_be_exact = known.may_be_exact();
+  /// After place_root. Without a known skeleton the body's proportions are found, too.
+  void solve(const TrackFitSettings& settings) {
+    const bool may_be_exact = known_.may_be_exact();
     evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, assumed_);
-    evidence_->set_unknowns(prior, modalities_, !known.skeleton,
-                            unknown_camera_of(known, modalities_, track, settings), settings);
+    evidence_->set_unknowns(prior_, modalities_, !known_.skeleton,
+                            unknown_camera_of(known_, modalities_, image_, settings), settings);
     const PosteriorClip& clip = evidence_->clip;
-    SeenNoise noise(track_noise_px, assumed_, evidence_->usual_depth_m(), may_be_exact, settings);
+    SeenNoise noise(track_noise_px(image_), assumed_, evidence_->usual_depth_m(), may_be_exact,
+                    settings);
     point_ = PosteriorPoint::zero(clip);
     update_evidence(settings);
     rays_ = noise.rays();
@@ -104,7 +107,7 @@ class ClipFit {
     // With a detector's track more frames a second carry no more information on what all frames
     // share, and a rough solution's window spans more seconds.
     const auto shared = may_be_exact ? SharedUnknowns::to_be_found : SharedUnknowns::as_found;
-    const double small_gain = known.detected ? kSmallGainOfDetector : kSmallGainOfAll;
+    const double small_gain = known_.detected ? kSmallGainOfDetector : kSmallGainOfAll;
     for (std::size_t solution = 0; solution < settings.most_solutions; ++solution) {
       update_evidence(settings);
       rays_ = noise.rays();
@@ -116,33 +119,32 @@ class ClipFit {
     take(likeliest_of_exact(clip, rays_, settings, least, std::move(point_)));
   }
 
-  /// After meet_track.
-  std::vector<Motion> drawn(const PosePrior& prior, TrackFitSettings settings,
-                            const PosteriorDraws& draws, bool body_given) const {
+  /// After solve.
+  std::vector<Motion> drawn(TrackFitSettings settings, const PosteriorDraws& draws) const {
     settings = settings_of_draws(settings);
     PosteriorClip clip = evidence_->clip;
-    clip.body_unknown = !body_given;
-    clip.turn_deviation_rad = fitted_turn_deviations_rad(prior, modalities_, settings);
+    clip.body_unknown = !known_.body_given();
+    clip.turn_deviation_rad = fitted_turn_deviations_rad(prior_, modalities_, settings);
     std::vector<Motion> motions;
     for (const PosteriorPoint& point :
          posterior_draws(clip, rays_, settings, point_, draws.count, draws.seed))
-      motions.push_back(decoded(at(point)));
+      motions.push_back(decoded(state_at(point)));
     return motions;
   }
 
-  /// Where no track is met. Before put_at_origin.
-  void prepare_prior_draws(const PosePrior& prior, bool body_given) {
+  /// In the place of solve. Before put_at_origin.
+  void prepare_prior_draws() {
     evidence_.emplace(modalities_.pose_features, motion(), travelled(), track_, assumed_);
     evidence_->clip.turn_deviation_rad =
-        turn_deviations_rad(prior, modalities_, settings_of_draws({}));
-    evidence_->clip.body_unknown = !body_given;
+        turn_deviations_rad(prior_, modalities_, settings_of_draws({}));
+    evidence_->clip.body_unknown = !known_.body_given();
   }
   /// After prepare_prior_draws. The root of each draw is where the clip's is.
   std::vector<Motion> drawn_by_prior(const PosteriorDraws& draws) const {
     std::vector<Motion> motions;
     for (const PosteriorPoint& point :
          prior_draws(evidence_->clip, TrackFitSettings{}, draws.count, draws.seed)) {
-      FittedState draw = at(point);
+      FittedState draw = state_at(point);
       draw.root = now_.root;
       motions.push_back(decoded(draw));
     }
@@ -154,11 +156,10 @@ class ClipFit {
     return *motion_;
   }
 
-  /// @param image whose size the result takes
-  Track2d shown(const Track2d& image) {
+  Track2d shown() {
     Track2d result = project_motion(motion(), camera());
-    result.width_px = image.width_px;
-    result.height_px = image.height_px;
+    result.width_px = image_.width_px;
+    result.height_px = image_.height_px;
     return result;
   }
 
@@ -196,7 +197,7 @@ class ClipFit {
   }
 
   /// What a point makes of the prior's mean.
-  FittedState at(const PosteriorPoint& point) const {
+  FittedState state_at(const PosteriorPoint& point) const {
     const Camera camera = fitted_camera(point, assumed_);
     auto [body, scale] = evidence_->body(point);
     return {evidence_->turned(mean_, point), std::move(body), camera,
@@ -205,7 +206,7 @@ class ClipFit {
 
   void take(PosteriorPoint point) {
     point_ = std::move(point);
-    now_ = at(point_);
+    now_ = state_at(point_);
     motion_.reset();
   }
 
@@ -218,7 +219,10 @@ class ClipFit {
                                             state.root.rowwise() + shift_);
   }
 
+  const PosePrior& prior_;
   const Modalities& modalities_;
+  const Track2d& image_;
+  const KnownOfClip& known_;
   Camera assumed_;  ///< at first
   std::vector<std::string> names_;
   TrackRays track_;
@@ -229,7 +233,7 @@ class ClipFit {
   MatrixD velocity_;                   ///< of the root, world axes, file units per second
   double velocity_error_m_s2_;
   bool placed_by_size_ = false;
-  // Of meet_track:
+  // Results of solve():
   std::optional<ClipEvidence> evidence_;
   RayNoise rays_;
   PosteriorPoint point_;
@@ -237,26 +241,25 @@ class ClipFit {
 
 }  // namespace
 
-FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, const Track2d& track,
+FittedClip fit_to_track(const PosePrior& prior, const Modalities& modalities, const Track2d& track,
                         const KnownOfClip& known, const std::optional<TrackFitSettings>& settings,
                         const PosteriorDraws& draws) {
-  check(prior, features, track);
+  check(prior, modalities, track);
   if (settings) check_settings(*settings);
-  ClipFit clip(prior, features, track, known,
-               settings ? body_to_begin_with(known, features)
-                        : known.skeleton.value_or(features.pose_features.skeleton()));
+  ClipFit clip(prior, modalities, track, known,
+               settings ? body_to_begin_with(known, modalities)
+                        : known.skeleton.value_or(modalities.pose_features.skeleton()));
   clip.place_root();
   const bool draws_any = draws.count > 0;
   if (settings)
-    clip.meet_track(prior, track_noise_px(track), known, track, *settings);
+    clip.solve(*settings);
   else if (draws_any)
-    clip.prepare_prior_draws(prior, known.body_given());
+    clip.prepare_prior_draws();
   FittedClip result;
-  result.shown = clip.shown(track);
+  result.shown = clip.shown();
   if (!known.camera) clip.put_at_origin();
   if (draws_any)
-    result.draws = settings ? clip.drawn(prior, *settings, draws, known.body_given())
-                            : clip.drawn_by_prior(draws);
+    result.draws = settings ? clip.drawn(*settings, draws) : clip.drawn_by_prior(draws);
   result.motion = clip.motion();
   result.camera = clip.camera();
   result.energy = clip.energy();

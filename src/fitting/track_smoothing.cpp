@@ -13,7 +13,7 @@ namespace {
 constexpr double kUnseen = std::numeric_limits<double>::infinity();
 /// Independent noise of variance 1 in second and in third differences: sums of squared binomials.
 constexpr double kSecondGain = 6, kThirdGain = 20;
-/// Of a track made by projection, which is exact: it keeps the smoother from dividing by zero.
+/// Least noise, for a track made by projection, which is exact: the smoother divides by it.
 constexpr double kLeastSmoothed_px = 0.05;
 
 bool seen(const Track2d& track, Eigen::Index frame, Eigen::Index joint) {

@@ -4,7 +4,7 @@
 
 namespace mcdbn {
 
-bool hangs_from(const std::vector<int>& parents, int turn, int other) {
+bool is_same_or_below(const std::vector<int>& parents, int turn, int other) {
   while (turn >= 0 && turn != other) turn = parents[static_cast<std::size_t>(turn)];
   return turn == other;
 }
@@ -29,21 +29,21 @@ TurnedBones::TurnedBones(const PoseFeatures& features, const Skeleton& skeleton,
   }
   for (const Joint& joint : skeleton.joints) turn_above_.push_back(turn_at_or_above(joint.parent));
   for (const int joint : joints) {
-    std::vector<Bone> way;
+    std::vector<Bone> bones;
     for (int lower = joint; lower != root_ && lower >= 0; lower = skeleton.joints[lower].parent) {
       const int upper = skeleton.joints[lower].parent, turn = turn_at_or_above(upper);
-      if (turn >= 0) way.push_back({turn, upper, lower});
+      if (turn >= 0) bones.push_back({turn, upper, lower});
     }
-    ways_.push_back(std::move(way));
+    bones_of_joint_.push_back(std::move(bones));
   }
 }
 
 std::vector<std::vector<Lever>> TurnedBones::levers(
     const WorldPose& pose, const Eigen::Matrix3d& camera_from_world) const {
   std::vector<std::vector<Lever>> result;
-  for (const std::vector<Bone>& way : ways_) {
+  for (const std::vector<Bone>& bones : bones_of_joint_) {
     std::vector<Lever> levers;
-    for (const Bone& bone : way) {
+    for (const Bone& bone : bones) {
       const Eigen::Vector3d vector =
           camera_from_world * (pose.position[bone.lower] - pose.position[bone.upper]);
       if (levers.empty() || levers.back().turn != bone.turn) {

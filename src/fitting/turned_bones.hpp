@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "fitting/lever.hpp"
@@ -8,9 +7,9 @@
 
 namespace mcdbn {
 
-/// Whether an orientation is another, or hangs from it.
-/// @param parents by orientation, the one that it hangs from, or −1
-bool hangs_from(const std::vector<int>& parents, int turn, int other);
+/// Whether an orientation is `other` or a descendant of it.
+/// @param parents by orientation, the parent orientation, or −1
+bool is_same_or_below(const std::vector<int>& parents, int turn, int other);
 
 /// Which orientation of the features turns which bone of a skeleton. Orientations are global, so a
 /// joint is the sum of the bones between the root and it, each turned on its own: a bone belongs to
@@ -23,7 +22,7 @@ class TurnedBones {
               const std::vector<int>& joints);
 
   int root() const { return root_; }
-  /// By orientation, the one that it hangs from, or −1.
+  /// By orientation, the parent orientation, or −1.
   const std::vector<int>& parents() const { return parents_; }
   /// By joint of the skeleton, the orientation that turns the bone to it, or −1.
   const std::vector<int>& turn_above() const { return turn_above_; }
@@ -38,7 +37,7 @@ class TurnedBones {
   int root_ = 0;
   std::vector<int> turn_above_;
   std::vector<int> parents_;
-  std::vector<std::vector<Bone>> ways_;
+  std::vector<std::vector<Bone>> bones_of_joint_;  ///< from the joint up to the root
 };
 
 }  // namespace mcdbn

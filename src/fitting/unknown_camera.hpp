@@ -2,18 +2,20 @@
 
 #include <optional>
 
-#include "mcdbn/fitting/track_fit.hpp"
+#include "mcdbn/camera/track.hpp"
+#include "mcdbn/features/modalities.hpp"
+#include "mcdbn/fitting/known_of_clip.hpp"
+#include "mcdbn/fitting/track_fit_settings.hpp"
 
 namespace mcdbn {
 
-/// What pitch and roll of a camera are expected to be, as they differ from those that it is assumed
-/// to have: angles and their deviations, radians. Pitch is how far it looks down, roll its turn
-/// clockwise, seen from behind.
+/// Expected differences of a camera's pitch and roll from the assumed ones, and their deviations,
+/// radians. Pitch is how far it looks down, roll its turn clockwise, seen from behind.
 struct ExpectedLean {
   double pitch = 0, roll = 0, pitch_deviation = 1, roll_deviation = 1;
 };
 
-/// What is not known of a camera.
+/// Priors of the unknowns of a camera.
 struct UnknownCamera {
   ExpectedLean usual;     ///< as cameras stand
   ExpectedLean balanced;  ///< as makes the body stand over its feet
@@ -22,8 +24,8 @@ struct UnknownCamera {
   double log_focal_deviation = 1;
 };
 
-/// What is not known of the camera, where the network sees and answers in a level view: nothing
-/// determines pitch and roll where it does not.
+/// The camera's unknowns, if the network sees and answers in a level view: without that, nothing
+/// determines pitch and roll.
 std::optional<UnknownCamera> unknown_camera_of(const KnownOfClip& known,
                                                const Modalities& modalities, const Track2d& track,
                                                const TrackFitSettings& settings);

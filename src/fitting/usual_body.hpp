@@ -1,6 +1,7 @@
 #pragma once
 
-#include "mcdbn/fitting/track_fit.hpp"
+#include "mcdbn/features/modalities.hpp"
+#include "mcdbn/fitting/known_of_clip.hpp"
 
 namespace mcdbn {
 

@@ -24,10 +24,13 @@ namespace {
 /// A joint that is nearer to the camera than this share of the root's first depth is seen as
 /// Reprojection has it.
 constexpr double kNearest = 0.1;
-/// The same of a root that the path before the fit has next to the camera.
+/// Least depth, for a root that the path before the fit puts next to the camera.
 constexpr double kNearest_m = 0.01;
-/// What hardly stands is not worth an equation.
-constexpr double kHardlyStands = 0.05;
+/// Below this confidence a standing foot adds no term.
+constexpr double kLeastPlanted = 0.05;
+/// Cauchy scale of the balance, in deviations: who is on hands and feet is nowhere near above the
+/// feet.
+constexpr double kUnbalanced = 2;
 /// Huber threshold of a slipping foot, in deviations.
 constexpr double kSlips = 2;
 
@@ -187,7 +190,7 @@ void WindowProblem::add_rays() {
   }
 }
 
-/// What an orientation turns otherwise than its parent makes likely is a slow process about zero.
+/// An orientation's difference from what its parent predicts is a slow process about zero.
 void WindowProblem::add_turns() {
   const SlowProcess& process = prior_.process();
   for (int turn = 0; turn < turns_; ++turn) {
@@ -225,13 +228,14 @@ void WindowProblem::add_turns() {
   }
 }
 
-/// The root's way bends as the prior's velocity does, up to so much acceleration.
+/// The root's acceleration is the prior's, up to a deviation of root_m_s2.
 void WindowProblem::add_root() {
   const double bend_m = clip_.root_m_s2 * clip_.frame_time_s * clip_.frame_time_s;
   for (Eigen::Index t = 1; t + 1 < x_.turns.rows(); ++t) {
-    const MatrixD otherwise =
+    const MatrixD travel_error =
         clip_.travelled.middleRows(first_ + t - 1, 3) - clip_.root.middleRows(first_ + t - 1, 3);
-    const Eigen::Vector3d wanted = otherwise.row(0) - 2 * otherwise.row(1) + otherwise.row(2);
+    const Eigen::Vector3d wanted =
+        travel_error.row(0) - 2 * travel_error.row(1) + travel_error.row(2);
     add(t - 1, new LinearTerm({1, -2, 1}, wanted, bend_m), nullptr,
         {shift_at(t - 1), shift_at(t), shift_at(t + 1)});
   }
@@ -243,7 +247,7 @@ void WindowProblem::add_feet() {
     if (!is_used(foot)) continue;
     for (Eigen::Index t = 1; t < x_.turns.rows(); ++t) {
       const double confidence = clip_.planted(first_ + t, static_cast<Eigen::Index>(f));
-      if (confidence < kHardlyStands) continue;
+      if (confidence < kLeastPlanted) continue;
       std::vector<double*> blocks = moving_blocks(t - 1, foot);
       append(blocks, moving_blocks(t, foot));
       append(blocks, length_blocks(foot));
@@ -264,7 +268,7 @@ void WindowProblem::add_ground() {
     double* const height = &x_.ground_m[clip_.grounds[f]];
     for (Eigen::Index t = 1; t < x_.turns.rows(); ++t) {
       const double confidence = clip_.planted(first_ + t, static_cast<Eigen::Index>(f));
-      if (confidence < kHardlyStands) continue;
+      if (confidence < kLeastPlanted) continue;
       std::vector<double*> blocks = moving_blocks(t, foot);
       append(blocks, length_blocks(foot));
       blocks.push_back(height);
@@ -292,8 +296,9 @@ void WindowProblem::add_camera() {
     problem_.SetParameterBlockConstant(x_.lean.data());
   else
     problem_.SetManifold(x_.lean.data(), new FreeAxes(std::move(free)));
-  for (const ExpectedLean& expected : {camera.usual, camera.balanced})
-    problem_.AddResidualBlock(new CameraLean(expected, right), nullptr, x_.lean.data());
+  problem_.AddResidualBlock(new CameraLean(camera.usual, right), nullptr, x_.lean.data());
+  problem_.AddResidualBlock(new CameraLean(camera.balanced, right),
+                            new ceres::CauchyLoss(kUnbalanced), x_.lean.data());
   problem_.AddResidualBlock(new LinearTerm({1}, Eigen::VectorXd::Constant(1, camera.log_focal),
                                            camera.log_focal_deviation),
                             nullptr, &x_.log_focal);

@@ -35,7 +35,7 @@ class WindowProblem {
   /// @param small_gain a step that lowers the energy by less than this share is the last one
   void solve(bool shared_too, double small_gain, int most_iterations = kMostIterations);
 
-  /// The same of some orientations alone: all else stays as it is.
+  /// As solve(), for some orientations alone: all else stays as it is.
   /// @param turns indices; those that the problem does not have are left out
   void solve_turns(const std::vector<int>& turns, double small_gain, int most_iterations);
 
@@ -54,7 +54,8 @@ class WindowProblem {
   /// or all unknowns, and kReach frames more.
   MarginalPrior without_first(Eigen::Index frames);
 
-  /// Of these frames. What moves no seen joint turns as its parent makes likely.
+  /// The problem's current point, of its frames. An orientation that moves no seen joint turns as
+  /// its parent predicts.
   const PosteriorPoint& solution() const { return x_; }
 
  private:

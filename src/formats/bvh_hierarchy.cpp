@@ -82,7 +82,7 @@ class HierarchyParser {
     joint.parent = open_.empty() ? -1 : open_.back().joint;
     cursor_.expect("{", "open the joint with a brace");
     if (open_.size() >= kDeepest) {
-      cursor_.fail(fmt::format("joints nest deeper than {}, this is no body", kDeepest));
+      cursor_.fail(fmt::format("joints are nested deeper than {}: not a body", kDeepest));
     }
     open_.push_back({skeleton_.joint_count()});
     skeleton_.joints.push_back(std::move(joint));

@@ -23,8 +23,7 @@ bool is_world(const TomlCamera& camera) {
 
 CameraRig read(const CameraSource& source) {
   const std::vector<TomlCamera> cameras = toml_cameras(source);
-  constexpr double kFarthest_m = 100;
-  const bool metres = largest_distance(cameras) < kFarthest_m;
+  const bool metres = largest_distance(cameras) < kFarthestCamera_m;
   const auto own = std::ranges::find_if(cameras, is_world);
   const bool of_camera = own != cameras.end();
   CameraRig rig = rig_of(cameras, of_camera ? WorldUp::minus_y : WorldUp::z, metres ? 1.0 : 0.001);

@@ -18,16 +18,11 @@ bool recognises(const CameraSource& source) {
   });
 }
 
-CameraRig read(const CameraSource& source) {
-  CameraRig rig = rig_of(toml_cameras(source), WorldUp::z, 1.0);
-  rig.assumed = {"its world is z-up and in metres"};
-  return rig;
-}
-
 }  // namespace
 
 CameraFormat caliscope_camera_format() {
-  return {"caliscope", "caliscope's and pyxy3d's TOML, world z-up, metres", recognises, read};
+  return {"caliscope", "caliscope's and pyxy3d's TOML, world z-up, metres", recognises,
+          rig_z_up_in_metres};
 }
 
 }  // namespace mcdbn

@@ -42,7 +42,7 @@ CameraRig read(const CameraSource& source) {
                                  source.path.string()));
   const std::vector<double> values = storage.matrix(rotation).values;
   if (rotation == "rvec" && values.size() != 3)
-    throw InputError(storage.where(rotation) + " has not 3 numbers; give a rotation vector");
+    throw InputError(storage.where(rotation) + " needs 3 numbers; give a rotation vector");
   if (rotation == "R" && values.size() != 9)
     throw InputError(storage.where(rotation) + " is not 3x3; give a rotation matrix");
   set_pose(camera, rotation_of(values, storage.where(rotation)), storage.point("tvec"), WorldUp::y);

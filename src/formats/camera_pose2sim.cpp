@@ -16,23 +16,19 @@ bool recognises(const CameraSource& source) {
   return !sections.empty() && std::ranges::all_of(sections, [](const TomlSection& section) {
     const toml::array* distortions = (*section.table)["distortions"].as_array();
     const toml::array* translation = (*section.table)["translation"].as_array();
-    constexpr double kFarthest_m = 100;  // what is farther is in millimetres: Anipose's
-    const auto near = [](const toml::node& at) { return std::abs(at.value_or(0.0)) < kFarthest_m; };
+    const auto near = [](const toml::node& at) {
+      return std::abs(at.value_or(0.0)) < kFarthestCamera_m;
+    };
     return section.table->contains("fisheye") && distortions && distortions->size() == 4 &&
            (!translation || std::all_of(translation->begin(), translation->end(), near));
   });
 }
 
-CameraRig read(const CameraSource& source) {
-  CameraRig rig = rig_of(toml_cameras(source), WorldUp::z, 1.0);
-  rig.assumed = {"its world is z-up and in metres"};
-  return rig;
-}
-
 }  // namespace
 
 CameraFormat pose2sim_camera_format() {
-  return {"pose2sim", "Pose2Sim's and Sports2D's TOML, world z-up, metres", recognises, read};
+  return {"pose2sim", "Pose2Sim's and Sports2D's TOML, world z-up, metres", recognises,
+          rig_z_up_in_metres};
 }
 
 }  // namespace mcdbn

@@ -55,7 +55,7 @@ Camera camera_of(const Element& element) {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
   matrix(0, 0) = lens("focalLengthU");
   matrix(1, 1) = lens("focalLengthV");
-  // They count from the corner of the sensor, of which the image may be a part.
+  // The centre is given from the corner of the sensor, of which the image may be a part.
   matrix(0, 2) = lens("centerPointU") - edge("left");
   matrix(1, 2) = lens("centerPointV") - edge("top");
   set_intrinsics(camera, matrix, element.where("intrinsic"));

@@ -78,9 +78,7 @@ TomlCamera camera_of(const Section& section) {
   (section.on("fisheye") ? set_fisheye : set_distortion)(
       camera, lens ? section.numbers("distortions") : std::vector<double>{},
       section.where("distortions"));
-  const std::vector<double> rotation = section.numbers("rotation");
-  result.rotation_is_matrix = rotation.size() == 9;
-  result.camera_from_world = rotation_of(rotation, section.where("rotation"));
+  result.camera_from_world = rotation_of(section.numbers("rotation"), section.where("rotation"));
   result.translation = Eigen::Vector3d(section.numbers("translation", 3, "x, y and z").data());
   if (!result.translation.allFinite())
     throw InputError(section.where("translation") +
@@ -146,6 +144,12 @@ CameraRig rig_of(const std::vector<TomlCamera>& cameras, WorldUp up, double unit
     set_pose(named.camera, read.camera_from_world, read.translation, up);
     rig.cameras.push_back(std::move(named));
   }
+  return rig;
+}
+
+CameraRig rig_z_up_in_metres(const CameraSource& source) {
+  CameraRig rig = rig_of(toml_cameras(source), WorldUp::z, 1.0);
+  rig.assumed = {"its world is z-up and in metres"};
   return rig;
 }
 

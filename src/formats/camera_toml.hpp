@@ -17,7 +17,6 @@ struct TomlCamera {
   Camera camera;  ///< without its pose
   Eigen::Matrix3d camera_from_world;
   Eigen::Vector3d translation;
-  bool rotation_is_matrix = false;
 };
 
 /// Whether the text looks like TOML; what does and cannot be parsed is an InputError.
@@ -39,7 +38,12 @@ std::vector<TomlCamera> toml_cameras(const CameraSource& source);
 /// How far the farthest camera is from the world's origin, in the file's units.
 double largest_distance(const std::vector<TomlCamera>& cameras);
 
-/// The same cameras in a world that is +y up.
+/// The cameras as a rig in a world that is +y up.
 CameraRig rig_of(const std::vector<TomlCamera>& cameras, WorldUp up, double unit_m);
+/// The file's cameras, whose world is z-up and in metres. @throws InputError as toml_cameras()
+CameraRig rig_z_up_in_metres(const CameraSource& source);
+
+/// What is farther from the world's origin is in millimetres.
+inline constexpr double kFarthestCamera_m = 100;
 
 }  // namespace mcdbn

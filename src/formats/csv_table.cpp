@@ -42,6 +42,11 @@ CsvTable::CsvTable(std::string_view text, std::string file, std::size_t most)
   }
 }
 
+const CsvTable::Line& CsvTable::header() const {
+  if (lines_.empty()) throw InputError(fmt::format("{}: empty", file_));
+  return lines_.front();
+}
+
 double CsvTable::number_in(const Line& line, std::size_t column) const {
   const std::string_view cell = column < line.cells.size() ? line.cells[column] : "";
   if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -69,6 +74,19 @@ std::string lower(std::string_view text) {
   std::ranges::transform(result, result.begin(),
                          [](unsigned char letter) { return std::tolower(letter); });
   return result;
+}
+
+std::string plain(std::string_view name) {
+  std::string result = lower(name);
+  std::erase_if(result, [](char c) { return c == '_' || c == ' ' || c == '-' || c == '.'; });
+  return result;
+}
+
+std::size_t index_of(std::vector<std::string>& names, std::string_view name) {
+  const auto found = std::ranges::find(names, name);
+  const auto index = static_cast<std::size_t>(found - names.begin());
+  if (found == names.end()) names.emplace_back(name);
+  return index;
 }
 
 }  // namespace mcdbn

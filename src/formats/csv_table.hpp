@@ -20,6 +20,8 @@ class CsvTable {
   CsvTable(std::string_view text, std::string file, std::size_t most = ~std::size_t{0});
 
   const std::vector<Line>& lines() const { return lines_; }
+  /// The first line. @throws InputError if there is none
+  const Line& header() const;
 
   /// The number in a cell; NaN where it is empty, or the line ends before it. @throws InputError
   /// `file:line: what`
@@ -38,5 +40,10 @@ class CsvTable {
 
 /// In lower case.
 std::string lower(std::string_view text);
+/// In lower case without separators.
+std::string plain(std::string_view name);
+
+/// The index of a name, which is added if it is new.
+std::size_t index_of(std::vector<std::string>& names, std::string_view name);
 
 }  // namespace mcdbn

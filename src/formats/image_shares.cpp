@@ -11,8 +11,8 @@ namespace mcdbn {
 
 bool are_shares(const std::vector<std::vector<SeenPerson>>& frames, const std::string& file) {
   // World landmarks have the hips at the origin and y down: the head is half a metre above it, and
-  // one hip is always left of it, also of a body seen from its side. Of a body in a picture that
-  // much is above the image, and some of it left of it as well, in no picture of use.
+  // one hip is always left of it, also of a body seen from its side. No picture of use shows a body
+  // that much above the image, and some of it left of it as well.
   constexpr double kLeft = -0.02, kAbove = -0.2;
   long long all = 0, small = 0, left = 0, above = 0;
   for (const auto& people : frames)
@@ -32,6 +32,35 @@ bool are_shares(const std::vector<std::vector<SeenPerson>>& frames, const std::s
                     "not places in an image",
                     file));
   return true;
+}
+
+void require_image_places(const std::vector<std::vector<SeenPerson>>& frames, bool depths,
+                          const std::string& file) {
+  // Feet alone may be in the picture, and all that a detector guesses above them outside. Those
+  // that give depths (MediaPipe) need the trunk; points in space about their origin are outside
+  // unless both x and y are above 0: three of four.
+  const double most_outside = depths ? 0.5 : 0.9;
+  constexpr double kBeyond = 0.02;  // of the extent: detectors guess a little beyond the edge
+  double extent = 0;
+  const auto for_each_joint = [&](const auto& visit) {
+    for (const auto& people : frames)
+      for (const SeenPerson& person : people)
+        for (std::size_t joint = 0; joint < person.x_px.size(); ++joint)
+          if (person.confidence[joint] > 0) visit(person.x_px[joint], person.y_px[joint]);
+  };
+  for_each_joint([&](double x, double y) {
+    extent = std::max({extent, std::abs(x), std::abs(y)});
+  });
+  long long all = 0, outside = 0;
+  for_each_joint([&](double x, double y) {
+    ++all;
+    outside += std::min(x, y) < -kBeyond * extent ? 1 : 0;
+  });
+  if (static_cast<double>(outside) > most_outside * static_cast<double>(all))
+    throw InputError(
+        fmt::format("{}: {} of {} joints lie left of or above the image: points in space, not "
+                    "places in an image",
+                    file, outside, all));
 }
 
 void shares_to_px(std::vector<SeenPerson>& people, const ImageSize& size) {

@@ -16,6 +16,14 @@ inline constexpr double kLargestShare = 3.0;
 /// @throws InputError if they are neither, but those of a body in space about the origin
 bool are_shares(const std::vector<std::vector<SeenPerson>>& frames, const std::string& file);
 
+/// Refuses points in space whose unit is small, as FreeMoCap's millimetres: more of them lie left
+/// of or above the image than a detector guesses there of people who are partly in the picture.
+/// @param frames whose coordinates are no shares  @param depths whether joints have a third
+///        coordinate and no confidence, as points in space have
+/// @throws InputError
+void require_image_places(const std::vector<std::vector<SeenPerson>>& frames, bool depths,
+                          const std::string& file);
+
 /// Shares become pixels of an image of that size.
 void shares_to_px(std::vector<SeenPerson>& people, const ImageSize& size);
 

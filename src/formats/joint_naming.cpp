@@ -46,6 +46,13 @@ SeenPerson person_of_lists(const JsonPlace& keypoints) {
   return person;
 }
 
+/// @return the numbers of [x, y, …]. @throws InputError if it holds fewer than two
+std::vector<double> point_of(const JsonPlace& joint) {
+  std::vector<double> numbers = joint.numbers();
+  if (numbers.size() < 2) joint.fail(fmt::format("{} numbers; x and y are needed", numbers.size()));
+  return numbers;
+}
+
 void set_length(SeenPeople& people, std::size_t joints) {
   for (auto& [number, frame] : people.frames)
     for (SeenPerson& person : frame)
@@ -135,9 +142,7 @@ SeenPerson person_in_json(const JsonPlace& keypoints) {
   if (keypoints.size() > 0 && keypoints.at(0).is_list()) {
     SeenPerson person;
     for (const JsonPlace& joint : keypoints.list()) {
-      const std::vector<double> numbers = joint.numbers();
-      if (numbers.size() < 2)
-        joint.fail(fmt::format("{} numbers; x and y are needed", numbers.size()));
+      const std::vector<double> numbers = point_of(joint);
       person.x_px.push_back(numbers[0]);
       person.y_px.push_back(numbers[1]);
       person.confidence.push_back(numbers.size() < 3 ? 1.0 : numbers[2]);
@@ -156,9 +161,7 @@ SeenPerson person_in_json(const JsonPlace& keypoints, const JsonPlace& scores) {
   SeenPerson person;
   const std::vector<double> confidence = scores.numbers();
   for (const JsonPlace& joint : keypoints.list()) {
-    const std::vector<double> numbers = joint.numbers();
-    if (numbers.size() < 2)
-      joint.fail(fmt::format("{} numbers; x and y are needed", numbers.size()));
+    const std::vector<double> numbers = point_of(joint);
     person.x_px.push_back(numbers[0]);
     person.y_px.push_back(numbers[1]);
   }

@@ -101,12 +101,14 @@ bool shows_nobody(const json& content) {
   return any;
 }
 
-json parse_json(std::string_view text, const std::string& file) {
+json parse_json(std::string_view text, const std::string& file, bool* are_lines) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::string readable;
   if (text.find("NaN") != std::string_view::npos || text.find("Infinity") != std::string_view::npos)
     text = readable = without_nan(text);
-  return are_json_lines(text) ? parse_lines(text, file) : parse_value(text, file, 0);
+  const bool lines = are_json_lines(text);
+  if (are_lines != nullptr) *are_lines = lines;
+  return lines ? parse_lines(text, file) : parse_value(text, file, 0);
 }
 
 }  // namespace mcdbn

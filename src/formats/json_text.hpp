@@ -14,6 +14,8 @@ bool shows_nobody(const nlohmann::json& content);
 
 /// Python's NaN and Infinity are read, too, as null. JSON lines, a value in each line, are a list
 /// of them. @throws InputError `file:line: what`
-nlohmann::json parse_json(std::string_view text, const std::string& file);
+/// @param are_lines gets whether they are JSON lines, if not null
+nlohmann::json parse_json(std::string_view text, const std::string& file,
+                          bool* are_lines = nullptr);
 
 }  // namespace mcdbn

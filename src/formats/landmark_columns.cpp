@@ -2,15 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "base/shown.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/landmarks.hpp"
-#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -65,14 +62,25 @@ bool is_frame_column(std::string_view name) {
 }
 
 struct JointColumns {
-  std::optional<std::size_t> x, y, confidence;
+  std::optional<std::size_t> x, y, depth, confidence;
+
+  std::optional<std::size_t>& of(Quantity quantity) {
+    switch (quantity) {
+      case Quantity::x:
+        return x;
+      case Quantity::y:
+        return y;
+      case Quantity::depth:
+        return depth;
+      default:
+        return confidence;
+    }
+  }
 };
 
 class ColumnsReader {
  public:
-  ColumnsReader(std::string_view text, const std::string& file) : table_(text, file), file_(file) {
-    if (table_.lines().empty()) throw InputError(fmt::format("{}: empty", file));
-  }
+  ColumnsReader(std::string_view text, const std::string& file) : table_(text, file), file_(file) {}
 
   SeenPeople read() {
     read_header();
@@ -83,29 +91,33 @@ class ColumnsReader {
 
  private:
   void read_header() {
-    const CsvTable::Line& header = table_.lines().front();
+    const CsvTable::Line& header = table_.header();
     for (std::size_t k = 0; k < header.cells.size(); ++k) {
       if (is_frame_column(header.cells[k])) frame_ = k;
+      if (!person_ && is_person_column(header.cells[k])) person_ = k;
       const auto column = column_of(header.cells[k]);
-      if (!column || column->quantity == Quantity::depth) continue;
-      JointColumns& joint = joint_of(column->joint);
-      auto& place = column->quantity == Quantity::x   ? joint.x
-                    : column->quantity == Quantity::y ? joint.y
-                                                      : joint.confidence;
+      if (!column) continue;
+      auto& place = joint_of(column->joint).of(column->quantity);
       // The first of several confidences: visibility before presence.
       if (!place) place = k;
     }
     drop_incomplete();
     if (joints_.empty()) table_.fail(header, "no landmarks: columns NAME_x and NAME_y");
+    people_.has_depths_only = std::ranges::all_of(
+        joints_, [](const JointColumns& joint) { return joint.depth && !joint.confidence; });
+    if (is_own_motion(header))
+      table_.fail(header, "points in space, as regenerate --follow writes them, not a 2D track");
+  }
+
+  /// frame,time_s, then x, y, z of each joint: csv_stream() of frame_stream.hpp.
+  bool is_own_motion(const CsvTable::Line& header) const {
+    return people_.has_depths_only && header.cells.size() == 2 + 3 * joints_.size() &&
+           header.cells[0] == "frame" && header.cells[1] == "time_s";
   }
 
   JointColumns& joint_of(const std::string& name) {
-    const auto found = std::ranges::find(names_, name);
-    const auto index = static_cast<std::size_t>(found - names_.begin());
-    if (found == names_.end()) {
-      names_.push_back(name);
-      joints_.emplace_back();
-    }
+    const std::size_t index = index_of(names_, name);
+    joints_.resize(names_.size());
     return joints_[index];
   }
 
@@ -119,7 +131,7 @@ class ColumnsReader {
   }
 
   void read_frame(const CsvTable::Line& line) {
-    table_.require_cells(line, table_.lines().front().cells.size());
+    table_.require_cells(line, table_.header().cells.size());
     SeenPerson person;
     for (const JointColumns& joint : joints_) {
       person.x_px.push_back(table_.number_in(line, *joint.x));
@@ -127,6 +139,8 @@ class ColumnsReader {
       person.confidence.push_back(table_.confidence_in(line, joint.confidence));
     }
     mark_missing(person);
+    if (person_ && !line.cells[*person_].empty())
+      person.id = tracks_.emplace(line.cells[*person_], tracks_.size()).first->second;
     auto number = static_cast<long long>(people_.frames.size());
     if (frame_) {
       const double given = table_.number_in(line, *frame_);
@@ -139,9 +153,10 @@ class ColumnsReader {
 
   CsvTable table_;
   std::string file_;
-  std::optional<std::size_t> frame_;
+  std::optional<std::size_t> frame_, person_;
   std::vector<std::string> names_;
   std::vector<JointColumns> joints_;
+  std::map<std::string_view, long long> tracks_;  ///< the people's numbers, by how they are called
   SeenPeople people_;
 };
 

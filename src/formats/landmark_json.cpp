@@ -26,6 +26,7 @@ constexpr std::array kFrameKeys{"frame", "frame_id", "frame_idx", "frame_number"
 constexpr std::array kConfidenceKeys{"visibility", "score", "confidence", "presence", "v"};
 constexpr std::array kScoresKeys{"keypoint_scores", "scores"};  // of all landmarks of a body
 constexpr std::array kNameKeys{"name", "part"};
+constexpr std::array kPersonKeys{"track_id", "trackId", "person_id", "personId"};
 
 /// The value of the first of these keys under which an object has one: MediaPipe's landmarks have
 /// null for what is not known of them.
@@ -62,6 +63,14 @@ std::vector<std::string> keys_by_number(std::vector<std::string> keys) {
   keys.clear();
   for (auto& [number, key] : ordered) keys.push_back(std::move(key));
   return keys;
+}
+
+/// The number of the person whom an object shows. @param of_frame an `id` is a frame's own
+std::optional<long long> person_number(const JsonPlace& place, bool of_frame) {
+  auto id = any_of_keys(place, kPersonKeys);
+  if (!id && !of_frame) id = any_of_keys(place, std::array{"id"});
+  if (!id || !id->value().is_number() || id->number() != std::floor(id->number())) return {};
+  return id->whole_number();
 }
 
 struct LandmarkBody {
@@ -144,10 +153,16 @@ class LandmarkReader {
         add_bodies(place.at(i), bodies, depth + 1,
                    scores ? std::optional(scores->at(i)) : std::nullopt);
     } else if (place.is_object()) {
+      if (place.has("channels") && place.has("joints"))
+        place.fail("points in space, as regenerate --follow writes them, not a 2D track");
       const auto inside = any_of_keys(place, kBodyKeys);
       auto beside = any_of_keys(place, kScoresKeys);
       if (beside && !beside->is_list()) beside.reset();  // of the body as a whole
+      const std::size_t before = bodies.size();
       if (inside) add_bodies(*inside, bodies, depth + 1, beside);
+      if (const auto person = person_number(place, depth == 0);
+          person && bodies.size() == before + 1)
+        bodies.back().person.id = person;
     } else {
       place.fail("neither landmarks nor a list of them");
     }
@@ -204,7 +219,8 @@ class LandmarkReader {
     body.thirds.push_back(-1);
   }
 
-  /// Of [x, y, number] the number is a confidence if it is never below 0 in the file, else a depth.
+  /// Whether the third number of [x, y, number] is a confidence: it is never below 0 in the file.
+  /// Else it is a depth.
   bool thirds_are_confidences() const {
     for (const auto& [number, frame] : bodies_)
       for (const LandmarkBody& body : frame)

@@ -50,6 +50,12 @@ void put_in_order(SeenPeople& people, const std::vector<std::size_t>& order) {
 
 }  // namespace
 
+bool is_person_column(std::string_view name) {
+  const std::string known = plain(name);
+  return known == "person" || known == "personid" || known == "poseid" || known == "trackid" ||
+         known == "track";
+}
+
 void name_landmarks(SeenPeople& people, const std::string& file,
                     const std::vector<std::string>& names) {
   if (are_only_numbered(names)) return name_joints_by_count(people, file);

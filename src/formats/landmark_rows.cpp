@@ -14,7 +14,6 @@
 #include "formats/csv_text.hpp"
 #include "formats/joint_naming.hpp"
 #include "formats/landmarks.hpp"
-#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -22,13 +21,6 @@ namespace {
 struct Header {
   std::optional<std::size_t> frame, landmark, x, y, z, confidence, person, model, id;
 };
-
-/// In lower case without separators.
-std::string plain(std::string_view name) {
-  std::string result = lower(name);
-  std::erase_if(result, [](char c) { return c == '_' || c == ' ' || c == '-' || c == '.'; });
-  return result;
-}
 
 Header header_of(const CsvTable::Line& line) {
   Header header;
@@ -50,7 +42,7 @@ Header header_of(const CsvTable::Line& line) {
     if (is({"z"})) take(header.z);
     if (is({"visibility", "confidence", "score", "likelihood", "presence"}))
       take(header.confidence);
-    if (is({"person", "personid", "poseid", "trackid", "track"})) take(header.person);
+    if (is_person_column(line.cells[k])) take(header.person);
     if (is({"model"})) take(header.model);
     if (is({"id"})) take(header.id);
   }
@@ -61,12 +53,11 @@ Header header_of(const CsvTable::Line& line) {
 class RowsReader {
  public:
   RowsReader(std::string_view text, const std::string& file) : table_(text, file), file_(file) {
-    if (table_.lines().empty()) throw InputError(fmt::format("{}: empty", file));
-    header_ = header_of(table_.lines().front());
+    header_ = header_of(table_.header());
     if (!header_.frame || !header_.landmark || !header_.x || !header_.y)
-      table_.fail(table_.lines().front(), "columns frame, landmark, x and y are needed");
+      table_.fail(table_.header(), "columns frame, landmark, x and y are needed");
     if (header_.model && header_.z)
-      table_.fail(table_.lines().front(),
+      table_.fail(table_.header(),
                   "points in space (FreeMoCap), not a 2D track; give the track of one camera");
   }
 
@@ -87,20 +78,21 @@ class RowsReader {
         list.push_back(std::move(body));
       }
     }
+    people.has_depths_only = header_.z && !header_.confidence;
     name_landmarks(people, file_, numbered_ ? std::vector<std::string>{} : names_);
     return people;
   }
 
  private:
   void find_name(const CsvTable::Line& line) {
-    table_.require_cells(line, table_.lines().front().cells.size());
+    table_.require_cells(line, table_.header().cells.size());
     if (const auto name = line.cells[*header_.landmark];
         columns_.emplace(name, names_.size()).second)
       names_.emplace_back(name);
   }
 
   /// Landmarks that are numbers stand in the order of these; those that were never seen keep their
-  /// column. They count from 1 where 0 never comes and the last number is a joint count that is
+  /// column. Numbers count from 1 where 0 never comes and the last number is a joint count that is
   /// known: 1 to 17 are 17 joints. Else they count from 0.
   void sort_numbers() {
     std::vector<double> numbers;

@@ -10,6 +10,9 @@ namespace mcdbn {
 bool are_landmark_columns(std::string_view text);
 bool are_landmark_rows(std::string_view text);
 
+/// Whether a table's column of this name has the person's number: person, track_id, pose_id.
+bool is_person_column(std::string_view name);
+
 /// @throws InputError `file:line: what`
 SeenPeople read_landmark_columns(std::string_view text, const std::string& file);
 SeenPeople read_landmark_rows(std::string_view text, const std::string& file);

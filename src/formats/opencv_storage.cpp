@@ -118,18 +118,8 @@ Eigen::Matrix3d OpencvStorage::square(const std::string& name, const std::string
 Eigen::Vector3d OpencvStorage::point(const std::string& name) const {
   const Values found = matrix(name);
   if (found.values.size() != 3)
-    throw InputError(where(name) + " has not 3 numbers; give x y z in file units");
+    throw InputError(where(name) + " needs 3 numbers; give x y z in file units");
   return Eigen::Vector3d(found.values.data());
-}
-
-std::vector<std::string> OpencvStorage::strings(const std::string& name) const {
-  std::vector<std::string> result;
-  for (const cv::FileNode& entry : node(name)) {
-    if (!entry.isString() && !entry.isInt())
-      throw InputError(where(name) + " is not a list of names");
-    result.push_back(entry.isString() ? entry.string() : std::to_string(static_cast<int>(entry)));
-  }
-  return result;
 }
 
 std::vector<std::string> OpencvStorage::keys() const {

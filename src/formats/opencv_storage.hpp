@@ -22,11 +22,10 @@ class OpencvStorage {
     std::vector<double> values;  ///< row by row, finite
   };
   Values matrix(const std::string& name) const;
-  /// Of a 3x3 matrix. @param what it is to hold, for the error
+  /// A 3x3 matrix. @param what it is to hold, for the error
   Eigen::Matrix3d square(const std::string& name, const std::string& what) const;
   Eigen::Vector3d point(const std::string& name) const;
-  std::vector<std::string> strings(const std::string& name) const;
-  /// Of the keys at the top.
+  /// Keys of the top level.
   std::vector<std::string> keys() const;
   /// "file:line: name", the line of the file where the name stands.
   std::string where(const std::string& name) const;

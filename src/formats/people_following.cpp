@@ -101,7 +101,7 @@ class Follower {
     path.last_frame = frame;
   }
 
-  /// Of the joints that both show; of none: of the boxes.
+  /// Mean step of the joints that both show; without any, the step of the boxes' centres.
   static Point mean_step(const SeenPerson& from, const SeenPerson& to) {
     Point sum(0, 0);
     int common = 0;

@@ -6,7 +6,7 @@
 
 namespace mcdbn {
 
-/// Of a person's joints, in one frame.
+/// Bounding box of a person's joints in one frame.
 struct PersonBox {
   Eigen::Vector2d least, most;
   double area() const { return (most - least).prod(); }
@@ -14,7 +14,7 @@ struct PersonBox {
   Eigen::Vector2d centre() const { return (least + most) / 2; }
 };
 
-/// Of the joints that were seen; of none at the origin, without extent.
+/// Bounding box of the joints that were seen; without any it is at the origin, of no extent.
 PersonBox box_of(const SeenPerson& person);
 
 }  // namespace mcdbn

@@ -61,8 +61,8 @@ void mark_missing(SeenPerson& person) {
 
 SeenPeople people_of_folder(const TrackSource& source,
                             std::vector<SeenPerson> (*people_of)(const JsonPlace& content)) {
-  const auto numbers = numbers_of_files(source.json_files());
   SeenPeople people;
+  const auto numbers = numbers_of_files(source.json_files(), &people.notices);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const auto& file = source.json_files()[i];
     if (!numbers[i]) {

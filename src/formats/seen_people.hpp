@@ -38,6 +38,8 @@ struct SeenPeople {
   std::optional<ImageSize> image_size;
   bool image_size_is_given = true;  ///< else image_size is the format's default
   bool in_pixels = false;           ///< else coordinates that are all small are shares of the image
+  /// Joints have a third coordinate and no confidence: a guess of their depth, or points in space.
+  bool has_depths_only = false;
   std::vector<std::string> notices;
 
   /// The image's size: that of the options, else the file's, else the camera's, else the format's

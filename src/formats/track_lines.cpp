@@ -84,7 +84,7 @@ class TrackLines::Reader {
     const std::string place = fmt::format("{}:{}", name_, line_);
     TrackSource source(fmt::format("[{}]", line), place);
     if (!format_ && !options_.format.empty()) format_ = &track_format(options_.format);
-    // Of whatever format: a camera may run for long before anybody comes.
+    // A line without people may have any format: a camera may run for long before anybody comes.
     if (shows_nobody(source.json().value())) return {};
     const TrackFormat* format = format_of(source);
     if (!format) {

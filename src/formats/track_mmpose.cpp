@@ -121,7 +121,7 @@ std::vector<SeenPerson> people_of_instance(const JsonPlace& instance) {
   return {person_of_instance(instance)};
 }
 
-/// Of instances, or of lists of them, as of an image in a batch.
+/// People of a list of instances, or of nested lists, as an image of a batch has.
 std::vector<SeenPerson> people_of(const JsonPlace& instances) {
   std::vector<SeenPerson> people;
   for (const JsonPlace& instance : instances.list())
@@ -143,15 +143,8 @@ std::vector<SeenPerson> people_of_frame(const JsonPlace& frame) {
   return people_of(frame.is_list() ? frame : frame[key == nullptr ? "instances" : key]);
 }
 
-/// Frames with instances, lists of instances, or the instances of one image.
-void add_list(SeenPeople& people, const JsonPlace& list) {
-  bool one_image = true;
-  for (const JsonPlace& entry : list.list())
-    one_image = one_image && is_instance(entry) && !holds_people(entry) && !frame_key(entry);
-  if (one_image) {
-    people.frames.emplace(0, people_of(list));
-    return;
-  }
+/// Frames with instances, lists of instances, or an instance of each frame.
+void add_frames(SeenPeople& people, const JsonPlace& list) {
   long long next = 0;
   for (const JsonPlace& frame : list.list()) {
     const char* key = frame_key(frame);
@@ -165,6 +158,17 @@ void add_list(SeenPeople& people, const JsonPlace& list) {
     if (!people.frames.emplace(number, people_of_frame(frame)).second)
       frame.fail(fmt::format("a second frame {}", number));
   }
+}
+
+/// Frames, or the instances of one image.
+void add_list(SeenPeople& people, const JsonPlace& list) {
+  bool one_image = true;
+  for (const JsonPlace& entry : list.list())
+    one_image = one_image && is_instance(entry) && !holds_people(entry) && !frame_key(entry);
+  if (one_image)
+    people.frames.emplace(0, people_of(list));
+  else
+    add_frames(people, list);
 }
 
 void add_images(SeenPeople& people, const JsonPlace& content) {
@@ -237,7 +241,10 @@ SeenPeople read(const TrackSource& source) {
   }
   SeenPeople people;
   const JsonPlace content = source.json();
-  add_content(people, content);
+  if (source.is_json_lines())
+    add_frames(people, content);
+  else
+    add_content(people, content);
   name_joints_by_count(people, source.name(), names_in(content));
   return people;
 }

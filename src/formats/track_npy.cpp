@@ -30,7 +30,7 @@ bool is_known_count(std::size_t joints) {
                              [&](const JointSet& set) { return set.keypoints.size() == joints; });
 }
 
-/// As [people, frames, joints, numbers a joint].
+/// The shape with all four dimensions: [people, frames, joints, numbers a joint].
 std::vector<std::size_t> full_shape(const std::vector<std::size_t>& shape,
                                     const std::string& file) {
   if (shape.size() == 2) {

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "formats/image_shares.hpp"
+#include "formats/likely_image.hpp"
 #include "formats/likely_joint_set.hpp"
 #include "formats/people_following.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -22,8 +23,7 @@ namespace {
 
 using Frames = std::vector<std::vector<SeenPerson>>;
 
-constexpr ImageSize kUsualImage{1920, 1080};
-/// So many frames may be left out of any film.
+/// Number of frames that may be missing in any film.
 constexpr long long kFewFrames = 100;
 
 struct Extent {
@@ -109,6 +109,17 @@ ImageSize guessed_image(const Extent& extent) {
   return {std::max(whole(extent.most_x), 1), std::max(whole(extent.most_y), 1)};
 }
 
+/// @param likely whether the people in it show that it is of that shape
+std::string shares_notice(const ImageSize& size, bool known, bool likely) {
+  const std::string taken = fmt::format("coordinates are shares of the image, taken as {} x {} px",
+                                        size.width_px, size.height_px);
+  if (known) return taken;
+  const std::string so =
+      fmt::format(" and people look likelier so than in {} x {}", size.height_px, size.width_px);
+  return fmt::format("{}, for the file does not give its size{}; set it with `image-size`", taken,
+                     likely ? so : "");
+}
+
 /// Coordinates that are shares of the image become pixels. @return the image's size
 ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadOptions& options,
                         const std::string& file, std::vector<std::string>& notices) {
@@ -117,8 +128,10 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
     notices.push_back(fmt::format(
         "the file does not give the image's size: {} x {} px are taken; set it with `image-size`",
         known->width_px, known->height_px));
-  const ImageSize size = known.value_or(kUsualImage);
   const bool shares = !seen.in_pixels && are_shares(frames, file);
+  const std::optional<ImageSize> likely =
+      shares && !known ? likely_image(seen.keypoints, frames) : std::nullopt;
+  const ImageSize size = known ? *known : likely.value_or(kLyingImage);
   if (shares)
     for (auto& people : frames) shares_to_px(people, size);
   const Extent extent = extent_of(frames);
@@ -127,18 +140,17 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
       std::max({-extent.least_x, -extent.least_y, extent.most_x, extent.most_y});
   if (farthest > kFarthest_px)
     throw InputError(fmt::format("{}: a coordinate of {:.3g}, which is no pixel", file, farthest));
+  if (!shares && !seen.in_pixels) require_image_places(frames, seen.has_depths_only, file);
   if (!shares) {
     if (known) return *known;
     const ImageSize guess = guessed_image(extent);
     notices.push_back(fmt::format(
         "the file does not give the image's size: taken as {} x {} px, which holds all that was "
-        "seen (x to {:.0f}, y to {:.0f}); set it with `image-size`",
+        "seen but for 2 % (x to {:.0f}, y to {:.0f}); set it with `image-size`",
         guess.width_px, guess.height_px, extent.most_x, extent.most_y));
     return guess;
   }
-  notices.push_back(fmt::format(
-      "coordinates are shares of the image, taken as {} x {} px{}", size.width_px, size.height_px,
-      known ? "" : ", for the file does not give its size; set it with `image-size`"));
+  notices.push_back(shares_notice(size, known.has_value(), likely.has_value()));
   return size;
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "base/shown.hpp"
@@ -14,7 +13,6 @@
 #include "formats/csv_text.hpp"
 #include "formats/joint_naming.hpp"
 #include "formats/track_formats.hpp"
-#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -38,9 +36,7 @@ struct Node {
 
 class SleapReader {
  public:
-  explicit SleapReader(const TrackSource& source) : table_(source.text(), source.name()) {
-    if (table_.lines().empty()) throw InputError(fmt::format("{}: empty", source.name()));
-  }
+  explicit SleapReader(const TrackSource& source) : table_(source.text(), source.name()) {}
 
   SeenPeople read() {
     read_header();
@@ -52,7 +48,7 @@ class SleapReader {
 
  private:
   void read_header() {
-    const CsvTable::Line& header = table_.lines().front();
+    const CsvTable::Line& header = table_.header();
     for (std::size_t k = 0; k < header.cells.size(); ++k) {
       const std::string_view name = header.cells[k];
       if (name == kFrame) frame_ = k;
@@ -68,23 +64,18 @@ class SleapReader {
     if (!frame_) table_.fail(header, fmt::format("no column {}", kFrame));
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       if (!nodes_[i].x || !nodes_[i].y)
-        table_.fail(header,
-                    fmt::format("node {} has not both columns, .x and .y", shown(names_[i])));
+        table_.fail(header, fmt::format("node {} needs both columns, .x and .y", shown(names_[i])));
     if (nodes_.empty()) table_.fail(header, "no nodes: columns NODE.x and NODE.y");
   }
 
   Node& node_of(std::string_view name) {
-    const auto found = std::ranges::find(names_, name);
-    const auto index = static_cast<std::size_t>(found - names_.begin());
-    if (found == names_.end()) {
-      names_.emplace_back(name);
-      nodes_.emplace_back();
-    }
+    const std::size_t index = index_of(names_, name);
+    nodes_.resize(names_.size());
     return nodes_[index];
   }
 
   void read_instance(const CsvTable::Line& line) {
-    table_.require_cells(line, table_.lines().front().cells.size());
+    table_.require_cells(line, table_.header().cells.size());
     const double frame = table_.number_in(line, *frame_);
     if (!(std::abs(frame) < 1e15) || frame != std::floor(frame))
       table_.fail(line, fmt::format("{} is no number of a frame", shown(line.cells[*frame_])));

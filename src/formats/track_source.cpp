@@ -60,19 +60,21 @@ char TrackSource::first_letter() const {
 
 std::optional<JsonPlace> TrackSource::json_if_any() const {
   if (first_letter() != '{' && first_letter() != '[') return {};
-  if (!json_) {
-    try {
-      json_ = parse_json(text(), name());
-    } catch (const InputError&) {
-      return {};
-    }
+  try {
+    return json();
+  } catch (const InputError&) {
+    return {};
   }
-  return JsonPlace(*json_, name());
 }
 
 JsonPlace TrackSource::json() const {
-  if (!json_) json_ = parse_json(text(), name());
+  if (!json_) json_ = parse_json(text(), name(), &is_json_lines_);
   return JsonPlace(*json_, name());
+}
+
+bool TrackSource::is_json_lines() const {
+  (void)json();
+  return is_json_lines_;
 }
 
 std::optional<JsonPlace> TrackSource::first_json_if_any() const {

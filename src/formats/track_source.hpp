@@ -36,9 +36,11 @@ class TrackSource {
   std::optional<JsonPlace> json_if_any() const;
   /// @throws InputError `file:line: what`
   JsonPlace json() const;
-  /// Of a folder's first frame that is not an empty list (no person was found), or of the file.
+  /// Whether that JSON is a list of lines, a frame each. @throws as json()
+  bool is_json_lines() const;
+  /// JSON of the file, or of a folder's first frame that is not an empty list (no person found).
   std::optional<JsonPlace> first_json_if_any() const;
-  /// Of one of json_files(); it is not kept.
+  /// JSON of one of json_files(); it is not kept.
   nlohmann::json json_of(const std::filesystem::path& file) const;
 
  private:
@@ -48,6 +50,7 @@ class TrackSource {
   std::vector<std::filesystem::path> json_files_;
   mutable std::optional<std::string> text_;
   mutable std::optional<nlohmann::json> json_, first_json_;
+  mutable bool is_json_lines_ = false;
 };
 
 }  // namespace mcdbn

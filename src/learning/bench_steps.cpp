@@ -12,6 +12,7 @@
 #include "learning/multi_prediction.hpp"
 #include "learning/persistent_contrastive_divergence.hpp"
 #include "machines/mrbm_chain.hpp"
+#include "mcdbn/learning/learning_settings.hpp"
 #include "mcdbn/machines/generation.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 

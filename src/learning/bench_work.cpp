@@ -24,7 +24,7 @@ std::vector<KernelWork> contrastive_divergence_work(const CrbmShape& shape, std:
   const double weights = wide_v * wide_h,
                all_directed = order_a * wide_v * wide_v + order_b * wide_v * wide_h;
   const double history = n * static_cast<double>(shape.order) * wide_v;
-  // Of visible and hidden units: the data, the chain's end, their difference.
+  // Three matrices of visible and hidden units: the data, the chain's end, their difference.
   const double units = 3.0 * n * (wide_v + wide_h);
   return {{"gibbs_chain", 2.0 * n * (directed + (1.0 + 2.0 * k) * v * h),
            kFloat * (2.0 * weights + all_directed + history + n * wide_v + units)},

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "device/kernel_rates.hpp"
+#include "mcdbn/learning/fine_tuning_settings.hpp"
 #include "mcdbn/learning/sequence_loss.hpp"
-#include "mcdbn/learning/settings.hpp"
 #include "mcdbn/machines/mcdbn.hpp"
 
 namespace mcdbn {
@@ -32,7 +32,7 @@ std::vector<KernelWork> joint_likelihood_work(std::size_t modalities, std::size_
 double unrolled_flops(const Mcdbn& network, std::size_t absent, const SequenceWindows& windows,
                       const FineTuningSettings& settings);
 
-/// Of all kernels together.
+/// Floating-point operations of all kernels together.
 double flops_of(const std::vector<KernelWork>& work);
 
 }  // namespace mcdbn

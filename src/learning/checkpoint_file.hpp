@@ -8,7 +8,7 @@
 
 namespace mcdbn {
 
-/// What stands in the file of a checkpoint.
+/// Contents of a checkpoint's file.
 struct CheckpointContent {
   std::map<std::string, TrainingState::Content> finished_stages;  ///< their results
   std::string running_stage;                                      ///< empty: between two

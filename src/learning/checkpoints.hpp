@@ -23,30 +23,31 @@ class Checkpoints {
     std::chrono::duration<double> every{};  ///< from one to the next
     /// The training's own: what it writes beside its parameters.
     Visit extra_state = [](TrainingState&) {};
-    /// Hears of one that could not be written; the training goes on.
+    /// Called when a checkpoint could not be written; the training goes on.
     std::function<void(const std::string&)> warn = [](const std::string&) {};
   };
 
   /// Reads what is there to go on from. @throws InputError if none that is there can be read
   explicit Checkpoints(Options options);
 
-  /// A stage begins, or goes on where it stood, or was over long ago: then `result`, and if it goes
-  /// on `running` too, are brought back. Every stage of a training, in order.
-  /// @param result what is wanted of it when it is over  @param running what else it changes
-  /// @return mini-batches that are behind it; nothing: it is over
+  /// Begins a stage, or restores it: `result` of a finished one, `result` and `running` of an
+  /// interrupted one. Called for every stage of a training, in order.
+  /// @param result what is needed of the stage when it is over
+  /// @param running what else it changes
+  /// @return number of its mini-batches that are done; nothing: it is over
   std::optional<std::size_t> begin(const std::string& stage, Visit result, Visit running);
-  /// The stage is over: its result stays in the checkpoints to come, the first of which is written.
+  /// Ends the stage: its result stays in all further checkpoints, the first of which is written.
   void end();
 
   /// Whether it is time for the next one.
   bool due() const { return Clock::now() - last_ >= options_.every; }
   /// @param done mini-batches of the running stage  @throws InputError if it cannot be written
   void write(std::size_t done);
-  /// The same; what goes wrong is a warning.
+  /// As write(), but an error is only a warning.
   void try_to_write(std::size_t done);
 
   static bool exist_in(const std::filesystem::path& folder);
-  /// The one before the last makes room for what matters more.
+  /// Deletes the last but one, to free disk space.
   static void drop_previous(const std::filesystem::path& folder);
 
  private:
@@ -63,12 +64,12 @@ class Checkpoints {
 /// writes checkpoints, if there are any.
 class StageRun {
  public:
-  /// As Checkpoints::begin. @param checkpoints none: nothing is kept
+  /// Begins or restores a stage, as Checkpoints::begin(). @param checkpoints none: nothing is kept
   StageRun(Device& device, Checkpoints* checkpoints, const std::string& stage,
            const Checkpoints::Visit& result, const Checkpoints::Visit& running);
 
   bool is_over() const { return !done_; }
-  /// Mini-batches behind it as it goes on.
+  /// Number of mini-batches that were done when it was begun or restored.
   std::size_t done() const { return done_.value_or(0); }
   /// After each mini-batch that is enqueued. @throws Interrupted once a checkpoint is written
   void after_step(std::size_t done);

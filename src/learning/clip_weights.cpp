@@ -6,7 +6,7 @@
 namespace mcdbn {
 namespace {
 
-/// Of each group of clips that are all there is.
+/// Number of frames of each group, where the clips are the whole corpus.
 std::map<std::size_t, double> frames_of_groups(const SynchronizedClips& clips) {
   std::map<std::size_t, double> frames;
   for (std::size_t i = 0; i < clips.count(); ++i)

@@ -14,7 +14,7 @@
 namespace mcdbn {
 namespace {
 
-/// What is left of the rates.
+/// Share of the rates that is left.
 double share_of_rate(const CdSettings& settings, double progress) {
   if (settings.cosine) return cosine_fall(progress, settings.final_rate);
   return settings.final_rate + (1.0 - settings.final_rate) * (1.0 - progress);

@@ -3,12 +3,12 @@
 #include "device/optimizer.hpp"
 #include "device/row_tile.hpp"
 #include "learning/learning_rule.hpp"
-#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/learning/cd_settings.hpp"
 #include "mcdbn/machines/crbm.hpp"
 
 namespace mcdbn {
 
-/// What one mini-batch of CD-k does to the parameters.
+/// How one mini-batch of CD-k updates the parameters.
 struct CdRule {
   std::size_t gibbs_steps = 1;
   UpdateRule W;  ///< the biases take the same without decay

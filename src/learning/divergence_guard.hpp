@@ -4,7 +4,7 @@
 #include <string>
 
 #include "device/training_state.hpp"
-#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/learning/cd_settings.hpp"
 #include "mcdbn/machines/crbm.hpp"
 
 namespace mcdbn {

@@ -13,7 +13,8 @@
 namespace mcdbn {
 namespace {
 
-/// Of the loss, whose parts start near 1: errors that explode through time are cut here.
+/// Longest gradient of the loss, whose parts start near 1: a longer one is cut to it, as errors may
+/// explode through time.
 constexpr float kLongestGradient = 1.0F;
 
 /// Adam's rate: rises over the first steps, then falls along a cosine.

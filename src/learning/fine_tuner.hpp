@@ -22,7 +22,7 @@ class DeviceWindows {
   /// @param rows WindowSampler::rows; the first modality's frames are those look_ahead later
   /// @throws ShapeError if the clips are not seen as the first were
   void load(const SynchronizedClips& clips, std::span<const std::int32_t> rows);
-  /// Of each modality.
+  /// Values of each modality.
   std::vector<Rows> rows() const;
   /// What was seen, like the modality's values; empty where everything was.
   const Matrix& seen(std::size_t modality) const { return seen_[modality]; }
@@ -58,7 +58,7 @@ class FineTuner {
   const Matrix& averages() const { return network_.averages(); }
   /// The network that averages() of now or before make.
   Mcdbn result(const Matrix& averages) { return network_.with_parameters(averages); }
-  /// What goes from one mini-batch to the next.
+  /// State that is kept from one mini-batch to the next.
   void visit_state(TrainingState& state);
 
  private:

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "learning/checkpoints.hpp"
 #include "learning/divergence_guard.hpp"
 #include "learning/epoch_clock.hpp"
 #include "learning/fine_tuner.hpp"
+#include "learning/resumable_training.hpp"
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
@@ -32,7 +32,7 @@ class HeldOutWindows {
       batches_.emplace_back(device, clips, windows).load(clips, sampler.rows(i));
   }
 
-  /// Of the parameters' moving average.
+  /// Loss of the parameters' moving average.
   double loss(FineTuner& tuner) {
     UnrolledPass& forward = tuner.forward();
     tuner.exchange_averages();
@@ -154,8 +154,14 @@ SynchronizedClips checked_sequences(const SequenceSource& source, const Mcdbn& n
 
 FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& source,
                     const SequenceSource* held_out, const LearningSettings& settings,
-                    const SequenceLossMaker& make_loss, const EpochObserver& observer,
-                    Checkpoints* checkpoints) {
+                    const SequenceLossMaker& make_loss, const EpochObserver& observer) {
+  return fine_tune(device, nullptr, start, source, held_out, settings, make_loss, observer);
+}
+
+FineTuned fine_tune(Device& device, Checkpoints* checkpoints, const Mcdbn& start,
+                    const SequenceSource& source, const SequenceSource* held_out,
+                    const LearningSettings& settings, const SequenceLossMaker& make_loss,
+                    const EpochObserver& observer) {
   if (settings.look_ahead != start.look_ahead)
     throw ConfigError(fmt::format("`look-ahead` is {}, but {} in the network to start from",
                                   settings.look_ahead, start.look_ahead));

@@ -36,24 +36,14 @@ void ContrastiveDivergence::fused_chain(const Rows& rows, const CdRule& rule, co
       device.programs().kernel("contrastive_divergence.cl", "gibbs_chain", defines);
   const auto group = static_cast<std::size_t>(tile_->group);
   const std::size_t blocks = ceil_divide(rows.count, static_cast<std::size_t>(tile_->rows));
-  const auto run = [&](const auto&... more) {
-    launch(device, kernel, {{blocks * group, 1}, {group, 1}}, rows.matrix->buffer(),
-           rows.index->buffer(), to_int(rows.index_first), rows.shift, to_int(rows.count),
-           crbm_.parameters().all().buffer(), first_floats(crbm_.parameters()),
-           crbm_.W_transposed.buffer(), visible_data_.buffer(), visible_.buffer(),
-           visible_bias_.buffer(), hidden_data_.buffer(), hidden_.buffer(), hidden_bias_.buffer(),
-           row_losses_.buffer(), to_int(rule.gibbs_steps), random_argument(key), more...);
-  };
-  const auto run_seen = [&](const auto&... more) {
-    if (seen_)
-      run(more..., seen_->buffer());
-    else
-      run(more...);
-  };
-  if (particles)
-    run_seen(particles->buffer(), fresh ? 1 : 0);
-  else
-    run_seen();
+  launch(device, kernel, {{blocks * group, 1}, {group, 1}}, rows.matrix->buffer(),
+         rows.index->buffer(), to_int(rows.index_first), rows.shift, to_int(rows.count),
+         crbm_.parameters().all().buffer(), first_floats(crbm_.parameters()),
+         crbm_.W_transposed.buffer(), visible_data_.buffer(), visible_.buffer(),
+         visible_bias_.buffer(), hidden_data_.buffer(), hidden_.buffer(), hidden_bias_.buffer(),
+         row_losses_.buffer(), to_int(rule.gibbs_steps), random_argument(key),
+         (particles ? *particles : hidden_).buffer(), fresh ? 1 : 0,
+         (seen_ ? *seen_ : visible_data_).buffer());
 }
 
 void ContrastiveDivergence::fused_update(const Rows& rows, const CdRule& rule,

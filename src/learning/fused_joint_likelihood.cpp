@@ -22,17 +22,11 @@ void JointLikelihood::fused_chain(const RandomKey& key) {
   cl::Kernel& kernel = device.programs().kernel("joint_likelihood.cl", "joint_chain", defines);
   const auto group = static_cast<std::size_t>(tile_->group);
   const std::size_t blocks = block_ / static_cast<std::size_t>(tile_->rows);
-  const auto run = [&](const auto&... more) {
-    launch(device, kernel, {{blocks * group, 1}, {group, 1}}, mrbm_.layout().buffer(),
-           to_int(batch_), to_int(block_), mrbm_.parameters().all().buffer(),
-           mrbm_.transposed().all().buffer(), codes_.buffer(), stacked_visible_.buffer(),
-           hidden_data_.buffer(), hidden_.buffer(), row_losses_.buffer(),
-           to_int(settings_.gibbs_steps), random_argument(key), more...);
-  };
-  if (settings_.persistent)
-    run(particles_.buffer(), started_ ? 0 : 1);
-  else
-    run();
+  launch(device, kernel, {{blocks * group, 1}, {group, 1}}, mrbm_.layout().buffer(), to_int(batch_),
+         to_int(block_), mrbm_.parameters().all().buffer(), mrbm_.transposed().all().buffer(),
+         codes_.buffer(), stacked_visible_.buffer(), hidden_data_.buffer(), hidden_.buffer(),
+         row_losses_.buffer(), to_int(settings_.gibbs_steps), random_argument(key),
+         (settings_.persistent ? particles_ : hidden_).buffer(), started_ ? 0 : 1);
 }
 
 void JointLikelihood::fused_update(const UpdateRule& rule, LossAccumulator& losses) {

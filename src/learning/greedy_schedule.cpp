@@ -7,7 +7,6 @@
 #include "base/random_phases.hpp"
 #include "base/random_streams.hpp"
 #include "device/pointwise.hpp"
-#include "learning/checkpoints.hpp"
 #include "learning/clip_weights.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/divergence_guard.hpp"
@@ -17,6 +16,7 @@
 #include "learning/mrbm_rule.hpp"
 #include "learning/overall_progress.hpp"
 #include "learning/persistent_contrastive_divergence.hpp"
+#include "learning/resumable_training.hpp"
 #include "learning/unit_values.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -303,7 +303,7 @@ MrbmParameters initial_mrbm_weights(const MrbmShape& shape, std::span<const Sequ
   MrbmParameters initial = MrbmParameters::random(
       shape, learning.mrbm.initial_deviation,
       key_of(learning, random_streams::kMrbm, 0, random_phases::kFirstWeights));
-  // So that the mean field starts near the codes' own means rather than at one half.
+  // The mean field then starts near the codes' own means rather than at one half.
   for (std::size_t m = 0; m < codes.size(); ++m)
     initial.a[m] = shape.modalities[m].kind == VisibleKind::binary ? logit(mean_of(codes[m]))
                                                                    : mean_of(codes[m]);
@@ -320,30 +320,35 @@ std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings&
 
 TrainedCdbn train_cdbn(Device& device, Sequences visible, const std::vector<CrbmShape>& layers,
                        const LearningSettings& learning, std::uint16_t first_stream,
-                       const EpochObserver& observer, const std::string& name, const Cdbn* start,
-                       Checkpoints* checkpoints) {
+                       const EpochObserver& observer, const std::string& name, const Cdbn* start) {
   if (!layers.empty()) check_unit_values(visible, layers.front().kind, fmt::format("{}.0", name));
   return learn_cdbn(device, std::move(visible), layers, learning, first_stream, observer, name,
-                    start, checkpoints);
+                    start, nullptr);
 }
 
 Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
                 const CdSettings& settings, const LearningSettings& learning, std::uint16_t stream,
-                const EpochObserver& observer, const std::string& stage, Checkpoints* checkpoints) {
+                const EpochObserver& observer, const std::string& stage) {
   check_unit_values(visible, initial.shape.kind, stage);
   return learn_crbm(device, visible, std::move(initial), settings, learning, stream, observer,
-                    stage, checkpoints);
+                    stage, nullptr);
 }
 
 Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
                 const LearningSettings& learning, std::uint16_t stream,
-                const EpochObserver& observer, Checkpoints* checkpoints) {
+                const EpochObserver& observer) {
   check_codes(codes, initial.shape.modalities);
-  return learn_mrbm(device, codes, initial, learning, stream, observer, checkpoints);
+  return learn_mrbm(device, codes, initial, learning, stream, observer, nullptr);
 }
 
 Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningSettings& learning,
-                   const EpochObserver& observer, const Mcdbn* start, Checkpoints* checkpoints) {
+                   const EpochObserver& observer, const Mcdbn* start) {
+  return train_greedy(device, nullptr, source, learning, observer, start);
+}
+
+Mcdbn train_greedy(Device& device, Checkpoints* checkpoints, const SequenceSource& source,
+                   const LearningSettings& learning, const EpochObserver& observer,
+                   const Mcdbn* start) {
   learning.validate();
   const SynchronizedClips clips = source.sequences();
   clips.check();

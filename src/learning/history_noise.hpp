@@ -5,10 +5,10 @@
 
 namespace mcdbn {
 
-/// Another rule on histories with noise: to each frame before the current one normal draws are
-/// added, new ones in every mini-batch (Taylor and Hinton 2009). A layer that was trained so pulls
-/// histories that are a little off, as its own output is, back to where they belong; else it
-/// follows them, and what it generates dies out or grows. The current frame stays as it is.
+/// Wraps a rule and adds noise to the history: normal draws to each frame before the current one,
+/// new ones in every mini-batch (Taylor and Hinton 2009). A layer that was trained so corrects
+/// histories with small errors, as its own output has; else it follows them, and what it generates
+/// dies out or grows. The current frame stays as it is.
 class HistoryNoise : public LearningRule {
  public:
   /// @param rule of a CRBM of that shape, order at least 1; must live on
@@ -27,7 +27,7 @@ class HistoryNoise : public LearningRule {
   std::size_t frames_;  ///< of a window: the history and the current one
   float deviation_;
   Matrix windows_;       ///< [largest_batch·frames x visible], one window after another
-  Matrix seen_;          ///< the same of what was seen; what was not gets no noise
+  Matrix seen_;          ///< what was seen, in windows_' shape; what was not gets no noise
   IndexBuffer current_;  ///< the last row of each
 };
 

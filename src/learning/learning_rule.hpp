@@ -31,7 +31,7 @@ class LearningRule {
   /// @throws ShapeError
   virtual void learn(std::span<const Rows> visible, const LearningStep& step,
                      LossAccumulator& losses) = 0;
-  /// What it keeps from one mini-batch to the next, the machine's parameters not among it.
+  /// State that is kept from one mini-batch to the next, without the machine's parameters.
   virtual void visit_state(TrainingState& state) = 0;
 };
 

@@ -36,6 +36,11 @@ void check_layers(const std::vector<LayerSize>& layers) {
 
 }  // namespace
 
+std::vector<LayerSize> equal_layers(const MachineSettings& settings, bool history) {
+  const LayerSize layer{settings.hidden, history ? settings.order : 0};
+  return std::vector<LayerSize>(settings.layers, layer);
+}
+
 Cdbn fit_stack(Device& device, const Sequences& data, VisibleKind kind,
                const std::vector<LayerSize>& layers, const MachineSettings& settings,
                const EpochObserver& observer) {

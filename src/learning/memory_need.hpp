@@ -3,12 +3,12 @@
 #include <span>
 
 #include "mcdbn/device/device.hpp"
+#include "mcdbn/learning/learning_settings.hpp"
 #include "mcdbn/learning/sequence_source.hpp"
-#include "mcdbn/learning/settings.hpp"
 
 namespace mcdbn {
 
-/// What training takes of a device's memory at least, in bytes, by what it is for.
+/// Least device memory that training takes, in bytes, by purpose.
 struct MemoryNeed {
   double parameters = 0;  ///< and what optimizers keep of each
   double windows = 0;     ///< what a mini-batch leaves behind for its gradient

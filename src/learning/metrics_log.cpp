@@ -47,7 +47,8 @@ void MetricsLog::finish() {
   if (!write_waiting()) throw InputError(fmt::format("{}: cannot be written", path_.string()));
 }
 
-/// What half a line may have been left of an earlier try, or of a program that was killed, goes.
+/// Writes the waiting lines over half a line that an earlier try, or a program that was killed, may
+/// have left. @return whether it was possible
 bool MetricsLog::write_waiting() {
   std::ofstream stream(path_, std::ios::binary | std::ios::app);
   if (!stream) return false;

@@ -2,7 +2,7 @@
 
 #include "device/optimizer.hpp"
 #include "learning/learning_rule.hpp"
-#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/learning/mrbm_settings.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 
 namespace mcdbn {
@@ -11,10 +11,10 @@ namespace mcdbn {
 /// that start from it, and the gradient of the free energies' difference. The rules are
 /// JointLikelihood and PerceptronLoss.
 ///
-/// As in contrastive divergence, hidden units are sampled, visible ones are means unless the
-/// settings want them sampled, and the last hidden step keeps probabilities. Phases of the draws:
-/// the step for hidden units, kVisibleUnits + step · modalities + modality for visible ones. What
-/// is here takes one product after the other.
+/// Hidden units are sampled, visible ones are means unless the settings say otherwise, and the last
+/// hidden step keeps probabilities, as in contrastive divergence. Phases of the draws: the step for
+/// hidden units, kVisibleUnits + step · modalities + modality for visible ones. Products are
+/// launched one after the other.
 class MrbmChains : public LearningRule {
  public:
   std::size_t loss_count() const override { return mrbm_.modality_count(); }

@@ -4,7 +4,7 @@
 
 #include "device/optimizer.hpp"
 #include "learning/learning_rule.hpp"
-#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/learning/mrbm_settings.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 
 namespace mcdbn {

@@ -3,7 +3,7 @@
 #include "device/optimizer.hpp"
 #include "device/row_tile.hpp"
 #include "learning/learning_rule.hpp"
-#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/learning/mrbm_settings.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 
 namespace mcdbn {
@@ -62,7 +62,8 @@ class MultiPrediction : public LearningRule {
   std::size_t piece_steps() const;
   std::size_t pieces() const;
 
-  /// Of a part: the steps of its mean field, read again for the gradients, stay in a CPU's cache.
+  /// Rows of a part: few enough that the steps of its mean field, which the gradients read again,
+  /// stay in a CPU's cache.
   static constexpr std::size_t kMostPartRows = 100;
   /// Rows of the stacks that are added up at once: two pieces should fit a core's cache.
   static constexpr std::size_t kPieceRows = 1024;

@@ -16,7 +16,7 @@ PerceptronLoss::PerceptronLoss(Mrbm& mrbm, std::size_t batch, const MrbmSettings
   make_matrices();
 }
 
-/// As step 0 of a chain.
+/// Draws binary units of the data, as step 0 of a chain.
 void PerceptronLoss::draw_data(const RandomKey& key) {
   for (std::size_t m = 0; m < data_.size(); ++m) {
     if (mrbm_.kind(m) != VisibleKind::binary) continue;

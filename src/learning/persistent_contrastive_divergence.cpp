@@ -1,11 +1,9 @@
 #include "learning/persistent_contrastive_divergence.hpp"
 
-#include "device/pointwise.hpp"
-
 namespace mcdbn {
 namespace {
 
-/// Of fast weights, from mini-batch to mini-batch (Tieleman and Hinton 2009).
+/// Share of the fast weights that is kept from mini-batch to mini-batch (Tieleman and Hinton 2009).
 constexpr float kFastKept = 19.0F / 20.0F;
 
 }  // namespace

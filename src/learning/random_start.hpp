@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/learning/learning_settings.hpp"
 #include "mcdbn/machines/mcdbn.hpp"
 
 namespace mcdbn {

@@ -7,7 +7,7 @@
 /// Shares of a learning rate that falls over a training.
 namespace mcdbn {
 
-/// What is left of most rates at the end.
+/// Share of most rates that is left at the end.
 inline constexpr double kFinalRate = 0.02;
 
 /// From 1 to kFinalRate in a straight line, in the precision of its argument. @param progress 0 … 1

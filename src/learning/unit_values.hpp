@@ -16,7 +16,8 @@ namespace mcdbn {
 void check_unit_values(const MatrixF& values, VisibleKind kind, const std::string& what,
                        bool may_be_unknown = false);
 
-/// The same of the rows that have values, counted over all sequences.
+/// As check_unit_values() of a matrix, for the rows that have values; rows are counted over all
+/// sequences.
 void check_unit_values(const Sequences& data, VisibleKind kind, const std::string& what);
 
 /// Checks that an MRBM can learn from these: sequences for each modality, of its columns and of the

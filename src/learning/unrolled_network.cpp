@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "device/pointwise.hpp"
-#include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {
 namespace {
@@ -13,7 +12,7 @@ namespace {
 constexpr float kCenter = 0.5F;
 constexpr const char* kMrbmPrefix = "mrbm.";
 
-/// What moving the units' zero by `sign` halves does to the biases.
+/// The layer with its units' zero moved by `sign` halves, which changes the biases.
 CrbmParameters shifted(CrbmParameters layer, InputKind input_kind, float sign) {
   const float hidden = sign * kCenter;
   const float visible = input_kind == InputKind::code ? sign * kCenter : 0.0F;

@@ -11,9 +11,9 @@ namespace mcdbn {
 /// What a layer's visible units are: data, or the code of the layer beneath.
 enum class InputKind { data, code };
 
-/// The same layer over units about zero: binary units are probabilities less one half, so that Adam
-/// and weight decay treat the effect of weights apart from that of biases (Montavon and Müller
-/// 2012). Nothing that the layer computes changes but the half.
+/// The layer with its binary units shifted to be about zero, probabilities less one half, so that
+/// Adam and weight decay treat the effect of weights apart from that of biases (Montavon and Müller
+/// 2012). What the layer computes changes only by that half.
 /// @param input_kind a code is moved, data stay as they are
 CrbmParameters centered(CrbmParameters layer, InputKind input_kind);
 CrbmParameters uncentered(CrbmParameters layer, InputKind input_kind);

@@ -46,7 +46,7 @@ IndexBuffer coded_index(Device& device, const SequenceWindows& windows) {
   return {device, rows};
 }
 
-/// What turns a layer's visible units' input into them, in the form of unrolled_network.hpp.
+/// Activation of a layer's visible units, in the form of unrolled_network.hpp.
 Activation visible_activation(VisibleKind kind, bool is_lowest) {
   if (kind == VisibleKind::gaussian) return Activation::none;
   return is_lowest ? Activation::sigmoid : Activation::centered_sigmoid;
@@ -60,7 +60,7 @@ GemmOptions through_units(const Rows* units, float kept_share = 1.0F) {
   return options;
 }
 
-/// The same backwards. @param units those of the layer that the error is of
+/// Back-propagation through a layer's visible units. @param units of the layer whose error it is
 GemmOptions through_visible(VisibleKind kind, bool is_lowest, const Rows* units, float kept_share) {
   if (!is_lowest) return through_units(units, kept_share);
   GemmOptions options;

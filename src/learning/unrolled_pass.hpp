@@ -36,7 +36,7 @@ class UnrolledPass {
   Rows at(const Matrix& matrix, std::size_t frame) const {
     return Rows::strided(matrix, frame, windows_.count, windows_.frames);
   }
-  /// Those of `matrix`, of all frames of the windows, that have a code.
+  /// Rows of the windows' frames that have a code. @param matrix of all their frames
   Rows coded(const Matrix& matrix) const {
     return Rows::indexed(matrix, coded_index_, 0, code_rows_);
   }
@@ -50,7 +50,7 @@ class UnrolledPass {
   }
 
   void drop_out(const Rows& units, std::size_t alike);
-  /// What one present modality needs for its way up.
+  /// The up-pass of one present modality.
   struct UpPass {
     std::size_t modality;
     Layers& layers;

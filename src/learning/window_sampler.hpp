@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "mcdbn/base/random.hpp"
+#include "mcdbn/learning/fine_tuning_settings.hpp"
+#include "mcdbn/learning/learning_settings.hpp"
 #include "mcdbn/learning/sequence_loss.hpp"
 #include "mcdbn/learning/sequence_source.hpp"
-#include "mcdbn/learning/settings.hpp"
 #include "mcdbn/machines/sequences.hpp"
 
 namespace mcdbn {

@@ -8,7 +8,7 @@
 
 namespace mcdbn {
 
-/// Frames that are answered in step: enough to keep a device busy.
+/// Frames that are answered together: enough to keep a device busy.
 inline constexpr Eigen::Index kFramesInStep = 4800;
 
 /// Frames of one sequence that a network answers as a sequence of their own.
@@ -18,7 +18,7 @@ struct SequencePart {
   Eigen::Index row = 0;  ///< of the first frame, where all parts stand below each other
 };
 
-/// Parts that are answered in step, in their sequences' order.
+/// Parts that are answered together, frame by frame, in their sequences' order.
 using AnswerBatch = std::vector<SequencePart>;
 
 /// All frames of every n-th of `sequences`. A batch, whose memory is that of its longest part as
@@ -31,7 +31,7 @@ std::vector<AnswerBatch> answer_batches(std::span<const MatrixF> sequences, std:
 /// Frames of all of them.
 Eigen::Index total_frames(std::span<const MatrixF> sequences);
 
-/// Those parts' rows.
+/// Rows of the batch's parts, one matrix a part.
 std::vector<MatrixF> rows_of(const AnswerBatch& batch, std::span<const MatrixF> sequences);
 
 }  // namespace mcdbn

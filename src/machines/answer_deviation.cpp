@@ -19,7 +19,8 @@ constexpr Eigen::Index kBlock = 4096;
 }  // namespace
 
 MatrixF AnswerDeviation::of(const MatrixF& code) const {
-  if (code.cols() != C.rows()) throw ShapeError("answer deviation: the code has other units");
+  if (code.cols() != C.rows())
+    throw ShapeError("answer deviation: the code has another number of units");
   return ((code * C).rowwise() + c.row(0)).array().exp();
 }
 

@@ -6,9 +6,10 @@
 
 namespace mcdbn {
 
-/// The down-pass of a CDBN over many sequences in step, on its own output (Algorithm 5). A layer is
-/// a product over all frames and one launch that runs from frame to frame (cdbn_decoder.cl); where
-/// its state does not fit the device's local memory, some launches a frame instead.
+/// The down-pass of a CDBN on its own output (Algorithm 5), over many sequences together, frame by
+/// frame. A layer is a product over all frames and one launch that runs from frame to frame
+/// (cdbn_decoder.cl); where its state does not fit the device's local memory, some launches a frame
+/// instead.
 class CdbnDecoder {
  public:
   /// @param code [sequences·frames x code_dimension], one sequence after another

@@ -27,7 +27,7 @@ Parameters uploaded(Device& device, const CrbmParameters& start) {
   return parameters;
 }
 
-/// Of each row the frames before it, as one long row.
+/// The frames before each row, as one long row.
 Rows frames_before(const Rows& rows, std::size_t order) {
   if (!rows.index && rows.first < order)
     throw ShapeError("CRBM: a row has fewer frames before it than the order");

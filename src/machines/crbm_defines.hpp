@@ -6,7 +6,7 @@
 
 namespace mcdbn {
 
-/// What crbm_shape.clh is built with.
+/// Definitions for crbm_shape.clh.
 inline Defines crbm_defines(const CrbmShape& shape, const RowTile& tile) {
   return {{"VEC", tile.vector_width},
           {"VISIBLE", to_int(shape.visible)},
@@ -15,7 +15,7 @@ inline Defines crbm_defines(const CrbmShape& shape, const RowTile& tile) {
           {"ORDER_B", to_int(shape.order_B())}};
 }
 
-/// The same for a kernel whose visible units may be Gaussian, tiled by rows.
+/// crbm_defines() for a kernel whose visible units may be Gaussian, tiled by rows.
 inline Defines crbm_row_defines(const CrbmShape& shape, const RowTile& tile) {
   Defines defines = crbm_defines(shape, tile);
   defines["GAUSSIAN"] = shape.kind == VisibleKind::gaussian ? 1 : 0;

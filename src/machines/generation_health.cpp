@@ -42,7 +42,7 @@ std::size_t shortest_cycle(const MatrixF& sequence) {
   for (std::size_t lag = 2; lag <= longest; ++lag) {
     const double after = change(sequence, static_cast<Eigen::Index>(lag));
     largest = std::max(largest, at);
-    if (lag > 2 && at < before && at <= after && at < kComesBack * largest) return lag - 1;
+    if (lag > 2 && at < before && at <= after && at < kCycleDepth * largest) return lag - 1;
     before = at;
     at = after;
   }
@@ -59,7 +59,7 @@ std::size_t GenerationHealth::shortest_of_cycles() const {
 std::size_t GenerationHealth::slow_sequences() const {
   std::size_t slow = 0;
   for (std::size_t i = 0; i < seed_speed.size(); ++i)
-    if (!(late_speed[i] >= kSlow * seed_speed[i])) ++slow;
+    if (!(late_speed[i] >= kSlowShare * seed_speed[i])) ++slow;
   return slow;
 }
 

@@ -16,7 +16,7 @@ using nlohmann::json;
 constexpr int kFormatVersion = 1;
 constexpr const char* kKey = "mcdbn_machine";
 
-/// Of an MCDBN's AnswerDeviation, which is of the last modality.
+/// Prefix of the names of an MCDBN's AnswerDeviation, which is of the last modality.
 std::string deviation_prefix(const MrbmShape& shape) {
   return shape.modalities.back().name + ".deviation.";
 }
@@ -93,7 +93,7 @@ json put_scales(Safetensors& file, const std::vector<ColumnScale>& scales) {
   return columns;
 }
 
-/// What each modality's data are, or a stack's.
+/// Number of visible units of each modality, or of a stack.
 struct VisibleUnits {
   std::vector<std::size_t> operator()(const Crbm& crbm) const { return {crbm.shape().visible}; }
   std::vector<std::size_t> operator()(const Cdbn& cdbn) const {

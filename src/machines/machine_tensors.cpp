@@ -4,6 +4,7 @@
 
 #include "base/parsed_json.hpp"
 #include "base/shown.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/size_limits.hpp"
 
 namespace mcdbn {

@@ -7,7 +7,6 @@
 
 #include "base/json_place.hpp"
 #include "base/safetensors.hpp"
-#include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/mcdbn.hpp"
 
 // Machines among the tensors of a file: `PREFIXW`, `PREFIXA` … for each. Each put_… returns in
@@ -22,7 +21,7 @@ struct TensorFile {
 
 /// Larger weights would overflow in inference.
 inline constexpr float kLargestWeight = 1e6F;
-/// Of what is in the units of the data, which may be large.
+/// Bound of values in the units of the data, which may be large.
 inline constexpr float kAnyFinite = std::numeric_limits<float>::max();
 
 /// [rows x columns], all finite and of at most `largest`. @throws InputError

@@ -21,7 +21,7 @@ struct MrbmChainOptions {
   std::uint32_t steps_apart = 1;
 };
 
-/// What mrbm_shape.clh needs but for STEPS.
+/// Definitions for mrbm_shape.clh, without STEPS.
 Defines shape_defines(const Mrbm& mrbm);
 
 /// The MRBM's chain with some modalities clamped to what is present (Algorithm 5's inference):

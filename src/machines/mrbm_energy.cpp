@@ -11,7 +11,7 @@
 namespace mcdbn {
 namespace {
 
-/// Of modality m its visible term, and with `hidden` units that of the shared ones.
+/// Writes or adds the visible term of modality m, and with `hidden` units that of the shared ones.
 /// @param input of the shared units [rows x hidden]
 void launch_energy(const Mrbm& mrbm, std::size_t m, const Rows& units, const Matrix& input,
                    std::size_t hidden, const Matrix& out, bool add) {
@@ -22,7 +22,7 @@ void launch_energy(const Mrbm& mrbm, std::size_t m, const Rows& units, const Mat
          out.buffer(), 0, to_int(out.stride()), add ? 1 : 0);
 }
 
-/// Of the shared units, from all modalities. @return [rows x hidden]
+/// Input of the shared units from all modalities. @return [rows x hidden]
 Matrix shared_input(const Mrbm& mrbm, const std::vector<Rows>& units) {
   require(units.size() == mrbm.modality_count(), "free energy: needs every modality");
   for (std::size_t m = 0; m < units.size(); ++m)

@@ -14,7 +14,7 @@ inline Matrix in_own_units(const Crbm& crbm, const Matrix& frames) {
   return scaled;
 }
 
-/// What the machine's own units are, as frames of its data; in place.
+/// Converts the machine's own units to those of its data, in place.
 inline void to_data_units(const Crbm& crbm, const Matrix& units) {
   if (crbm.has_deviation) scale_columns(units, crbm.visible_deviation);
 }

@@ -189,7 +189,7 @@ Sequences code_of(const Mcdbn& network, std::size_t modality, const std::vector<
   return cdbn.up_pass(Sequences::from_host(network.mrbm.device(), sequences));
 }
 
-/// What the wanted modality's frames were decoded from and to, [decoded·frames.total x …].
+/// Codes of the wanted modality and the frames decoded from them, [decoded·frames.total x …].
 struct Decoded {
   Frames frames;
   Matrix code, visible;

@@ -109,7 +109,7 @@ void RunningRegeneration::settle(std::size_t frames) {
   // What is left begins with the history of the next open frame.
   const Eigen::Index passed = run_in_ + static_cast<Eigen::Index>(frames);
   if (history_ + passed > last_shown_.rows())
-    throw ShapeError("a running regeneration settles frames that it has not answered");
+    throw ShapeError("running regeneration: more frames settled than answered");
   last_shown_ = MatrixF(last_shown_.bottomRows(last_shown_.rows() - passed));
   shown_ = last_shown_.topRows(history_);
   visible_.clear();

@@ -5,7 +5,7 @@
 
 namespace mcdbn {
 
-/// What turns the inputs of units of that kind into their mean.
+/// Activation that turns the inputs of units of that kind into their means.
 inline Activation activation_of(VisibleKind kind) {
   return kind == VisibleKind::binary ? Activation::sigmoid : Activation::none;
 }

@@ -10,7 +10,7 @@ namespace {
 using enum JointRole;
 using enum Channel;
 
-/// Of the middle and the left; the right is its mirror image.
+/// A bone of the middle or of the left; the right is the left's mirror image.
 struct Bone {
   JointRole role;
   JointRole parent;
@@ -23,8 +23,8 @@ constexpr double kHeight = 170.0;
 using AxisOrder = std::array<Channel, 3>;
 constexpr AxisOrder kFormerOrder{z_rotation, x_rotation, y_rotation};
 
-/// Of the middle and the left. The joint turns about the middle axis the least: at 90 degrees there
-/// the outer two are one axis.
+/// Axis order of a role of the middle or of the left. The joint turns about the second axis the
+/// least: at 90 degrees there the outer two are one axis.
 constexpr AxisOrder axis_order(JointRole role) {
   switch (role) {
     case left_shoulder:

@@ -1,7 +1,5 @@
 #include "motion/humanoid_poses.hpp"
 
-#include <algorithm>
-
 #include "mcdbn/base/errors.hpp"
 
 namespace mcdbn {

@@ -7,12 +7,12 @@
 namespace mcdbn {
 namespace {
 
-/// @return [frames x 3·joints], all but the root from the root
+/// @return [frames x 3·joints], the joints after the root from it
 MatrixD about_root(const Motion& motion, int root) {
   MatrixD positions = joint_positions(motion);
   const MatrixD path = positions.middleCols<3>(3 * root);
-  for (Eigen::Index column = 0; column < positions.cols(); column += 3)
-    if (column != 3 * root) positions.middleCols<3>(column) -= path;
+  for (Eigen::Index column = 3 * (root + 1); column < positions.cols(); column += 3)
+    positions.middleCols<3>(column) -= path;
   return positions;
 }
 

@@ -2,15 +2,14 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "motion/joint_sides.hpp"
 
 namespace mcdbn {
 
-/// What a joint's name calls it, its side apart. Some words mean one thing in one file and another
-/// in the next: a `leg` is a shank beside an `upleg`, and a thigh beside a `shin`.
+/// The word for a joint in its name, without the side. Some words mean one thing in one file and
+/// another in the next: a `leg` is a shank beside an `upleg`, and a thigh beside a `shin`.
 enum class JointWord {
   hips,
   neck,

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <optional>
-#include <vector>
 
 #include "mcdbn/motion/skeleton.hpp"
 

@@ -87,7 +87,7 @@ std::size_t joint_reflection(const BoneFit& fit, const Eigen::Vector3d& likeness
   return keeps ? of_parent : best;
 }
 
-/// Of each joint. Where one reflection fits all bones it is that one, whatever the motion. Empty if
+/// Reflection of each joint. Where one fits all bones it is that one, whatever the motion. Empty if
 /// the sides are built too differently.
 std::vector<Axes> reflections(const Motion& motion, const std::vector<int>& opposite) {
   const Skeleton& skeleton = motion.skeleton;

@@ -7,8 +7,8 @@
 
 namespace mcdbn {
 
-/// The same motion with left and right exchanged, on the same skeleton: what a mirror beside the
-/// world's x axis shows. Sides follow from joint names (opposite_joints). A joint's own axes are
+/// The motion with left and right exchanged, on the same skeleton: what a mirror beside the world's
+/// x axis shows. Sides follow from joint names (opposite_joints). A joint's own axes are
 /// reflected along one of them or along all three, whichever brings its bones onto those of the
 /// other side. Where several do, one that does so for every joint is taken, else the one that makes
 /// the joint's rotations in the mirror most like those of the motion. So rest poses with every bone

@@ -28,7 +28,7 @@ struct OtherBody {
   }
 };
 
-/// The same motion by another person. The same seed makes the same person.
+/// The motion as another person does it. A seed always makes the same person.
 Motion with_other_body(Motion motion, const OtherBody& deviations, std::uint64_t seed);
 
 }  // namespace mcdbn

@@ -11,6 +11,7 @@
 #include "base/interruption.hpp"
 #include "base/numbers.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion/frame_rate.hpp"
 
 namespace mcdbn {
 namespace {

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <string>
+#include <cmath>
 
-#include "mcdbn/motion/frame_rate.hpp"
 #include "mcdbn/motion/skeleton.hpp"
 
 namespace mcdbn {
@@ -24,6 +23,9 @@ inline constexpr double kMostFrames = 1e7;
 /// Relative difference up to which two rates are the same one: of files, which print their frame
 /// time rounded, and of rates that are exact.
 inline constexpr double kPrintedRate = 0.005, kSameRate = 1e-6;
+inline bool is_same_rate(double one_hz, double other_hz) {
+  return std::abs(one_hz / other_hz - 1) < kSameRate;
+}
 
 /// Resamples a clip to `target_hz`: low-pass below the new Nyquist rate first when going down
 /// (zero phase, so nothing is delayed; flat to 0.3 of the new rate, −6 dB at 0.4, nothing from

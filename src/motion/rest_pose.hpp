@@ -19,7 +19,7 @@ inline WorldPose rest_pose(const Skeleton& skeleton, const std::vector<Eigen::Ve
   return pose;
 }
 
-/// The same with each joint at its offset.
+/// No joint turned, each at its offset, but the root at the origin.
 inline WorldPose rest_pose(const Skeleton& skeleton) {
   std::vector<Eigen::Vector3d> offsets;
   for (const Joint& joint : skeleton.joints) offsets.push_back(joint.offset);

@@ -1,9 +1,9 @@
+#include "mcdbn/motion/retarget_error.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numeric>
 
 #include "base/numbers.hpp"
-#include "mcdbn/motion/humanoid_rig.hpp"
 #include "motion/body_size.hpp"
 #include "motion/rig_axes.hpp"
 

@@ -208,7 +208,7 @@ void add_trunk(const Skeleton& skeleton, SkeletonRoles& roles) {
     roles.set(spine, *first);
 }
 
-/// What was given by hand holds; a joint that it names loses the role it had.
+/// Roles given by hand take precedence; a joint that is given one loses the role it had.
 void set_given(const Skeleton& skeleton, const JointMap& given, SkeletonRoles& roles) {
   std::map<int, JointRole> taken;
   for (const auto& [role, name] : given) {

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/counted.hpp"
+#include "base/named_errors.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
@@ -38,7 +39,7 @@ struct PreparedSeed {
   std::optional<HumanoidRig> rig;  ///< where the model is the humanoid's and the seed is not
 };
 
-/// Of each direction that the network has seen clips from, camera_from_world.
+/// camera_from_world of each direction that the network has seen clips from.
 std::vector<Eigen::Matrix3d> directions_of(const Modalities& modalities) {
   std::vector<Eigen::Matrix3d> rotations;
   for (const CameraPlacement& placement :
@@ -62,13 +63,13 @@ PreparedSeed prepared(const Model& model, const Motion& seed) {
   return own;
 }
 
-/// Where the samples go on from.
+/// Where in a clip samples begin.
 struct Moment {
   std::size_t clip;
   Eigen::Index frames;  ///< of the clip, up to it
 };
 
-/// Of one clip, in order; the last is its end.
+/// Moments of one clip, in order; the last is its end.
 std::vector<Moment> moments_of(std::size_t clip, const Motion& seed, double every_s,
                                Eigen::Index least_frames) {
   std::vector<Moment> moments{{clip, seed.frames()}};
@@ -81,7 +82,7 @@ std::vector<Moment> moments_of(std::size_t clip, const Motion& seed, double ever
   return moments;
 }
 
-/// What the samples go on from, one after another.
+/// The moments that the samples continue, one after another.
 struct Starts {
   Eigen::Index frames;  ///< that the network looks at
   std::vector<Moment> moments = {};
@@ -120,7 +121,8 @@ void check_amount(const Crbm& layer, std::size_t sequences, const GenerationOpti
         static_cast<double>(std::numeric_limits<std::int32_t>::max())));
 }
 
-/// What was generated, on the seed's person and from where they are after so many of its frames.
+/// The generated motion on the seed's skeleton, continued from the place of its person.
+/// @param frames_before frames of the seed before the motion
 Motion decoded(const Modalities& modalities, const MatrixF& pose, const PreparedSeed& seed,
                Eigen::Index frames_before, const Eigen::Matrix3d& axes_from_world) {
   const Skeleton& skeleton = seed.motion.skeleton;
@@ -146,14 +148,12 @@ std::vector<Motion> generate_clips(const Model& model, const std::vector<SeedCli
   std::vector<PreparedSeed> prepared_seeds;
   Starts starts{static_cast<Eigen::Index>(seed_frames(cdbn))};
   for (const SeedClip& seed : seeds) {
-    try {
+    with_name(seed.name, [&] {
       const std::size_t clip = prepared_seeds.size();
       const Motion& motion = prepared_seeds.emplace_back(prepared(model, seed.motion)).motion;
       starts.add(modalities, motion, moments_of(clip, motion, seed.every_s, starts.frames),
                  directions, options.samples);
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", seed.name, error.what()));
-    }
+    });
   }
   for (const Crbm& layer : cdbn.layers) check_amount(layer, starts.features.size(), options);
   GenerationOptions of_each = options;

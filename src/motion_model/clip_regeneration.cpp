@@ -8,6 +8,7 @@
 #include "camera/track_resample.hpp"
 #include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/motion_model/training_sources.hpp"
+#include "motion/body_root.hpp"
 #include "motion/interpolated_pose.hpp"
 #include "motion/joint_uncertainty.hpp"
 #include "motion/resample.hpp"
@@ -141,7 +142,7 @@ class PartRegeneration {
       // What ends in frames that it shares was found in the part before.
       if (swap.last_frame >= part.shared) done.swaps.push_back(moved(std::move(swap), range.first));
     }
-    done.filled = std::move(seen.filled);
+    done.filled = at_tracks_rate(std::move(seen.filled));
     for (const PosePrior& prior : all_(seen.features)) {
       const std::size_t answer = done.motions.size();
       ClipPlacement placement = placement_of(answer, reference);
@@ -157,7 +158,8 @@ class PartRegeneration {
       if (clip.draws.empty()) continue;
       std::vector<Motion> draws;
       for (const Motion& draw : clip.draws) draws.push_back(at_tracks_rate(draw, range));
-      done.uncertainty = joint_uncertainty(done.motions.back(), draws);
+      const Motion& likeliest = done.motions.back();
+      done.uncertainty = joint_uncertainty(likeliest, draws, body_root(likeliest.skeleton));
     }
     return done;
   }
@@ -172,6 +174,13 @@ class PartRegeneration {
     return placement;
   }
 
+  /// Counts of frames at the model's rate, as the track's frames.
+  TrackFeatures::FillCount at_tracks_rate(TrackFeatures::FillCount filled) const {
+    for (int* count : {&filled.interpolated, &filled.missing, &filled.outside})
+      *count = static_cast<int>(std::lround(*count * track_.fps / modalities_.fps));
+    return filled;
+  }
+
   Motion at_tracks_rate(const Motion& motion, const FrameRange& range) const {
     return other_.moved(with_frames(resample(motion, track_.fps, 0, kSameRate), range.frames));
   }
@@ -184,7 +193,7 @@ class PartRegeneration {
   const PoseAnswers& all_;
 };
 
-/// Of all parts together; what two of them share counts twice.
+/// Counts of all parts together; frames that two parts share count twice.
 TrackFeatures::FillCount filled_in(const std::vector<RegeneratedPart>& parts) {
   TrackFeatures::FillCount all{0, 0, 0, parts.front().filled.unseen};
   const auto unseen_in = [](const RegeneratedPart& part, const std::string& joint) {

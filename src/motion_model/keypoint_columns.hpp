@@ -6,7 +6,7 @@
 
 namespace mcdbn {
 
-/// What the columns show: as their file specifies, else the joints that their names denote.
+/// Keypoints of the columns: those that the file specifies, else the joints that the names denote.
 std::vector<Keypoint> keypoints_of_columns(const Track2d& track);
 
 /// Features, and in the place of those that are unknown (NaN) the others.

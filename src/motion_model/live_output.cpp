@@ -15,12 +15,11 @@ std::vector<LiveFrame> LiveOutput::add(const Skeleton& skeleton, const RowVector
   if (poses_ == 0) last_pose_ = last_frame_ = pose;
   std::vector<LiveFrame> frames;
   const auto time = static_cast<double>(poses_);
-  for (double at; (at = static_cast<double>(frames_) * poses_per_frame_) <= time + kSlack;
-       ++frames_) {
+  for (double at; (at = static_cast<double>(frames_) * poses_per_frame_) <= time + kSlack;) {
     // Between the pose before and this one.
     const double part = std::min(1.0, at - time + 1);
     last_frame_ = interpolated_pose(skeleton, last_pose_, pose, part, last_frame_);
-    frames.push_back({last_frame_, seen});
+    frames.push_back(next_frame(seen));
   }
   ++poses_;
   last_pose_ = pose;
@@ -30,8 +29,15 @@ std::vector<LiveFrame> LiveOutput::add(const Skeleton& skeleton, const RowVector
 
 std::vector<LiveFrame> LiveOutput::finish(long long frames) {
   std::vector<LiveFrame> rest;
-  for (; frames_ < frames; ++frames_) rest.push_back({last_frame_, last_seen_});
+  while (frames_ < frames) rest.push_back(next_frame(last_seen_));
   return rest;
+}
+
+LiveFrame LiveOutput::next_frame(bool seen) {
+  ++frames_;
+  const bool shows_anybody = shows_anybody_.front();
+  shows_anybody_.pop_front();
+  return {last_frame_, seen && shows_anybody};
 }
 
 }  // namespace mcdbn

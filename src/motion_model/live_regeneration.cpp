@@ -4,19 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 
-#include "camera/confidence_weights.hpp"
 #include "camera/keypoint_map.hpp"
-#include "camera/track_resample.hpp"
 #include "fitting/sliding_fit.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "fitting/usual_body.hpp"
 #include "machines/running_regeneration.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "motion/resample.hpp"
+#include "motion_model/frames_at_rate.hpp"
 #include "motion_model/keypoint_columns.hpp"
+#include "motion_model/live_joints.hpp"
 #include "motion_model/live_output.hpp"
 #include "motion_model/recent_track.hpp"
 
@@ -89,47 +87,40 @@ bool shows_anybody(const TrackFrame& frame) {
   return (frame.confidence.array() > 0).any();
 }
 
-Track2d without_frames(Track2d track) {
-  drop_first(track, track.x_px.rows());
-  return track;
-}
-
 }  // namespace
 
-/// Frames at the model's rate on their way.
-class LiveRegeneration::Frames {
+/// From the track's frames to the motion's: the network's answer to the open frames at the model's
+/// rate, and its fit.
+class LiveRegeneration::Pipeline {
  public:
-  Frames(const Model& model, const Track2d& like, const ClipPlacement& placement,
-         std::size_t look_ahead)
+  Pipeline(const Model& model, const Track2d& like, const ClipPlacement& placement,
+           std::size_t look_ahead)
       : modalities_(model.modalities),
         network_(model.network),
         track_hz_(like.fps),
-        raw_(without_frames(like)),
-        map_(map_of(modalities_, like, placement)),
+        frames_(like, modalities_.fps),
+        joints_(like, modalities_.fps, map_of(modalities_, like, placement)),
         running_(model.network),
-        fit_(modalities_, known_of(placement, map_.has_value()), like, fit_of(placement)),
+        fit_(modalities_, known_of(placement, joints_.from_keypoints()), like, fit_of(placement)),
         output_(modalities_.fps, like.fps) {
-    recent_ = raw_;
-    recent_.fps = modalities_.fps;
-    const bool same_rate = std::abs(track_hz_ / modalities_.fps - 1) < kSameRate;
     // At another rate frames lie between two others: they wait for the second of them on their way
     // in, and on their way out.
-    open_at_most_ = static_cast<Eigen::Index>(look_ahead) + kMoreFrames - (same_rate ? 0 : 2);
+    open_at_most_ =
+        static_cast<Eigen::Index>(look_ahead) + kMoreFrames - (frames_.same_rate() ? 0 : 2);
   }
 
   std::vector<LiveFrame> push(const TrackFrame& frame) {
-    append(raw_, frame);
-    ++pushed_;
-    shows_anybody_.push_back(shows_anybody(frame));
-    return with_seen(take_frames(false));
+    frames_.push(frame);
+    output_.expect(shows_anybody(frame));
+    return take_frames(false);
   }
 
   std::vector<LiveFrame> finish() {
     std::vector<LiveFrame> finished = take_frames(true);
     add(finished, settle(open_));
     while (waiting_ > 0) add(finished, mean_pose());
-    add(finished, output_.finish(pushed_));
-    return with_seen(std::move(finished));
+    add(finished, output_.finish(frames_.pushed()));
+    return finished;
   }
 
   const SlidingFit& fit() const { return fit_; }
@@ -140,49 +131,24 @@ class LiveRegeneration::Frames {
     std::ranges::move(more, std::back_inserter(to));
   }
 
-  /// Of the next frames of the track, which they are for.
-  std::vector<LiveFrame> with_seen(std::vector<LiveFrame> frames) {
-    for (LiveFrame& frame : frames) {
-      frame.seen = frame.seen && shows_anybody_.front();
-      shows_anybody_.pop_front();
-    }
-    return frames;
-  }
-
-  /// Frames of the model's rate that the track's make whole. @param ended no more will come
   std::vector<LiveFrame> take_frames(bool ended) {
-    const double step = track_hz_ / modalities_.fps;
-    const bool same_rate = std::abs(step - 1) < kSameRate;
-    const double reach = same_rate ? 0.5 : std::max(1.0, step);
     std::vector<LiveFrame> finished;
-    for (;; ++taken_) {
-      const double at = static_cast<double>(taken_) * (same_rate ? 1 : step);
-      const auto last = static_cast<double>(pushed_ - 1);
-      // A frame between two others is whole when all are there that it is a mean of.
-      const bool whole =
-          ended || same_rate ? at <= last + kSameRate : at + reach <= last + 1 + kSameRate;
-      if (!whole) break;
-      add(finished, take(frame_at(raw_, at - static_cast<double>(raw_first_), reach)));
-      const auto unneeded = std::clamp<Eigen::Index>(
-          static_cast<Eigen::Index>(std::floor(at - reach)) - raw_first_, 0, raw_.x_px.rows());
-      drop_first(raw_, unneeded);
-      raw_first_ += unneeded;
-    }
+    for (const TrackFrame& frame : frames_.take(ended)) add(finished, take(frame));
     return finished;
   }
 
   /// The next frame at the model's rate.
-  std::vector<LiveFrame> take(const Track2d& track) {
-    const TrackFrame frame{track.x_px.row(0), track.y_px.row(0), track.confidence.row(0)};
+  std::vector<LiveFrame> take(const TrackFrame& frame) {
     if (!placed_ && !shows_anybody(frame)) return await_person();
-    append(recent_, frame);
+    joints_.push(frame);
     ++open_;
     std::vector<LiveFrame> finished;
     if (!placed_) {
       try {
         solve();
       } catch (const InputError&) {  // too little of a person
-        forget();
+        joints_.clear();
+        open_ = 0;
         return await_person();
       }
       placed_ = true;
@@ -199,62 +165,24 @@ class LiveRegeneration::Frames {
     return ++waiting_ > open_at_most_ ? mean_pose() : std::vector<LiveFrame>();
   }
 
-  void forget() {
-    recent_ = without_frames(recent_);
-    joints_ = without_frames(joints_);
-    open_ = 0;
-  }
-
-  /// The frames that the fit is of: those that it holds, and the open ones.
-  Eigen::Index first_of_fit() const { return recent_.frames() - open_ - fit_.held(); }
-
+  /// Fits the frames that the fit holds, and the open ones.
   void solve() {
-    put_sides_right();
-    const Eigen::Index first = first_of_fit(), count = recent_.frames() - first;
-    see_joints(first, count);
-    const Track2d seen = map_ ? map_->evidence(some_frames(joints_, first, count))
-                              : some_frames(joints_, first, count);
-    fit_.solve(answered(), seen, track_noise_px(joints_));
+    const Eigen::Index first = joints_.frames() - open_ - fit_.held();
+    joints_.correct_sides(open_);
+    joints_.find(first, placed_ ? &fit_.motion() : nullptr, fit_.camera());
+    fit_.solve(answered(), joints_.evidence(first), track_noise_px(joints_.joints()));
     if (!placed_) shown_ = without_frames(fit_.shown());
-    while (shown_.x_px.rows() < recent_.frames())
+    while (shown_.x_px.rows() < joints_.frames())
       append(shown_, TrackFrame::unseen(shown_.joint_count()));
     replace_frames(shown_, first, fit_.shown());
-  }
-
-  /// Sides are as they settle; those of open frames may still be found to be exchanged.
-  void put_sides_right() {
-    right_ = recent_;
-    if (!map_) return;
-    exchange_sides(right_, find_side_swaps(recent_));
-    replace_frames(right_, 0, some_frames(recent_, 0, recent_.frames() - open_));
-  }
-
-  void see_joints(Eigen::Index first, Eigen::Index count) {
-    if (!map_) {
-      joints_ = right_;
-      return;
-    }
-    const Track2d weighted = some_frames(weighted_by_confidence(right_), first, count);
-    Track2d joints;
-    if (placed_ && fit_.motion().frames() + 1 == count) {
-      Motion answer = fit_.motion();  // the new frame as the one before
-      answer.channels.conservativeResize(count, Eigen::NoChange);
-      answer.channels.row(count - 1) = answer.channels.row(count - 2);
-      joints = map_->joints_of(weighted, answer, fit_.camera());
-    } else {
-      joints = map_->joints_of(weighted);
-    }
-    if (joints_.joint_names.empty()) joints_ = without_frames(joints);
-    while (joints_.frames() < recent_.frames())
-      append(joints_, {joints.x_px.row(0), joints.y_px.row(0), joints.confidence.row(0)});
-    replace_frames(joints_, first, joints);
   }
 
   /// The network's answer for the open frames. Features that the track does not show are taken from
   /// the solution before.
   PosePrior answered() {
     const Camera camera = fit_.camera();
-    MatrixF features = modalities_.encode_track(smooth_track(joints_), camera).bottomRows(open_);
+    MatrixF features =
+        modalities_.encode_track(smooth_track(joints_.joints()), camera).bottomRows(open_);
     if (placed_) {
       const Eigen::Index newest = shown_.frames() - 1;
       append(shown_,
@@ -274,15 +202,13 @@ class LiveRegeneration::Frames {
     for (Eigen::Index t = 0; t < count; ++t) {
       add(finished, output_.add(motion.skeleton, motion.channels.row(fit_.held() + t), true));
     }
-    const Eigen::Index settled = recent_.frames() - open_;
-    replace_frames(recent_, settled, some_frames(right_, settled, count));
+    joints_.settle(open_, count);
     running_.settle(static_cast<std::size_t>(count));
     open_ -= count;
     fit_.settle(count);
     const auto kept = static_cast<Eigen::Index>(std::lround(kKept_s * modalities_.fps));
-    const Eigen::Index old = std::max<Eigen::Index>(0, recent_.frames() - open_ - kept);
-    drop_first(recent_, old);
-    drop_first(joints_, old);
+    const Eigen::Index old = std::max<Eigen::Index>(0, joints_.frames() - open_ - kept);
+    joints_.drop_oldest(old);
     drop_first(shown_, old);
     return finished;
   }
@@ -297,15 +223,9 @@ class LiveRegeneration::Frames {
   const Modalities& modalities_;
   const Mcdbn& network_;
   double track_hz_;
-  Track2d raw_;              ///< frames of the track that those still to be taken are made of
-  long long raw_first_ = 0;  ///< which frame of the track its first is
-  long long pushed_ = 0, taken_ = 0;
-  std::deque<bool> shows_anybody_;  ///< frames of the track that have not come back
-  Track2d recent_;                  ///< at the model's rate, settled and open
-  Track2d right_;                   ///< the same, sides of the open frames put right
-  Track2d joints_;                  ///< the model's joints as they show them
-  Track2d shown_;                   ///< all its joints as the solutions put them
-  std::optional<KeypointMap> map_;  ///< of a detector's keypoints
+  FramesAtRate frames_;
+  LiveJoints joints_;
+  Track2d shown_;  ///< all the model's joints as the solutions put them, in the frames of joints_
   Eigen::Index open_ = 0, open_at_most_ = 0, waiting_ = 0;
   bool placed_ = false;
   RunningRegeneration running_;
@@ -318,7 +238,7 @@ LiveRegeneration::LiveRegeneration(const Model& model, const Track2d& like,
                                    std::optional<std::size_t> look_ahead)
     : latency_frames_(static_cast<int>(look_ahead_of(model, look_ahead)) + kMoreFrames) {
   check_skeleton(model.modalities, placement);
-  frames_ = std::make_unique<Frames>(model, like, placement, look_ahead_of(model, look_ahead));
+  pipeline_ = std::make_unique<Pipeline>(model, like, placement, look_ahead_of(model, look_ahead));
 }
 
 LiveRegeneration::~LiveRegeneration() = default;
@@ -335,23 +255,23 @@ Motion LiveRegeneration::before_anybody(const Model& model, const ClipPlacement&
 }
 
 std::vector<LiveFrame> LiveRegeneration::push(const TrackFrame& frame) {
-  return frames_->push(frame);
+  return pipeline_->push(frame);
 }
 
 std::vector<LiveFrame> LiveRegeneration::finish() {
-  return frames_->finish();
+  return pipeline_->finish();
 }
 
 const Skeleton& LiveRegeneration::skeleton() const {
-  return frames_->fit().body();
+  return pipeline_->fit().body();
 }
 
 double LiveRegeneration::fps() const {
-  return frames_->track_hz();
+  return pipeline_->track_hz();
 }
 
 Camera LiveRegeneration::camera() const {
-  return frames_->fit().camera();
+  return pipeline_->fit().camera();
 }
 
 }  // namespace mcdbn

@@ -7,7 +7,7 @@
 
 namespace mcdbn {
 
-/// As a model's file holds them. The skeleton is BVH header text.
+/// The modalities as a model's file holds them. The skeleton is BVH header text.
 nlohmann::json modalities_json(const Modalities& modalities);
 /// Every number in its range, and all sizes as they must be. @throws InputError
 Modalities modalities_from(const JsonPlace& entry);

@@ -85,6 +85,20 @@ json kind_of_training(const json& config) {
   return kind;
 }
 
+TrainingClip training_clip_from(const JsonPlace& clip) {
+  const auto given = [&](const char* name) {  // models of before have neither
+    return clip.has(name) ? clip[name].text() : std::string();
+  };
+  return {clip["path"].text(), clip["fingerprint"].text(), {}, given("person"), given("action")};
+}
+
+json training_clip_json(const TrainingClip& clip) {
+  json about = {{"path", clip.path}, {"fingerprint", clip.fingerprint}};
+  if (!clip.person.empty()) about["person"] = clip.person;
+  if (!clip.action.empty()) about["action"] = clip.action;
+  return about;
+}
+
 EarlyStopping early_stopping_from(const JsonPlace& stopped) {
   return {stopped["held_out"].texts(), stopped["steps"].count(any_seed()),
           stopped["loss"].number(any_number())};
@@ -106,7 +120,7 @@ Model model_from(Device& device, const TensorFile& file) {
   check_config(about["config"]);
   check_frames(about, model.modalities, model.network.cdbns);
   for (const JsonPlace& clip : about["training_clips"].list())
-    model.training_clips.push_back({clip["path"].text(), clip["fingerprint"].text()});
+    model.training_clips.push_back(training_clip_from(clip));
   if (about.has("early_stopping"))
     model.early_stopping = early_stopping_from(about["early_stopping"]);
   if (about.has("started_from")) model.started_from = started_from(about["started_from"]);
@@ -135,7 +149,7 @@ void save_model(const std::filesystem::path& path, const Model& model, StoredNum
   about["config"] = model.config;
   about["training_clips"] = json::array();
   for (const TrainingClip& clip : model.training_clips)
-    about["training_clips"].push_back({{"path", clip.path}, {"fingerprint", clip.fingerprint}});
+    about["training_clips"].push_back(training_clip_json(clip));
   if (const auto& stopped = model.early_stopping)
     about["early_stopping"] = {
         {"held_out", stopped->held_out}, {"steps", stopped->steps}, {"loss", stopped->loss}};

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "mcdbn/features/modalities.hpp"
 #include "mcdbn/learning/sequence_loss.hpp"
 #include "mcdbn/motion_model/training_config.hpp"

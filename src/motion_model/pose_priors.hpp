@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mcdbn/fitting/track_fit.hpp"
+#include "mcdbn/fitting/pose_prior.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 
 namespace mcdbn {

@@ -28,6 +28,11 @@ void drop_first(Track2d& track, Eigen::Index frames) {
     track.*values = MatrixD((track.*values).bottomRows((track.*values).rows() - frames));
 }
 
+Track2d without_frames(Track2d track) {
+  drop_first(track, track.x_px.rows());
+  return track;
+}
+
 Track2d some_frames(const Track2d& track, Eigen::Index first, Eigen::Index count) {
   Track2d part = track;
   for (const auto values : kValues)

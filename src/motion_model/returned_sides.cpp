@@ -12,8 +12,8 @@ namespace {
 
 /// Time on either side of a spell that is compared, too: how limbs move there shows their sides.
 constexpr double kAround_s = 2;
-/// So much likelier, in natural logarithms, the exchanged one has to be. Chosen on detector-like
-/// tracks of training people whose legs are hidden twice for 0.25 s.
+/// Least log-likelihood ratio, in favour of the exchanged sides. Chosen on detector-like tracks of
+/// training people whose legs are hidden twice for 0.25 s.
 constexpr double kClearly = 3;
 
 }  // namespace

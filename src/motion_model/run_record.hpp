@@ -10,7 +10,7 @@
 
 namespace mcdbn {
 
-/// What a training was begun with: all that is needed to begin it once more.
+/// Everything that a training was begun with, enough to begin it once more.
 struct RunRecord {
   TrainingConfig config;
   std::vector<ListedClip> clips;

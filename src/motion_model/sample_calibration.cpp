@@ -11,8 +11,9 @@ namespace mcdbn {
 namespace {
 
 constexpr double kMost_s = 600.0;
-/// As far as the answers are off themselves, the best of ten samples of unseen people is 2 mm worse
-/// than the single answer; half as far, it is better, and samples differ as real walks do in both.
+/// Deviation of samples as a share of the answers' error. At 1 the best of ten samples of unseen
+/// people is 2 mm worse than the single answer; at 0.5 it is better; samples differ as much as real
+/// walks do at both.
 constexpr double kShareOfError = 0.5;
 
 /// Joints about the root at rest, file units. @return for each clip [frames x 3·joints]
@@ -46,7 +47,7 @@ std::size_t every_of_ten_minutes(const std::vector<MatrixF>& clips, double fps) 
   return static_cast<std::size_t>(std::max(1.0, std::ceil(frames / (kMost_s * fps))));
 }
 
-/// Parts of clips that are answered in step.
+/// Parts of clips that are answered together.
 struct CalibrationBatch {
   std::vector<MatrixF> tracks;
   std::vector<MatrixD> answers;  ///< joints about the root

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "camera/agreeing_joints.hpp"
 #include "camera/confidence_weights.hpp"
+#include "camera/cut_off.hpp"
 #include "camera/keypoint_map.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "motion_model/keypoint_columns.hpp"
@@ -29,6 +31,26 @@ ClipPlacement roughly(ClipPlacement placement, double every_s = kOfRounds_s) {
     placement.fit->first_solution_step_s = every_s;
   }
   return placement;
+}
+
+/// Frames of which nothing is known lie on the straight line between the nearest ones of which
+/// something is, and are held at the ends. At the training mean the network's answer would be its
+/// mean pose, which looks the same way in every camera: a walker whom something hides for half a
+/// second would turn to it and back.
+MatrixF bridged(MatrixF features) {
+  Eigen::Index known = -1;  // the last frame of which something is
+  for (Eigen::Index t = 0; t < features.rows(); ++t) {
+    if (features.row(t).array().isNaN().all()) continue;
+    const Eigen::Index before = known < 0 ? t : known;
+    for (Eigen::Index gap = known + 1; gap < t; ++gap) {
+      const float share = known < 0 ? 0 : static_cast<float>(gap - known) / (t - known);
+      features.row(gap) = (1 - share) * features.row(before) + share * features.row(t);
+    }
+    known = t;
+  }
+  for (Eigen::Index gap = known + 1; known >= 0 && gap < features.rows(); ++gap)
+    features.row(gap) = features.row(known);
+  return features;
 }
 
 }  // namespace
@@ -59,7 +81,7 @@ MatrixF fill_gaps(const Modalities& modalities, const MatrixF& features, const T
                   const ClipPlacement& placement, const PoseAnswer& answer) {
   if (!features.array().isNaN().any()) return features;
   const Camera camera = placement.camera_of(track, modalities);
-  MatrixF filled = features;
+  MatrixF filled = bridged(features);
   const ClipPlacement rough = roughly(placement);
   for (int round = 0; round < kRounds; ++round) {
     const Track2d shown = fit_to_track(answer(filled), modalities, track, rough, rough.fit).shown;
@@ -111,40 +133,38 @@ SeenClip see_clip(const Modalities& modalities, const Track2d& track,
     return see_joints(modalities, track, placement, answer);
   SeenClip seen;
   ClipPlacement rough = roughly(placement);
-  const auto look = [&](const Track2d& joints) {
-    seen.features = modalities.encode_track(smooth_track(joints),
-                                            rough.camera_of(track, modalities), &seen.filled);
+  const auto features_of = [&](const Track2d& joints) {
+    return modalities.encode_track(smooth_track(joints), rough.camera_of(track, modalities));
   };
   const Skeleton& skeleton =
       placement.skeleton ? *placement.skeleton : modalities.pose_features.skeleton();
   const KeypointMap map(keypoints_of_columns(track), skeleton,
                         skeleton_roles(skeleton, placement.joint_map));
-  Track2d weighted = weighted_by_confidence(track);
+  Track2d weighted = without_cut_off(weighted_by_confidence(track));
   if (placement.fit) {
     // A spell lasts for some frames.
     const ClipPlacement finer = roughly(placement, placement.fit->first_solution_step_s);
     seen.swaps = swapped_spells(weighted, [&](const Track2d& some) {
-      look(map.joints_of(some));
-      return fit_to_track(answer(seen.features), modalities, map.evidence(map.joints_of(some)),
+      const Track2d joints = map.joints_of(some);
+      return fit_to_track(answer(bridged(features_of(joints))), modalities, map.evidence(joints),
                           finer, finer.fit)
           .energy;
     });
     exchange_sides(weighted, seen.swaps);
   }
   Track2d joints = map.joints_of(weighted);
-  look(joints);
-  MatrixF filled = seen.features;
+  seen.features = bridged(features_of(joints));
   for (int round = 0; round < kRounds; ++round) {
     const FittedClip clip =
-        fit_to_track(answer(filled), modalities, map.evidence(joints), rough, rough.fit);
+        fit_to_track(answer(seen.features), modalities, map.evidence(joints), rough, rough.fit);
     joints = map.joints_of(weighted, clip.motion, clip.camera);
     if (finds_view(modalities, placement)) rough.found = clip.view;
-    look(joints);
-    filled = where_known(seen.features,
-                         modalities.encode_track(clip.shown, rough.camera_of(track, modalities)));
+    seen.features =
+        where_known(features_of(placement.fit ? agreeing_joints(joints, clip.shown) : joints),
+                    modalities.encode_track(clip.shown, rough.camera_of(track, modalities)));
   }
+  modalities.encode_track(joints, rough.camera_of(track, modalities), &seen.filled);
   seen.joints = map.evidence(joints);
-  seen.features = filled;
   seen.view = rough.assumed();
   return seen;
 }

@@ -25,7 +25,7 @@ TrainingConfig TrainingConfig::generation() {
   static_cast<LearningSettings&>(config) = LearningSettings::generation();
   config.phases = 4;
   config.directions = 4;
-  // As many mini-batches as from one.
+  // The number of mini-batches is that of one direction.
   for (std::size_t* epochs : {&config.gaussian.epochs, &config.binary.epochs, &config.mrbm.epochs})
     *epochs /= config.directions;
   return config;

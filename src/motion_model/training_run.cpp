@@ -5,12 +5,11 @@
 #include <chrono>
 
 #include "base/user_cache.hpp"
-#include "learning/checkpoints.hpp"
 #include "learning/metrics_log.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
-#include "mcdbn/motion_model/training_schedule.hpp"
 #include "mcdbn/motion_model/training_start.hpp"
+#include "motion_model/resumable_training.hpp"
 #include "motion_model/sample_calibration.hpp"
 
 namespace mcdbn {
@@ -44,12 +43,18 @@ struct ClipsDigest {
 
 TrainedRun train_model(Device& device, const TrainingSet& data, const ClipStore& clips,
                        const TrainingConfig& config, const EpochObserver& observer,
-                       Checkpoints* checkpoints, const Model* start) {
+                       const Model* start) {
+  return train_model(device, nullptr, data, clips, config, observer, start);
+}
+
+TrainedRun train_model(Device& device, Checkpoints* checkpoints, const TrainingSet& data,
+                       const ClipStore& clips, const TrainingConfig& config,
+                       const EpochObserver& observer, const Model* start) {
   using Clock = std::chrono::steady_clock;
   config.validate();
   if (start != nullptr) check_start(*start, config);
   const auto begin = Clock::now();
-  auto [network, stopped] = train_network(device, data, clips, config, observer, checkpoints,
+  auto [network, stopped] = train_network(device, checkpoints, data, clips, config, observer,
                                           start != nullptr ? &start->network : nullptr);
   if (config.fine_tuning.steps > 0)
     network.sampling = calibrated_sampling(network, data.modalities, data.tracks, data.poses);
@@ -83,12 +88,12 @@ TrainedRun train_to_folder(Device& device, const TrainingSet& data, const ClipSt
   Checkpoints checkpoints(options);
   metrics.emplace(run.unfinished() / "metrics.jsonl", metrics_bytes);
   TrainedRun trained = train_model(
-      device, data, clips, run.config(),
+      device, &checkpoints, data, clips, run.config(),
       [&](const EpochReport& report) {
         metrics->add(report);
         if (watch.epoch) watch.epoch(report);
       },
-      &checkpoints, start);
+      start);
   trained.model.started_from = run.started_from();
   run.complete(trained.model);
   return trained;

@@ -3,25 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 
 #include "corpus/augmented_views.hpp"
-#include "corpus/clip_pieces.hpp"
 #include "corpus/held_out_person.hpp"
 #include "learning/contrastive_divergence.hpp"
-#include "learning/learnt_deviation.hpp"
 #include "learning/memory_need.hpp"
 #include "learning/random_start.hpp"
+#include "learning/resumable_training.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/learning/fine_tuning.hpp"
-#include "mcdbn/learning/greedy_schedule.hpp"
-#include "motion_model/pose_loss.hpp"
+#include "motion_model/pose_fine_tuning.hpp"
+#include "motion_model/resumable_training.hpp"
 
 namespace mcdbn {
 namespace {
 
-/// Of the time that a default run takes the greedy stages' part, where fine-tuning follows: what
-/// progress shows. On 43 CMU walks fine-tuning took 405 of 456 s, reading clips included.
+/// The greedy stages' share of the time of a default run, where fine-tuning follows, for the
+/// progress shown. On 43 CMU walks fine-tuning took 405 of 456 s, reading clips included.
 constexpr double kGreedyShare = 0.1;
 
 /// An observer of one stage that shows it as the part `from` … `to` of the run.
@@ -33,45 +30,12 @@ EpochObserver part_of_run(const EpochObserver& observer, double from, double to)
   };
 }
 
-SequenceLossMaker pose_loss_maker(const Modalities& modalities, const PoseLossWeights& weights) {
-  return [&modalities, weights](Device& device, const SequenceWindows& windows) {
-    return std::make_unique<PoseLoss>(device, modalities, windows, weights);
-  };
-}
-
-/// Fine-tuning, and how far off the answers are.
-/// @param source to learn from
-/// @param held_out_views of the person held out, or none
-/// @param before_deviation is called before the answers' deviation is learnt from the source
-TrainedNetwork fine_tune_on_source(Device& device, const Mcdbn& start, const SequenceSource& source,
-                                   const TrainingSet* held_out_views, const Modalities& modalities,
-                                   const TrainingConfig& config, const EpochObserver& observer,
-                                   Checkpoints* checkpoints,
-                                   const std::function<void()>& before_deviation = {}) {
-  std::optional<ClipSource> held_out_source;
-  if (held_out_views != nullptr) held_out_source.emplace(*held_out_views);
-  FineTuned tuned =
-      fine_tune(device, start, source, held_out_source ? &*held_out_source : nullptr, config,
-                pose_loss_maker(modalities, config.pose_loss), observer, checkpoints);
-  if (before_deviation) before_deviation();
-  std::optional<SynchronizedClips> held_out_clips;
-  if (held_out_source) held_out_clips = held_out_source->sequences();
-  tuned.network.deviation = learnt_deviation(tuned.network, source.sequences(),
-                                             held_out_clips ? &*held_out_clips : nullptr);
-  TrainedNetwork trained{std::move(tuned.network), {}};
-  if (held_out_views != nullptr)
-    trained.early_stopping =
-        EarlyStopping{clip_names(*held_out_views), tuned.kept->steps, tuned.kept->loss};
-  return trained;
-}
-
 /// The greedy stages as the beginning of a run, if the settings ask for them.
-Mcdbn greedy_start(Device& device, const SequenceSource& source, Mcdbn start,
-                   const TrainingConfig& config, const EpochObserver& observer,
-                   Checkpoints* checkpoints) {
+Mcdbn greedy_start(Device& device, Checkpoints* checkpoints, const SequenceSource& source,
+                   Mcdbn start, const TrainingConfig& config, const EpochObserver& observer) {
   if (!config.fine_tuning.from_greedy) return start;
-  return train_greedy(device, source, config, part_of_run(observer, 0.0, kGreedyShare), &start,
-                      checkpoints);
+  return train_greedy(device, checkpoints, source, config, part_of_run(observer, 0.0, kGreedyShare),
+                      &start);
 }
 
 /// Hidden limbs teach no deviation.
@@ -85,6 +49,13 @@ void check_deviation(std::size_t dimension, const TrainingConfig& config) {
       "`augment.missing` (now {:g}) and `augment.detector` ({:g}) hide some: set it, or both of "
       "these, to 0",
       config.gaussian.deviation_rate, views.missing, views.detector));
+}
+
+std::optional<HeldOutPerson> held_out_person(const std::optional<TrainingSet>& views,
+                                             const ClipStore& clips, const TrainingConfig& config) {
+  const auto person = person_to_hold_out(clips, config.hold_out_among);
+  if (!person || !views) return {};
+  return HeldOutPerson{*views, clip_names(clips, *person)};
 }
 
 /// What would only be found out in the middle of the training.
@@ -128,45 +99,38 @@ TrainingSet make_augmented_views(const ClipStore& clips, const Modalities& modal
                               person_to_hold_out(clips, config.hold_out_among));
 }
 
-TrainedNetwork fine_tune_on_views(Device& device, const Mcdbn& start, const TrainingSet& views,
-                                  const TrainingConfig& config, const EpochObserver& observer,
-                                  Checkpoints* checkpoints) {
-  std::optional<TrainingSet> others, held_out_views;
-  if (const auto person = person_to_hold_out(views, config.hold_out_among)) {
-    others = views_without(views, *person);
-    held_out_views = views_of(views, *person);
-  }
-  return fine_tune_on_source(device, start, ClipSource(others ? *others : views),
-                             held_out_views ? &*held_out_views : nullptr, views.modalities, config,
-                             observer, checkpoints);
-}
-
 TrainedNetwork train_network(Device& device, const TrainingSet& data, const ClipStore& clips,
                              const TrainingConfig& config, const EpochObserver& observer,
-                             Checkpoints* checkpoints, const Mcdbn* from) {
+                             const Mcdbn* start) {
+  return train_network(device, nullptr, data, clips, config, observer, start);
+}
+
+TrainedNetwork train_network(Device& device, Checkpoints* checkpoints, const TrainingSet& data,
+                             const ClipStore& clips, const TrainingConfig& config,
+                             const EpochObserver& observer, const Mcdbn* start) {
   check_before(device.info(), data, clips, config);
   if (config.fine_tuning.steps == 0)
-    return {train_greedy(device, ClipSource(data), config, observer, nullptr, checkpoints), {}};
+    return {train_greedy(device, checkpoints, ClipSource(data), config, observer), {}};
   std::vector<Modality> modalities;
   for (const ModalityClips& modality : ClipSource(data).sequences().modalities)
     modalities.push_back({modality.name, modality.dimension(), modality.kind});
-  Mcdbn start = from != nullptr ? *from : random_start(device, modalities, config);
+  Mcdbn network = start != nullptr ? *start : random_start(device, modalities, config);
   const EpochObserver tuning =
       part_of_run(observer, config.fine_tuning.from_greedy ? kGreedyShare : 0.0, 1.0);
   if (learns_from_fresh_views(clips, config)) {
     const FreshViewSource views(clips, data, config);
-    start = greedy_start(device, views, std::move(start), config, observer, checkpoints);
-    const auto& held_out_views = views.held_out_views();
+    network = greedy_start(device, checkpoints, views, std::move(network), config, observer);
+    const auto held_out = held_out_person(views.held_out_views(), clips, config);
     // Views that nothing was learnt from, the same after a training that was interrupted.
-    return fine_tune_on_source(device, start, views, held_out_views ? &*held_out_views : nullptr,
-                               data.modalities, config, tuning, checkpoints,
-                               [&] { views.renew(config.fine_tuning.steps + views.lifetime()); });
+    return fine_tune_on_poses(device, checkpoints, network, views, held_out ? &*held_out : nullptr,
+                              data.modalities, config, tuning,
+                              [&] { views.renew(config.fine_tuning.steps + views.lifetime()); });
   }
   const ViewSource views(clips, data, config);
-  start = greedy_start(device, views, std::move(start), config, observer, checkpoints);
-  const auto& held_out_views = views.held_out_views();
-  return fine_tune_on_source(device, start, views, held_out_views ? &*held_out_views : nullptr,
-                             data.modalities, config, tuning, checkpoints);
+  network = greedy_start(device, checkpoints, views, std::move(network), config, observer);
+  const auto held_out = held_out_person(views.held_out_views(), clips, config);
+  return fine_tune_on_poses(device, checkpoints, network, views, held_out ? &*held_out : nullptr,
+                            data.modalities, config, tuning);
 }
 
 }  // namespace mcdbn

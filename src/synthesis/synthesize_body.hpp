@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <vector>
 
 #include "mcdbn/motion/skeleton.hpp"
 #include "synthesis/synthesize_random.hpp"

@@ -9,7 +9,7 @@
 namespace mcdbn::synthesis {
 namespace {
 
-/// The same with the feet rolled onto their balls.
+/// Height of the hips with the feet rolled onto their balls.
 double tiptoe_height(const Body& body, double pitch_deg) {
   return standing_height(body) + planted_foot(body, {}, pitch_deg).ankle.y();
 }

@@ -47,7 +47,7 @@ class Gait {
   static constexpr int kStepsPerCycle = 256;
   static constexpr double kFirstPhase = -2;
 
-  /// Of the travelling body: where the path is, and how high the hips stand over the ground.
+  /// State of the travelling body: where the path is, and how high the hips are above the ground.
   struct Travel {
     Eigen::Vector3d position{0, 0, 0};
     double heading_deg = 0;

@@ -8,13 +8,11 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <sstream>
 
 #include "base/npy.hpp"
 #include "base/random_matrix.hpp"
 #include "base/safetensors.hpp"
 #include "base/scratch_folder.hpp"
-#include "base/text_file.hpp"
 #include "mcdbn/base/errors.hpp"
 
 using namespace mcdbn;

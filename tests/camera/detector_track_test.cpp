@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "camera/keypoint_places.hpp"
+#include "camera/projected_keypoints.hpp"
 #include "camera/role_body.hpp"
 #include "motion/body_size.hpp"
 
@@ -89,7 +90,7 @@ TEST_CASE("a detector sees its joints where the camera has them, and none outsid
   CameraPlacement placement;
   placement.distance = 400;
   Camera camera = place_camera(motion, placement);
-  const Track2d exact = project_keypoints(motion, roles, kSet, camera);
+  const Track2d exact = test::project_keypoints(motion, roles, kSet, camera);
   CHECK(exact.joint_names == std::vector<std::string>{"Nose", "MidHip", "LKnee", "RKnee", "LToe"});
   CHECK(exact.keypoints.size() == 5);
   const Track2d joints = project_motion(motion, camera);
@@ -100,7 +101,7 @@ TEST_CASE("a detector sees its joints where the camera has them, and none outsid
   CHECK(exact.x_px.col(4).array().isNaN().all());
 
   camera.cy_px -= 500;  // the head is above the image
-  const Track2d cut = project_keypoints(motion, roles, kSet, camera);
+  const Track2d cut = test::project_keypoints(motion, roles, kSet, camera);
   CHECK(cut.confidence.col(0).isZero());
   CHECK(cut.y_px.col(0).array().isNaN().all());
   CHECK(cut.confidence.col(2).isOnes());
@@ -110,7 +111,7 @@ TEST_CASE("a detector that is like a track never sees what no frame of the track
   const Motion motion = test::standing_still(test::role_body(), 40);
   const SkeletonRoles roles = test::roles_of_role_body();
   const Camera camera = place_camera(motion, {});
-  Track2d model = project_keypoints(motion, roles, kSet, camera);
+  Track2d model = test::project_keypoints(motion, roles, kSet, camera);
   for (const Eigen::Index never : {0, 1}) model.confidence.col(never).setZero();
   const Track2d track =
       detector_track(motion, roles, seen_keypoints(model), camera, DetectorNoise{}, 1);
@@ -131,7 +132,7 @@ TEST_CASE("a detector's noise is a share of the body's height in the image") {
     placement.distance = distance;
     const Camera camera = place_camera(motion, placement);
     return MatrixD(detector_track(motion, roles, kSet, camera, noise, 3).x_px -
-                   project_keypoints(motion, roles, kSet, camera).x_px)
+                   test::project_keypoints(motion, roles, kSet, camera).x_px)
         .leftCols(4)
         .eval();
   };

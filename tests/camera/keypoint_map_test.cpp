@@ -6,11 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "camera/keypoint_places.hpp"
 #include "camera/keypoint_track.hpp"
 #include "camera/role_body.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/motion/humanoid.hpp"
+#include "motion/rest_pose.hpp"
 
 namespace keypoint_map_test {
 
@@ -185,6 +187,17 @@ TEST_CASE("keypoint map: too little of a body is refused") {
   CHECK_THROWS_AS(map.joints_of(keypoint_track(scene.motion, scene.camera, coco_keypoints()),
                                 shorter, scene.camera),
                   ShapeError);
+}
+
+TEST_CASE("no joint turned: unturned_pose puts the root at its offset, rest_pose at the origin") {
+  Skeleton body = role_body();
+  const Eigen::Vector3d offset(3, 90, -2);
+  body.joints[0].offset = offset;
+  const WorldPose unturned = unturned_pose(body), rest = rest_pose(body);
+  CHECK((unturned.position[0] - offset).norm() < 1e-12);
+  CHECK(rest.position[0].isZero());
+  for (std::size_t joint = 0; joint < rest.position.size(); ++joint)
+    CHECK((unturned.position[joint] - offset - rest.position[joint]).norm() < 1e-9);
 }
 
 }  // namespace keypoint_map_test

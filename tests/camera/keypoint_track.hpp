@@ -1,11 +1,8 @@
 #pragma once
 
-#include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
-#include "base/random_sequence.hpp"
 #include "mcdbn/camera/camera.hpp"
 #include "mcdbn/motion/skeleton_roles.hpp"
 #include "motion/body_size.hpp"

@@ -53,11 +53,12 @@ TEST_CASE("shown body: joints that no frame shows do not count") {
   CHECK(frames_of_a_body(seen({})).empty());
 }
 
-TEST_CASE("shown body: ankles and toes are feet, in any frame") {
+TEST_CASE("shown body: ankles and toes are feet, in the frames that show them") {
   const Names legs{"MidHip", "RHip", "LHip", "RKnee", "LKnee"};
   CHECK(!shows_feet(seen({legs, legs})));
   for (const char* foot : {"LAnkle", "RAnkle", "LBigToe", "RHeel"})
-    CHECK(shows_feet(seen({legs, {foot}, legs})));
+    CHECK(frames_of_feet(seen({legs, {foot}, legs})) == Bodies{false, true, false});
+  CHECK(shows_feet(seen({legs, {"LAnkle"}, legs})));
   Track2d track = seen({{}});
   track.keypoints.clear();
   CHECK(!shows_feet(track));

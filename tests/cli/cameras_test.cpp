@@ -2,8 +2,6 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "base/text_file.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"

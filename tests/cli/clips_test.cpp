@@ -148,6 +148,6 @@ TEST_CASE("render draws a contact sheet") {
           0);
   CHECK(mcdbn::read_text_file(picture).starts_with("\x89PNG"));
   CHECK(run_cli(fmt::format("render '{}' -o '{}'", clip.string(), (folder / "a.xyz").string()))
-            .exit_code != 0);
+            .exit_code == 2);
   CHECK(!fs::exists(folder / "a.xyz"));
 }

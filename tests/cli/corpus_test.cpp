@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/text_file.hpp"
+#include "base/near.hpp"
 #include "mcdbn/corpus/clip_list.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "motion/humanoid_motion.hpp"
@@ -50,7 +50,7 @@ TEST_CASE("corpus: every option changes what its help describes") {
           CHECK(json.at("usable") == 4);
           CHECK(json.at("people") == nlohmann::json::array({"s01", "s02"}));
           CHECK(json.at("actions") == nlohmann::json::array({"walk"}));
-          CHECK(json.at("hours").get<double>() == doctest::Approx(4 * 1.2 / 3600).epsilon(0.02));
+          CHECK(json.at("hours").get<double>() == near(4 * 1.2 / 3600, 0.02));
           const auto& first = json.at("clips").at(0);
           CHECK(first.at("person") == "s01");
           CHECK(first.at("humanoid").at("mean_mm").get<double>() < 1);

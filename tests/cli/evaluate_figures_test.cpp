@@ -48,7 +48,7 @@ TEST_CASE("the scores of every method are those of its motion, by independent co
   options.regeneration.temperature = 1;
   for (const mcdbn::ClipResult& result :
        run_test(model, {pipeline.motion() / "walk_s02_01.bvh"}, options)) {
-    const auto check = [&](const mcdbn::Regeneration& answer) {
+    const auto check = [&](const mcdbn::ScoredAnswer& answer) {
       const auto wanted = independent_scores(result.truth.motion, answer.motion,
                                              result.truth.camera.camera_from_world);
       json figures = figures_of(answer.score);
@@ -57,9 +57,9 @@ TEST_CASE("the scores of every method are those of its motion, by independent co
       check_scores(wanted, figures, 1e-9);
     };
     CHECK(result.samples.size() == 2);
-    CHECK(result.others.size() == 6);
-    for (const mcdbn::Regeneration& sample : result.samples) check(sample);
-    for (const auto& [name, other] : result.others) {
+    CHECK(result.other_answers.size() == 6);
+    for (const mcdbn::ScoredAnswer& sample : result.samples) check(sample);
+    for (const auto& [name, other] : result.other_answers) {
       CAPTURE(name);
       check(other);
     }

@@ -8,9 +8,11 @@
 
 #include "base/text_file.hpp"
 #include "comparison/comparison_run.hpp"
+#include "comparison/report_clips.hpp"
 #include "evaluation/evaluation_report.hpp"
 #include "library_calls.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
+#include "mcdbn/motion_model/training_schedule.hpp"
 #include "option_table.hpp"
 #include "tiny_pipeline.hpp"
 

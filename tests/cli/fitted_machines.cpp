@@ -8,6 +8,13 @@
 #include "run_cli.hpp"
 
 namespace mcdbn::test {
+namespace {
+
+bool is_binary(const std::string& kind) {
+  return kind == "rbm" || kind == "dbn" || kind.starts_with("binary");
+}
+
+}  // namespace
 
 const FittedMachines& FittedMachines::instance() {
   static const FittedMachines machines;
@@ -29,7 +36,7 @@ FittedMachines::FittedMachines() {
 std::string FittedMachines::model(const std::string& kind) const {
   const std::filesystem::path file = folder_ / (kind + ".safetensors");
   if (std::filesystem::exists(file)) return file.string();
-  std::string options = kShortFit;
+  std::string options = short_fit(kind);
   if (kind.ends_with("crbm") || kind.ends_with("cdbn")) options += " --order 2";
   if (data_of(kind) == values()) options += " --standardize";
   CHECK(output_of(
@@ -39,8 +46,14 @@ std::string FittedMachines::model(const std::string& kind) const {
 }
 
 std::string FittedMachines::data_of(const std::string& kind) const {
-  const bool binary = kind == "rbm" || kind == "dbn" || kind.starts_with("binary");
-  return binary ? bits() : values();
+  return is_binary(kind) ? bits() : values();
+}
+
+std::string short_fit(const std::string& kind) {
+  std::string options = " --hidden 5 --batch 20";
+  if (!is_binary(kind)) options += " --gaussian-epochs 2";
+  if (is_binary(kind) || kind.ends_with("dbn")) options += " --binary-epochs 2";
+  return options + " --quiet";
 }
 
 std::string output_of(const std::string& call) {

@@ -9,9 +9,8 @@
 
 namespace mcdbn::test {
 
-/// Settings with which a fit takes no time.
-inline const std::string kShortFit =
-    " --hidden 5 --batch 20 --gaussian-epochs 2 --binary-epochs 2 --quiet";
+/// Settings with which the fit of an RBM or CRBM of that kind, or a stack of them, takes no time.
+std::string short_fit(const std::string& kind);
 
 /// Data of both kinds in files, 60 rows of 5 values, and machines that were fitted to them, made
 /// once for all tests of a file.

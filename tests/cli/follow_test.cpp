@@ -91,6 +91,47 @@ TEST_CASE(
   CHECK(warnings.empty());
 }
 
+TEST_CASE("regenerate --follow: what is inferred or assumed is reported, as of a whole track") {
+  if (!have_device()) return;
+  const FollowScene scene;
+  const std::string model = TinyPipeline::instance().model().string(),
+                    out = (scene.folder / "out.bvh").string();
+  const auto reported = [&](const fs::path& track, const std::string& options) {
+    const CliResult result =
+        run_cli(fmt::format("regenerate --model '{}' --input '{}' -o '{}' --quiet {}", model,
+                            track.string(), out, options));
+    CAPTURE(result.standard_error);
+    CHECK(result.exit_code == 0);
+    return result.standard_error;
+  };
+  const auto inferred = [](const std::string& text) {
+    std::istringstream lines(text);
+    std::string line;
+    while (std::getline(lines, line) && !line.ends_with(" are never seen: inferred")) line.clear();
+    return line;
+  };
+  // All of the model's joints but one, by name, and a detector's keypoints.
+  mcdbn::Track2d track = mcdbn::read_track_csv(scene.track);
+  const mcdbn::Model loaded = load_model(usual_device(), model);
+  const std::string& last = loaded.modalities.track_features.joint_names().back();
+  const int left_out = track.find(last);
+  REQUIRE(left_out >= 0);
+  track.joint_names[static_cast<std::size_t>(left_out)] = "elsewhere";
+  write_track_csv(scene.folder / "joints.csv", track);
+  const fs::path lines = scene.folder.write("lines.jsonl", scene.detected_lines());
+  const std::string image = "--image-size 1920 1080";
+  for (const fs::path& input : {scene.folder / "joints.csv", lines}) {
+    CAPTURE(input.string());
+    const std::string live = reported(input, "--follow " + image), whole = reported(input, image);
+    REQUIRE(!inferred(whole).empty());
+    CHECK(inferred(live) == inferred(whole));
+    CHECK(live.find("no --camera: assumed to look down by ") != std::string::npos);
+  }
+  CHECK(inferred(reported(scene.folder / "joints.csv", image)).find(last) != std::string::npos);
+  // Of a whole body and a known camera there is nothing to report.
+  CHECK(reported(scene.track, fmt::format("--follow --camera '{}'", scene.camera.string())) == "");
+}
+
 TEST_CASE("regenerate --follow: a broken line is named and counts as a frame without anybody") {
   if (!have_device()) return;
   const FollowScene scene;

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "base/text_file.hpp"
 #include "mcdbn/camera/track.hpp"

@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <thread>
 
-#include "base/text_file.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "mcdbn/device/device.hpp"
+#include "mcdbn/learning/epoch_report.hpp"
 #include "mcdbn/motion_model/model_file.hpp"
-#include "mcdbn/motion_model/training_schedule.hpp"
+#include "mcdbn/motion_model/training_config.hpp"
 
 namespace mcdbn::test {
 

@@ -298,6 +298,10 @@ TEST_CASE("score: every option changes what its help describes") {
                     const std::string text = output_of(call);
                     CHECK(text.starts_with("rows                    60\nfree_energy"));
                     CHECK(text.find("log_partition") == std::string::npos);
+                    const std::string many = (folder / "many.npy").string();
+                    mcdbn::write_matrix(many, MatrixF::Zero(1'000'000, 5));
+                    CHECK(output_of("score --model " + machines.model("rbm") + " " + many)
+                              .starts_with("rows                    1000000\n"));
                   }});
   rows.push_back({"--quiet", [&] { CHECK(output_of(call + " --quiet") == output_of(call)); }});
   check_options("score", rows);

@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 
 #include "base/text_file.hpp"
-#include "mcdbn/formats/bvh.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;

@@ -9,7 +9,6 @@
 #include "base/text_file.hpp"
 #include "mcdbn/corpus/clip.hpp"
 #include "mcdbn/drawing/render.hpp"
-#include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/camera_file.hpp"
 #include "option_table.hpp"
 #include "run_cli.hpp"
@@ -22,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Call {
-  mcdbn::ClipOptions clip = {};
+  mcdbn::ClipOptions clip = {.fps = 0};
   mcdbn::RenderOptions render = {};
 };
 
@@ -139,8 +138,17 @@ TEST_CASE("render: every option changes what its help describes") {
         [&] {
           const fs::path film = folder / "film.mp4";
           const std::string small = "--image-size 64 64 ";
+          // The first clip's rate, at most 60 Hz: these have 120.
           CHECK(run_cli(call_of(small, film)).exit_code == 0);
-          CHECK(rate_of(film) == doctest::Approx(30));
+          CHECK(rate_of(film) == doctest::Approx(60));
+          std::string slower = small_bvh(30);
+          const std::string frame_time = "0.0083333";
+          slower.replace(slower.find(frame_time), frame_time.size(), "0.02");
+          CHECK(run_cli(fmt::format("render '{}' -o '{}' {}",
+                                    folder.write("slower.bvh", slower).string(), film.string(),
+                                    small))
+                    .exit_code == 0);
+          CHECK(rate_of(film) == doctest::Approx(50));
           CHECK(run_cli(call_of(small + "--video-fps 12", film)).exit_code == 0);
           CHECK(rate_of(film) == doctest::Approx(12));
         }},

@@ -1,5 +1,4 @@
 #include "settings_table.hpp"
-#include "mcdbn/motion_model/training_schedule.hpp"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "mcdbn/motion_model/training_config.hpp"
-#include "mcdbn/motion_model/training_schedule.hpp"
 
 namespace mcdbn::test {
 

@@ -29,7 +29,7 @@ TEST_CASE("fit, transform and score name each file that has no row with the mach
        {fmt::format("transform --model {} {} --quiet", model, data),
         fmt::format("score --model {} {} --quiet", model, data),
         fmt::format("fit {} --machine crbm --order 2 --standardize -o {}{}", data,
-                    (folder / "m.safetensors").string(), kShortFit)}) {
+                    (folder / "m.safetensors").string(), short_fit("crbm"))}) {
     CAPTURE(call);
     const CliResult result = run_cli(call);
     CAPTURE(result.standard_error);

@@ -7,7 +7,6 @@
 
 #include "all_settings_run.hpp"
 #include "base/text_file.hpp"
-#include "mcdbn/motion_model/training_schedule.hpp"
 #include "option_table.hpp"
 #include "settings_table.hpp"
 #include "tiny_pipeline.hpp"
@@ -31,14 +30,19 @@ bool is_on(std::size_t number, bool even) {
   return (number % 2 == 0) == even;
 }
 
+/// Off, it leaves out stages whose switches are then refused.
+bool leaves_stages_out(const SettingRow& row) {
+  return std::string(row.name) == "fine-tuning.from-greedy";
+}
+
 /// What is set where every switch is given, `--mirror` or `--no-mirror`, and a file sets the
-/// opposite.
-std::map<std::string, double> switched(bool even) {
+/// opposite; or where that one alone is given, which all the others leave out.
+std::map<std::string, double> switched(bool even, bool stages = false) {
   const ScratchFolder folder;
-  std::string opposite, flags;
+  std::string opposite, flags = " --layers 2";
   std::size_t number = 0;
   for (const SettingRow& row : setting_rows()) {
-    if (!row.is_switch) continue;
+    if (!row.is_switch || leaves_stages_out(row) != stages) continue;
     const bool on = is_on(number++, even);
     opposite += fmt::format("{} = {}\n", row.name, !on);
     flags += (on ? " --" : " --no-") + with_dashes(row.name);
@@ -57,20 +61,22 @@ void check_setting(const SettingRow& row) {
 
 std::vector<OptionRow> setting_option_rows() {
   std::vector<OptionRow> rows;
-  const std::array all_switched{switched(false), switched(true)};
+  const std::array all_switched{switched(false), switched(true)},
+      stages_switched{switched(false, true), switched(true, true)};
   std::size_t number = 0;
   for (const SettingRow& row : setting_rows()) {
     if (!row.is_switch) {
       rows.push_back({"--" + with_dashes(row.name), [&row] { check_setting(row); }});
       continue;
     }
+    const bool stages = leaves_stages_out(row);
     for (const bool even : {false, true}) {
-      const bool on = is_on(number, even);
-      const double found = all_switched[even ? 1 : 0].at(row.name);
+      const bool on = is_on(stages ? 0 : number, even);
+      const double found = (stages ? stages_switched : all_switched)[even ? 1 : 0].at(row.name);
       rows.push_back({(on ? "--" : "--no-") + with_dashes(row.name),
                       [=] { CHECK(found == (on ? 1.0 : 0.0)); }});
     }
-    ++number;
+    if (!stages) ++number;
   }
   return rows;
 }
@@ -197,21 +203,33 @@ TEST_CASE("train: every option changes what its help describes") {
          CHECK(from("default", "--hidden 99").standard_error.find("start from") !=
                std::string::npos);
        }});
-  rows.push_back({"--tracks", [&] {
-                    CHECK(train("x.bvh", run, "--tracks other").exit_code == 2);
-                    const auto share = [&](const std::string& options) {
-                      const fs::path made = folder / "tracks";
-                      REQUIRE(train(pipeline.training_clips(), made, kTiny + options).exit_code ==
-                              0);
-                      const std::string text = mcdbn::read_text_file(made / "config.toml");
-                      fs::remove_all(made);
-                      const auto at = text.find("detector = ");
-                      return text.substr(at, text.find('\n', at) - at);
-                    };
-                    CHECK(share(" --tracks exact") == "detector = 0.0");
-                    CHECK(share(" --tracks detector").starts_with("detector = 0.8"));
-                    CHECK(share(" --tracks detector --augment-detector 0.25") == "detector = 0.25");
-                  }});
+  rows.push_back(
+      {"--tracks", [&] {
+         CHECK(train("x.bvh", run, "--tracks other").exit_code == 2);
+         const auto share = [&](const std::string& options) {
+           const fs::path made = folder / "tracks";
+           REQUIRE(train(pipeline.training_clips(), made, kTiny + options).exit_code == 0);
+           const std::string text = mcdbn::read_text_file(made / "config.toml");
+           fs::remove_all(made);
+           const auto at = text.find("detector = ");
+           return text.substr(at, text.find('\n', at) - at);
+         };
+         CHECK(share(" --tracks exact") == "detector = 0.0");
+         CHECK(share(" --tracks detector").starts_with("detector = 0.8"));
+         const auto printed = [](const std::string& options) {
+           return settings_of_options(options).at("augment.detector");
+         };
+         const fs::path file = folder.write("d.toml", "[augment]\ndetector = 0.5\n");
+         const std::string by_file = fmt::format("--config '{}' ", file.string());
+         CHECK(printed("--preset general") == 0.8);
+         CHECK(printed("--preset general --tracks exact") == 0);
+         CHECK(printed(by_file + "--tracks exact") == 0);
+         CHECK(printed(by_file + "--tracks detector") == 0.5);
+         for (const char* tracks : {"", "--tracks exact ", "--tracks detector "})
+           for (const double given : {0.0, 0.25})
+             CHECK(printed(fmt::format("{}{}--augment-detector {}", by_file, tracks, given)) ==
+                   given);
+       }});
   rows.push_back({"--force", [&] {
                     CHECK(train(pipeline.training_clips(), run, kQuick).exit_code == 2);
                     trained(pipeline.training_clips(), "");  // which gives it

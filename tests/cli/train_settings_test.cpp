@@ -12,7 +12,6 @@
 #include "base/safetensors.hpp"
 #include "base/text_file.hpp"
 #include "library_calls.hpp"
-#include "mcdbn/motion_model/training_schedule.hpp"
 #include "settings_table.hpp"
 #include "tiny_pipeline.hpp"
 
@@ -99,12 +98,14 @@ TEST_CASE("the help gives each setting's unit, default, reason and range, by gro
     return help.find(words) != std::string::npos;
   };
   CHECK(shown("\n  --hidden UNITS=768 "));
-  CHECK(shown("hidden units of every CRBM (at least 1 and at most 100000)"));
+  CHECK(shown("Hidden units of every CRBM (at least 1 and at most 100000)"));
   CHECK(shown("\n  --gaussian-rate NUMBER=0.001"));
   CHECK(shown("\n  --camera-fov DEGREES=45.0"));
-  CHECK(shown("vertical field of view (above 0 and below"));
+  CHECK(shown("Vertical field of view (above 0 and below"));
   CHECK(shown("where the skeleton has sides (default: on)"));
-  CHECK(shown("keep a leading calibration pose (default: off)"));
+  CHECK(shown("Keep a leading calibration pose (default: off)"));
+  CHECK(shown("A person (with"));
+  CHECK(shown("k of CD-k:"));
   for (const char* group : {"Settings:", "Settings of gaussian:", "Settings of fine-tuning:",
                             "Settings of augment:", "Settings of camera:"})
     CHECK(shown(std::string("\n") + group + "\n"));
@@ -189,6 +190,11 @@ TEST_CASE("--preset and --stages set which stages there are and whose defaults h
   check_settings(settings_of_options("--preset generation --hidden 5"),
                  TrainingConfig::generation(), {{"hidden", 5}});
   check_settings(settings_of_options("--preset general"), TrainingConfig::general(), {});
+  // A figure of each, from docs/formats.md, docs/generation.md and docs/corpus.md.
+  CHECK(settings_of_options("--preset paper").at("mrbm.rate") == 0.1);
+  CHECK(settings_of_options("--preset paper-stable").at("mrbm.rate") == 0.001);
+  CHECK(settings_of_options("--preset generation").at("gaussian.history-noise") == 1);
+  CHECK(settings_of_options("--preset general").at("fine-tuning.steps") == 30000);
   check_settings(settings_of_options("--stages greedy"), TrainingConfig::greedy(), {});
   check_settings(settings_of_options("--fine-tuning-steps 0 --hidden 6"), TrainingConfig::greedy(),
                  {{"hidden", 6}});
@@ -251,8 +257,10 @@ TEST_CASE("fine-tuning's settings are known by their former names too") {
                   {"fine-tuning.positions", 0.75}});
   check_settings(settings_of_options("--stages joint"), TrainingConfig{},
                  {{"fine-tuning.from-greedy", 0}});
+  const std::string help = run_cli("train --help").standard_output;
   for (const char* former : {"--joint-steps", "--joint-from-greedy", "--joint-places"})
-    CHECK(run_cli("train --help").standard_output.find(former) == std::string::npos);
+    CHECK(help.find(former) == std::string::npos);
+  CHECK(help.find("{greedy,fine-tuning,both}") != std::string::npos);
   const std::string metrics =
       mcdbn::read_text_file(TinyPipeline::instance().folder("run") / "metrics.jsonl");
   CHECK(metrics.find("\"stage\":\"fine-tuning\"") != std::string::npos);

@@ -55,14 +55,16 @@ TEST_CASE("train --stages leaves stages out") {
     return stages_of(run);
   };
   const std::set<std::string> greedy{"pose.0", "pose.1", "track.0", "track.1", "mrbm"};
-  CHECK(stages("--stages greedy --fine-tuning-steps 3", kTinyGreedy) == greedy);
-  CHECK(stages("--fine-tuning-steps 0", kTinyGreedy) == greedy);
+  const std::string two_layers = kTinyGreedy + " --binary-epochs 2";
+  CHECK(stages("--stages greedy --fine-tuning-steps 3", two_layers) == greedy);
+  CHECK(stages("--fine-tuning-steps 0", two_layers) == greedy);
   CHECK(stages("--stages both", kTiny) ==
         std::set<std::string>{"pose.0", "track.0", "mrbm", "fine-tuning"});
-  CHECK(stages("--stages fine-tuning", kTiny) == std::set<std::string>{"fine-tuning"});
+  CHECK(stages("--stages fine-tuning", "--hidden 8 --mrbm-hidden 8" + kTinyFineTuning) ==
+        std::set<std::string>{"fine-tuning"});
   std::set<std::string> all = greedy;
   all.insert("fine-tuning");
-  CHECK(stages("--stages both --layers 2", kTiny) == all);
+  CHECK(stages("--stages both --layers 2 --binary-epochs 2", kTiny) == all);
 }
 
 TEST_CASE("train: what is of fine-tuning's views is refused where nothing is fine-tuned") {
@@ -100,6 +102,46 @@ TEST_CASE("train: what is of fine-tuning's views is refused where nothing is fin
   CHECK(refusal(sweep("[0, 3]") + " --platform no-such-name", 4).find("no-such-name") !=
         std::string::npos);
   CHECK(refusal(sweep("[0, 3]") + " --force").find("--force does not apply") != std::string::npos);
+}
+
+TEST_CASE(
+    "train: flags of stages and layers that there are not are refused, settings of files not") {
+  const auto printed = [](const std::string& options) {
+    return run_cli("train --print-settings " + options);
+  };
+  const auto check_refused = [&](const std::string& options, const std::string& flag,
+                                 const char* why) {
+    CAPTURE(options);
+    const CliResult result = printed(options);
+    CHECK(result.exit_code == 2);
+    CHECK(result.standard_error ==
+          fmt::format("mcdbn-cl: error: {} {}; leave it out\n", flag, why));
+  };
+  const char* const not_tuned = "is of fine-tuning, and nothing is fine-tuned";
+  const char* const not_greedy = "is of the greedy stages, which are left out";
+  const char* const one_layer = "is of the layers above the lowest, and there is one layer";
+  check_refused("--stages greedy --fine-tuning-hold-out-among 2", "--fine-tuning-hold-out-among",
+                not_tuned);
+  check_refused("--preset generation --fine-tuning-windows 7", "--fine-tuning-windows", not_tuned);
+  check_refused("--stages greedy --joint-places 1", "--joint-places", not_tuned);
+  check_refused("--stages fine-tuning --gaussian-rate 0.1", "--gaussian-rate", not_greedy);
+  check_refused("--stages fine-tuning --mrbm-epochs 9", "--mrbm-epochs", not_greedy);
+  check_refused("--no-fine-tuning-from-greedy --people-power 1", "--people-power", not_greedy);
+  check_refused("--binary-epochs 44", "--binary-epochs", one_layer);
+  check_refused("--preset generation --binary-rate 0.1", "--binary-rate", one_layer);
+  check_refused("--gaussian-fast-rate 0.1", "--gaussian-fast-rate",
+                "is of persistent chains, and --gaussian-persistent is off");
+
+  const ScratchFolder folder;
+  const fs::path file = folder.write(
+      "all.toml",
+      "[fine-tuning]\nwindows = 7\n[binary]\nrate = 0.1\n[gaussian]\nfast-rate = 0.1\n");
+  for (const char* options :
+       {"--stages greedy --layers 1 --config", "--stages fine-tuning --config"})
+    CHECK(printed(fmt::format("{} '{}'", options, file.string())).exit_code == 0);
+  for (const char* options : {"--layers 2 --binary-rate 0.1", "--stages greedy --binary-rate 0.1",
+                              "--gaussian-fast-rate 0.1 --gaussian-persistent"})
+    CHECK(printed(options).exit_code == 0);
 }
 
 TEST_CASE("the same seed trains the same model, from the recorded config too") {

@@ -53,6 +53,7 @@ TEST_CASE("every command's help shows an example, and every command takes --quie
     CHECK(result.exit_code == 0);
     CHECK(result.standard_output.find("\n  mcdbn-cl " + command + " ") != std::string::npos);
     CHECK(result.standard_output.find("\n  --quiet ") != std::string::npos);
+    CHECK(result.standard_output.find(" in [") == std::string::npos);  // as CLI11 writes ranges
   }
   CHECK(commands.size() >= 3);
 }

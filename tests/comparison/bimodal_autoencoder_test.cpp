@@ -5,7 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "comparison/adam_reference.hpp"
 #include "comparison/bimodal_network.hpp"
@@ -15,7 +14,6 @@
 #include "comparison/pretrained_rbm.hpp"
 #include "comparison/track_window.hpp"
 #include "device/every_device.hpp"
-#include "mcdbn/base/errors.hpp"
 
 namespace bimodal_autoencoder_test {
 

@@ -15,7 +15,7 @@ using namespace mcdbn::test;
 
 namespace {
 
-const BimodalNetwork::Shape kShape{{7, 3}, {5, 4}, 6};
+const BimodalShape kShape{{7, 3}, {5, 4}, 6};
 
 std::vector<DenseLayer> some_layers() {
   std::vector<DenseLayer> layers;

@@ -11,6 +11,13 @@
 
 namespace mcdbn::test {
 
+/// A small body that swings its limbs faster or slower, at 30 frames a second.
+inline Motion paced_clip(int frames, double pace) {
+  Motion motion = swinging(small_body(), frames, 30 * pace);
+  motion.frame_time_s = 1.0 / 30;
+  return motion;
+}
+
 /// Clips that a model was trained on, and others to test it on, all in files.
 struct ClipFiles {
   using Named = std::vector<std::pair<std::string, Motion>>;

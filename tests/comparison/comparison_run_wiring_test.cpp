@@ -2,16 +2,14 @@
 
 #include <doctest/doctest.h>
 
-#include <set>
-
 #include "comparison/baseline.hpp"
 #include "comparison/clip_files.hpp"
 #include "comparison/comparison_run.hpp"
 #include "comparison/mlp_window.hpp"
+#include "comparison/report_clips.hpp"
 #include "device/every_device.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/formats/bvh.hpp"
 #include "motion_model/clip_scene.hpp"
 
 namespace comparison_run_wiring_test {
@@ -23,22 +21,15 @@ namespace {
 
 constexpr double kFps = 30;
 
-/// A small body that swings its limbs faster or slower.
-Motion clip_of(int frames, double pace) {
-  Motion motion = swinging(small_body(), frames, kFps * pace);
-  motion.frame_time_s = 1.0 / kFps;
-  return motion;
-}
-
 /// Two clips that a model was trained on, three to test it on, all in files.
 struct Scene : ClipFiles {
   CameraPlacement test_view{-50, 5, std::nullopt, 40, 1280, 720};
 
   Scene()
-      : ClipFiles({{"08_01.bvh", clip_of(14, 1.0)}, {"walk_s02_01.bvh", clip_of(9, 1.4)}},
-                  {{"08_02.bvh", clip_of(21, 1.2)},
-                   {"09_01.bvh", clip_of(12, 0.8)},
-                   {"jump_s02_07.bvh", clip_of(17, 1.1)}},
+      : ClipFiles({{"08_01.bvh", paced_clip(14, 1.0)}, {"walk_s02_01.bvh", paced_clip(9, 1.4)}},
+                  {{"08_02.bvh", paced_clip(21, 1.2)},
+                   {"09_01.bvh", paced_clip(12, 0.8)},
+                   {"jump_s02_07.bvh", paced_clip(17, 1.1)}},
                   {35, 12, std::nullopt, 45, 1920, 1080}) {}
 };
 
@@ -66,11 +57,13 @@ Motion motion_of(const Scene& scene, const EncodedClip& truth, const MatrixF& po
       .motion;
 }
 
+/// NaN in the same places.
+bool same(const auto& a, const auto& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() &&
+         (a.array() == b.array() || (a.array().isNaN() && b.array().isNaN())).all();
+}
+
 bool same_track(const Track2d& x, const Track2d& y) {
-  const auto same = [](const MatrixD& a, const MatrixD& b) {
-    return a.rows() == b.rows() &&
-           (a.array() == b.array() || (a.array().isNaN() && b.array().isNaN())).all();
-  };
   return same(x.x_px, y.x_px) && same(x.y_px, y.y_px) && same(x.confidence, y.confidence);
 }
 
@@ -78,7 +71,7 @@ double largest(const MatrixD& difference) {
   return difference.cwiseAbs().maxCoeff();
 }
 
-void check_regeneration(const Regeneration& got, const Motion& want, const EncodedClip& truth,
+void check_regeneration(const ScoredAnswer& got, const Motion& want, const EncodedClip& truth,
                         const Modalities& modalities) {
   CHECK(largest(got.motion.channels - want.channels) < 1e-9);
   const ClipScore score = score_clip(truth, want, modalities.root_name());
@@ -106,15 +99,25 @@ TEST_CASE("a test run shows the test clips' tracks as the damage left them, each
       CHECK(got.camera.camera_from_world == want.camera.camera_from_world);
       CHECK(got.camera.width_px == 1280);
       CHECK(same_track(got.track, want.track));
-      CHECK((got.track_features.array() == want.track_features.array() ||
-             got.track_features.array().isNaN())
-                .all());
+      CHECK(same(got.track_features, want.track_features));
       CHECK(got.pose_features == want.pose_features);
     }
     options.damage = {};
     const auto whole = run_test(scene.model(device), scene.tests, options);
     CHECK_FALSE(same_track(whole[0].truth.track, results[0].truth.track));
     CHECK(whole[1].truth.track.confidence.minCoeff() == 1.0);
+  });
+}
+
+TEST_CASE("a test run names the clip that cannot be answered") {
+  const Scene scene;
+  TestRunOptions options = plain_options(scene);
+  options.damage.missing_share = 1;
+  on_every_device([&](Device& device) {
+    CHECK_THROWS_WITH_AS(
+        run_test(scene.model(device), {scene.tests[1]}, options),
+        doctest::Contains((scene.tests[1].string() + ": the 2D track never shows").c_str()),
+        InputError);
   });
 }
 
@@ -174,8 +177,8 @@ TEST_CASE("a test run's samples are the network's, with the options that were gi
           check_regeneration(results[i].samples[s],
                              motion_of(scene, truth, poses[2 * i + s], options.fit), truth,
                              scene.modalities);
-        REQUIRE(results[i].others.size() == 1);
-        check_regeneration(results[i].others.at(kMeanField),
+        REQUIRE(results[i].other_answers.size() == 1);
+        check_regeneration(results[i].other_answers.at(kMeanField),
                            motion_of(scene, truth, answers[i], options.fit), truth,
                            scene.modalities);
       }
@@ -184,7 +187,7 @@ TEST_CASE("a test run's samples are the network's, with the options that were gi
     const auto results = run_test(model, scene.tests, plain_options(scene));
     for (const ClipResult& result : results) {
       CHECK(result.samples.size() == 1);
-      CHECK(result.others.empty());
+      CHECK(result.other_answers.empty());
     }
   });
 }
@@ -238,15 +241,15 @@ TEST_CASE("a test run's baselines learn from the training clips and answer as th
     baselines.back()->fit(options.view_tracks, options.view_poses);
     for (std::size_t i = 0; i < 3; ++i) {
       const EncodedClip truth = damaged(scene, i, options);
-      CHECK(results[i].others.size() == 5);
+      CHECK(results[i].other_answers.size() == 5);
       for (const auto& baseline : baselines) {
         CAPTURE(baseline->name());
-        REQUIRE(results[i].others.count(baseline->name()) == 1);
+        REQUIRE(results[i].other_answers.count(baseline->name()) == 1);
         const auto predict = [&](const MatrixF& track) { return baseline->predict(track); };
         const MatrixF seen =
             fill_gaps(scene.modalities, truth.track_features, truth.track,
                       {{truth.camera, truth.motion.skeleton}, std::nullopt}, predict);
-        check_regeneration(results[i].others.at(baseline->name()),
+        check_regeneration(results[i].other_answers.at(baseline->name()),
                            motion_of(scene, truth, predict(seen), std::nullopt), truth,
                            scene.modalities);
       }
@@ -272,10 +275,10 @@ TEST_CASE("a test run scores the baselines that are asked for, which learn from 
     std::vector<std::string> shown;
     options.progress = [&](const std::string& what, double) { shown.push_back(what); };
     const ClipResult result = run_test(model, {scene.tests[1]}, options).at(0);
-    CHECK(result.others.size() == 2);
+    CHECK(result.other_answers.size() == 2);
     const auto baseline = make_baseline("twin_gaussian_process", device, true);
     baseline->fit(tracks, poses);
-    check_regeneration(result.others.at("twin_gaussian_process"),
+    check_regeneration(result.other_answers.at("twin_gaussian_process"),
                        motion_of(scene, result.truth,
                                  baseline->predict(result.truth.track_features), std::nullopt),
                        result.truth, scene.modalities);
@@ -299,7 +302,7 @@ TEST_CASE("without views the perceptron learns from the training clips, at its f
     // six such epochs.
     CHECK(device.launch_count() - before > 40 * 40 * 10);
     // It was trained on these 23 frames, and answers nothing else: far nearer than the mean pose.
-    const auto& others = results[0].others;
+    const auto& others = results[0].other_answers;
     CHECK(others.at("mlp_window").score.error.mpjpe_mm <
           0.3 * others.at("mean_pose").score.error.mpjpe_mm);
   });
@@ -339,7 +342,7 @@ TEST_CASE("a leading calibration pose is kept in test and training clips alike, 
   const Scene scene;
   on_every_device([&](Device& device) {
     Model model = scene.model(device);
-    Motion posed = clip_of(40, 1.0);
+    Motion posed = paced_clip(40, 1.0);
     posed.channels.row(0).setZero();  // a T-pose, far from the next frame
     const auto file = scene.write("posed.bvh", posed);
     posed.channels.row(5) *= 1.01;  // other bytes
@@ -359,7 +362,7 @@ TEST_CASE("a leading calibration pose is kept in test and training clips alike, 
     const EncodedClip kept = encode_clip(file, scene.modalities, scene.model_view, true);
     REQUIRE(kept.pose_features.rows() == 40);
     const MatrixF mean = kept.pose_features.colwise().mean().replicate(40, 1);
-    CHECK(largest(joint_positions(result.others.at("mean_pose").motion) -
+    CHECK(largest(joint_positions(result.other_answers.at("mean_pose").motion) -
                   joint_positions(motion_of(scene, result.truth, mean, std::nullopt))) < 1e-2);
   });
 }

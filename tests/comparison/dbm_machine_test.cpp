@@ -9,19 +9,17 @@
 
 #include "comparison/clips.hpp"
 #include "device/every_device.hpp"
+#include "reference/units_reference.hpp"
 
 namespace dbm_machine_test {
 
 using namespace mcdbn;
 using namespace mcdbn::test;
+using reference::sigmoid;
 
 namespace {
 
-const DbmMachine::Shape kShape{{3, 2}, {3, 2}, 2};
-
-MatrixD sigmoid(const MatrixD& x) {
-  return (1 / (1 + (-x.array()).exp())).matrix();
-}
+const BimodalShape kShape{{3, 2}, {3, 2}, 2};
 
 /// Everything in double.
 struct Reference {

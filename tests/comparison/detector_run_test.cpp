@@ -8,6 +8,7 @@
 #include "comparison/clip_files.hpp"
 #include "comparison/comparison_run.hpp"
 #include "comparison/limb_keypoints.hpp"
+#include "comparison/report_clips.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/side_swaps.hpp"
@@ -127,7 +128,7 @@ TEST_CASE("a detector's test run shows every method the same track, whatever els
     for (std::size_t i = 0; i < 2; ++i) {
       CHECK(same(alone[i].truth.track.x_px, together[i].truth.track.x_px));
       CHECK(alone[i].samples.at(0).motion.channels == together[i].samples.at(0).motion.channels);
-      const auto& others = together[i].others;
+      const auto& others = together[i].other_answers;
       REQUIRE(others.size() == 2);
       // The mean pose is fitted to that track, too: turned, it is no mean pose any more.
       CHECK(others.at("mean_pose").motion.channels.row(0) !=

@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <random>
 
 using namespace mcdbn;
 using Eigen::VectorXd;

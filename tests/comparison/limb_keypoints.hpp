@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "mcdbn/camera/keypoint.hpp"
+#include "mcdbn/evaluation/limb_error.hpp"
 #include "mcdbn/motion/joint_role.hpp"
 
 namespace mcdbn::test {

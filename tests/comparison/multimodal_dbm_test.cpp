@@ -12,19 +12,17 @@
 #include "comparison/track_window.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "reference/units_reference.hpp"
 
 namespace multimodal_dbm_test {
 
 using namespace mcdbn;
 using namespace mcdbn::test;
+using reference::sigmoid;
 
 namespace {
 
-const DbmMachine::Shape kShape{{3, 2}, {3, 2}, 2};
-
-MatrixD sigmoid(const MatrixD& x) {
-  return (1 / (1 + (-x.array()).exp())).matrix();
-}
+const BimodalShape kShape{{3, 2}, {3, 2}, 2};
 
 MatrixD drawn(const MatrixD& probability, const RandomKey& key) {
   MatrixD units(probability.rows(), probability.cols());

@@ -10,6 +10,7 @@
 #include "comparison/clip_files.hpp"
 #include "comparison/comparison_run.hpp"
 #include "comparison/limb_keypoints.hpp"
+#include "comparison/report_clips.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
 #include "motion/body_size.hpp"

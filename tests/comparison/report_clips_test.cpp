@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "base/scratch_folder.hpp"
 #include "comparison/comparison_run.hpp"
+#include "comparison/report_clips.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/evaluation/pearson.hpp"
 #include "motion/body_size.hpp"
@@ -151,12 +151,12 @@ TEST_CASE("what a report is given of a clip") {
     result.trained_on = true;
     result.known_person = "08";
     for (const double turn : {10.0, 20.0}) {
-      Regeneration sample{changed(motion, turn, {1, 2, 3}), {}};
+      ScoredAnswer sample{changed(motion, turn, {1, 2, 3}), {}};
       sample.score.root_mm = turn;
       result.samples.push_back(sample);
     }
-    result.others["mean_pose"] = {changed(motion, 30, {0, 0, 0}), {}};
-    result.others["mean_pose"].score.root_mm = 30;
+    result.other_answers["mean_pose"] = {changed(motion, 30, {0, 0, 0}), {}};
+    result.other_answers["mean_pose"].score.root_mm = 30;
     const auto clips = report_clips(model, {result}, true);
     REQUIRE(clips.size() == 1);
     const ReportClip& clip = clips[0];
@@ -204,7 +204,7 @@ TEST_CASE("what a report is given of a clip") {
     }
     REQUIRE(clip.others.count("mean_pose") == 1);
     CHECK(clip.others.size() == 1);
-    check_points(clip.others.at("mean_pose").points_mm, result.others["mean_pose"].motion);
+    check_points(clip.others.at("mean_pose").points_mm, result.other_answers["mean_pose"].motion);
     CHECK(clip.others.at("mean_pose").score.root_mm == 30.0);
     REQUIRE(clip.track_px.cols() == 2 * joints);
     for (std::size_t i = 0; i < names.size(); ++i) {

@@ -6,6 +6,7 @@
 
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
+#include "comparison/comparison_run.hpp"
 #include "comparison/tiny_training.hpp"
 #include "corpus/training_files.hpp"
 #include "device/every_device.hpp"
@@ -148,6 +149,30 @@ TEST_CASE(
     CHECK(begun.empty());
     CHECK(lines_of(folder.write("whole.jsonl", text)) ==
           std::vector<ordered_json>{scored, diverged, refused});
+  });
+}
+
+TEST_CASE("sweep: what is scored are the network's own answers, seen as it was trained") {
+  const TrainingFiles files({{.subject = 1}, {.subject = 2}});
+  const ScratchFolder folder;
+  on_every_device([&](Device& device) {
+    std::filesystem::remove_all(folder / "run");
+    const SweepConfiguration varied{given("camera.azimuth", -50)};
+    const ordered_json scored =
+        Sweep(device, {files.files()[1]}, {files.files()[0]}, tiny, folder / "run").run(varied);
+    CAPTURE(scored.dump());
+    REQUIRE(scored.at("status") == "ok");
+    const Model model =
+        load_model(device, folder / ("run/" + name_of(varied)) / "model.safetensors");
+    TestRunOptions options;
+    options.camera.azimuth_deg = -50;
+    options.fit.reset();
+    options.baselines.clear();
+    const ClipScore score = run_test(model, {files.files()[1]}, options).at(0).samples.at(0).score;
+    CHECK(scored.at("pcc_flat").get<double>() == score.pcc_flat);
+    CHECK(scored.at("pcc_channel").get<double>() == score.pcc_channel);
+    CHECK(scored.at("mpjpe_mm").get<double>() == score.error.mpjpe_mm);
+    CHECK(score.pcc_flat != score.pcc_channel);
   });
 }
 

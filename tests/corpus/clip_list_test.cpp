@@ -33,6 +33,31 @@ TEST_CASE("a list of clips: what was written is read, from wherever it is read")
   CHECK_THROWS_AS(find_listed_clips({}), InputError);
 }
 
+TEST_CASE("a list of clips: what it says of a clip holds wherever else the clip is named") {
+  const test::ScratchFolder folder;
+  make_folder(folder / "clips");
+  const fs::path walk = folder.write("clips/a.bvh", "x"), run = folder.write("clips/b.bvh", "x"),
+                 people = folder / "people.toml", actions = folder / "actions.toml";
+  write_clip_list(people, {{walk, "ann"}, {run, "bob"}});
+  write_clip_list(actions, {{walk, "", "walk"}, {run, "bob", "run"}});
+  for (const std::vector<fs::path>& paths :
+       std::vector<std::vector<fs::path>>{{folder / "clips", people, actions},
+                                          {people, folder / "clips", actions},
+                                          {actions, people, folder / "clips"}}) {
+    const auto clips = find_listed_clips(paths);
+    REQUIRE(clips.size() == 2);
+    CHECK(clips[0].person == "ann");
+    CHECK(clips[0].action == "walk");
+    CHECK(clips[1].person == "bob");
+    CHECK(clips[1].action == "run");
+  }
+  const fs::path other = folder / "other.toml";
+  write_clip_list(other, {{walk, "eve"}});
+  CHECK_THROWS_WITH_AS(find_listed_clips({people, other}),
+                       doctest::Contains("a.bvh: its person is given as 'ann' and as 'eve'"),
+                       InputError);
+}
+
 TEST_CASE("a list of clips: what is wrong is reported with its line") {
   const test::ScratchFolder folder;
   const fs::path walk = folder.write("walk.bvh", "x");

@@ -32,8 +32,9 @@ void check_same(const ClipStore& x, const ClipStore& y) {
     const ClipRecord &a = x.record(i), &b = y.record(i);
     CHECK(a.clip.path == b.clip.path);
     CHECK(a.clip.fingerprint == b.clip.fingerprint);
-    CHECK(a.person == b.person);
-    CHECK(a.action == b.action);
+    CHECK(a.clip.former_fingerprint == b.clip.former_fingerprint);
+    CHECK(a.clip.person == b.clip.person);
+    CHECK(a.clip.action == b.clip.action);
     CHECK(a.frame_time_s == b.frame_time_s);
     CHECK(a.frames == b.frames);
     CHECK(same_skeleton(a.skeleton, b.skeleton));
@@ -79,6 +80,38 @@ TEST_CASE(
     CHECK(notices_of(files, settings, cache).empty());
   }
   CHECK(entries_of(folder / "").size() == 2);  // nothing is left beside them
+}
+
+TEST_CASE("all that is known of a clip comes back, the hash by which earlier models know it too") {
+  const ScratchFolder folder;
+  LoadedClip clip = humanoid_clip(10, 20, 0, 5);
+  clip.clip = {"/walks/01.amc", "of amc and asf", "of the amc alone", "somebody", "walk"};
+  ClipCacheWriter cache(folder / "clips.cache", "key");
+  cache.add(clip);
+  check_same(cache.finish(), ClipStore(std::vector<LoadedClip>{clip}));
+}
+
+TEST_CASE("a cache belongs to the joint map, the skeleton and the new poses of its training") {
+  const TrainingFiles walks({{1, 1}});
+  const std::vector<ListedClip> files{{walks.files()[0]}};
+  const ScratchFolder folder;
+  const auto cache = folder / "clips.cache";
+  CorpusSettings settings;
+  REQUIRE(notices_of(files, settings, cache).empty());
+  const auto check_made_anew = [&] {
+    const auto notices = notices_of(files, settings, cache);
+    REQUIRE(!notices.empty());
+    CHECK(notices.front().find("other clips or settings") != std::string::npos);
+    CHECK(notices_of(files, settings, cache).empty());
+  };
+  settings.joint_map = {{JointRole::head, "Head"}};
+  check_made_anew();
+  settings.joint_map = {{JointRole::head, "Neck"}};
+  check_made_anew();
+  settings.skeleton = SkeletonUse::humanoid;
+  check_made_anew();
+  settings.augment.limbs_turned = 0.5;
+  check_made_anew();
 }
 
 TEST_CASE("skeletons that differ go through the file onto the humanoid") {
@@ -154,7 +187,7 @@ TEST_CASE("a cache of other settings, other clips or other bytes is reported and
 
 TEST_CASE("few clips are looked at whole, of many pieces all along them") {
   const auto clip = [](int frames) {
-    return ClipRecord{{}, {}, {}, {}, 1.0 / 60.0, frames};  // two a frame of the model
+    return ClipRecord{{}, {}, 1.0 / 60.0, frames};  // two a frame of the model
   };
   const auto store = [](std::vector<ClipRecord> records) {
     return ClipStore(std::move(records), nullptr);

@@ -56,6 +56,13 @@ std::vector<double> distances_px(const AugmentedView& view, const std::string& o
   return distances;
 }
 
+/// The body's height on the image where it stands in the middle of the clip.
+double height_px(const AugmentedView& view) {
+  const Eigen::Vector3d root = joint_positions(view.motion).row(20).head<3>().transpose();
+  const double depth = (view.camera.camera_from_world * root + view.camera.translation).z();
+  return view.camera.fy_px * body_height(view.motion.skeleton) / depth;
+}
+
 }  // namespace
 
 TEST_CASE("detector views: the share that was asked for, the same for the same key") {
@@ -83,6 +90,10 @@ TEST_CASE("detector views: every detector comes, through cameras from all around
     // OpenPose and MediaPipe show feet, COCO none; OpenPose alone loses joints for longer.
     const bool feet = view.track.find("LeftToeBase") >= 0;
     (feet ? with_feet : with_head_alone) += 1;
+    if (!feet) {  // RTMPose loses no joint and is surer than OpenPose: 0.85, hidden 0.73
+      CHECK((view.track.confidence.array() > 0).all());
+      CHECK(view.track.confidence.mean() > 0.75);
+    }
     const Eigen::Vector3d at =
         centre(view.camera) -
         joint_positions(view.motion).row(view.motion.frames() / 2).head<3>().transpose();
@@ -108,17 +119,11 @@ TEST_CASE("detector views: joints are off as a detector's are, no more, and not 
     const AugmentedView view = view_of(1, step);
     const std::vector<double> off = distances_px(view);
     REQUIRE(off.size() > 100);
-    // The body's height on the image where it stands in the middle of the clip.
-    const double depth = (view.camera.camera_from_world *
-                              joint_positions(view.motion).row(20).head<3>().transpose() +
-                          view.camera.translation)
-                             .z();
-    const double height_px = view.camera.fy_px * body_height(view.motion.skeleton) / depth;
-    const double median = off[off.size() / 2] / height_px;
+    const double median = off[off.size() / 2] / height_px(view);
     CHECK(median > 0.002);
     CHECK(median < 0.03);
     const std::vector<double> head = distances_px(view, "Head");
-    head_off += head.empty() ? 0 : head[head.size() / 2] / height_px / 30;
+    head_off += head.empty() ? 0 : head[head.size() / 2] / height_px(view) / 30;
     confidences.insert(view.track.confidence(0, 0));
     unseen += (view.track.confidence.array() == 0).any() ? 1 : 0;
   }

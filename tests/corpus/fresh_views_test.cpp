@@ -19,8 +19,8 @@ LoadedClip clip_of(const std::string& person, const std::string& action, int fra
                    double heading_deg) {
   LoadedClip clip = humanoid_clip(20 + heading_deg, 30, heading_deg, frames);
   clip.clip.path = person + action;
-  clip.person = person;
-  clip.action = action;
+  clip.clip.person = person;
+  clip.clip.action = action;
   return clip;
 }
 

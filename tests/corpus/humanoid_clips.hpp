@@ -25,7 +25,7 @@ inline LoadedClip humanoid_clip(double elbow_deg, double knee_deg, double headin
   set(left_knee, knee_deg, Eigen::Vector3d::UnitX());
   set(right_knee, knee_deg, Eigen::Vector3d::UnitX());
   set(pelvis, heading_deg, Eigen::Vector3d::UnitY());
-  return {{}, std::move(motion), {}, {}};
+  return {{}, std::move(motion)};
 }
 
 inline double angle_deg(const Eigen::Matrix3d& rotation) {

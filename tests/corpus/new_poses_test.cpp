@@ -121,7 +121,7 @@ TEST_CASE("limbs turned: smoothly, within the limits, the pelvis as it was") {
             Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal())
                 .normalized()
                 .toRotationMatrix();
-    free_clips.push_back({{}, wild.motion(), {}, {}});
+    free_clips.push_back({{}, wild.motion()});
   }
   const PosePool free_pool(free_clips, kFps);
   double trunk = 0, limb = 0;
@@ -141,6 +141,24 @@ TEST_CASE("limbs turned: smoothly, within the limits, the pelvis as it was") {
   CHECK(std::sqrt(trunk) == doctest::Approx(7.5).epsilon(0.25));
   turn_limbs(same = before, pool, 0, 5);
   CHECK(changed_roles(before, same).empty());
+}
+
+TEST_CASE("limits: a joint turns as far as the one of the other side was seen to") {
+  HumanoidPoses poses(humanoid_clip(10, 20, 0).motion);
+  const Matrix3d at_rest = poses.local(0, right_shoulder);
+  for (int t = 0; t < poses.frames(); ++t) {
+    const double turn = M_PI / 3 * t / (poses.frames() - 1);
+    poses.local(t, left_shoulder) = Eigen::AngleAxisd(turn, Vector3d::UnitZ()).toRotationMatrix();
+    poses.local(t, right_shoulder) = at_rest;
+  }
+  const PosePool pool(std::vector<LoadedClip>{{{}, poses.motion()}}, kFps);
+  const Vector3d mirror(-1, 1, 1);
+  for (const int t : {20, 45, 70}) {
+    CAPTURE(t);
+    const Matrix3d turned =
+        mirror.asDiagonal() * poses.local(t, left_shoulder) * mirror.asDiagonal();
+    CHECK(pool.limits(right_shoulder).clamped(turned, at_rest).isApprox(turned, 1e-6));
+  }
 }
 
 TEST_CASE("arms anywhere: they point where no clip's do, but not far behind") {
@@ -269,7 +287,7 @@ TEST_CASE("new poses: each in its share of the views, bones and feet kept") {
 }
 
 TEST_CASE("new poses are of the humanoid alone; a piece goes back where its clip ends") {
-  std::vector<LoadedClip> clips{{{}, swinging(small_body(), 5), {}, {}}};
+  std::vector<LoadedClip> clips{{{}, swinging(small_body(), 5)}};
   CHECK_THROWS_AS(PosePool(clips, kFps), ConfigError);
   clips = {humanoid_clip(10, 20, 0, 10)};
   const PosePool pool(clips, kFps);

@@ -7,11 +7,11 @@
 #include "base/scratch_folder.hpp"
 #include "corpus/augmented_views.hpp"
 #include "corpus/encoded_clip.hpp"
-#include "corpus/humanoid_clips.hpp"
 #include "corpus/training_files.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/motion/humanoid_rig.hpp"
+#include "motion/humanoid_motion.hpp"
 #include "motion/synthetic_motion.hpp"
 
 using namespace mcdbn;
@@ -39,7 +39,7 @@ TEST_CASE("training clips: a skeleton that all share is learnt as it is") {
   for (std::size_t i = 0; i < 2; ++i) {
     CHECK(clips[i].motion.channels == plain[i].motion.channels);
     CHECK(clips[i].clip.path == plain[i].clip.path);
-    CHECK(clips[i].person.empty());
+    CHECK(clips[i].clip.person.empty());
   }
   CorpusSettings own;
   own.skeleton = SkeletonUse::own;
@@ -55,7 +55,7 @@ TEST_CASE("training clips: skeletons that differ are brought onto the humanoid, 
   for (const LoadedClip& clip : clips) CHECK(is_humanoid(clip.motion.skeleton));
   const Motion raw = load_clips(files.walks.files())[0].motion;
   CHECK(clips[0].motion.channels == HumanoidRig(raw).to_humanoid(raw).channels);
-  CHECK(clips[0].person != clips[1].person);
+  CHECK(clips[0].clip.person != clips[1].clip.person);
   REQUIRE(notices.size() == 2);
   CHECK(notices[0].find(files.other.string() + " lacks the joint") != std::string::npos);
   CHECK(notices[1].find("2 clips brought onto the canonical humanoid") == 0);

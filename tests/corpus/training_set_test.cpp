@@ -220,19 +220,23 @@ TEST_CASE("a training set and views of it: people, and actions where those were 
   CorpusConfig config = settings();
   config.phases = 3;
   std::vector<LoadedClip> clips = load_clips(walks.files(), config.keep_first_frame, nullptr);
-  const auto taken = [&] { return mcdbn::make_training_set(clips, config, config.seed, true); };
+  const auto taken = [&](bool with_views) {
+    return mcdbn::make_training_set(clips, config, config.seed, with_views);
+  };
   const auto seen = [&] {
-    return mcdbn::make_augmented_views(clips, taken().modalities, config, config.seed);
+    return mcdbn::make_augmented_views(clips, taken(true).modalities, config, config.seed);
   };
   using Numbers = std::vector<std::size_t>;
-  CHECK(taken().people == Numbers{0, 0, 0, 1, 1, 0, 0});  // on 3, 2 and 2 grids
-  CHECK(taken().groups.empty());
+  CHECK(taken(false).people == Numbers{0, 0, 0, 1, 1, 0, 0});  // on 3, 2 and 2 grids
+  CHECK(taken(false).groups.empty());
+  CHECK(taken(true).people == Numbers{0, 1, 0});  // views are of the clips themselves
   CHECK(seen().people == Numbers{0, 0, 0, 1, 1, 1, 0, 0, 0});
   CHECK(seen().groups.empty());
-  clips[0].action = "walk";
-  clips[2].action = "run";
-  CHECK(taken().people == Numbers{0, 0, 0, 1, 1, 0, 0});
-  CHECK(taken().groups == Numbers{0, 0, 0, 1, 1, 2, 2});
+  clips[0].clip.action = "walk";
+  clips[2].clip.action = "run";
+  CHECK(taken(false).people == Numbers{0, 0, 0, 1, 1, 0, 0});
+  CHECK(taken(false).groups == Numbers{0, 0, 0, 1, 1, 2, 2});
+  CHECK(taken(true).groups == Numbers{0, 1, 2});
   CHECK(seen().groups == Numbers{0, 0, 0, 1, 1, 1, 2, 2, 2});
 }
 

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <tuple>
+
 #include "device/every_device.hpp"
 #include "device/gemm.hpp"
 #include "device/launch_trace.hpp"
@@ -74,16 +77,26 @@ TEST_CASE("kernel rates: a product of CLBlast's counts as a launch with a time")
   });
 }
 
-TEST_CASE("kernel rates: a product of eight times the work takes more time") {
+TEST_CASE("kernel rates: a kernel's time is that of its launches, the rest lies between them") {
   on_every_device([](Device& device) {
-    const auto seconds = [&](std::size_t size) {
-      Step step(device, size);
-      step.run();
-      const StepTimes times = time_kernels(
-          device, [&] { step.run(); }, {}, 9);
-      return times.kernels[0].seconds;
+    Step step(device, 64);
+    const StepTimes times = time_kernels(
+        device, [&] { step.run(); }, {}, 1);
+    REQUIRE(times.kernels.size() == 2);
+    REQUIRE(times.last_times.size() == 3);
+    const auto& [first, sum, second] =
+        std::tie(times.last_times[0], times.last_times[1], times.last_times[2]);
+    const auto seconds = [](std::uint64_t from_ns, std::uint64_t to_ns) {
+      return 1e-9 * static_cast<double>(to_ns - from_ns);
     };
-    CHECK(seconds(512) > 3 * seconds(128));
+    constexpr double kExactly_s = 1e-12;
+    const double products_s = seconds(first.started_ns, first.ended_ns) +
+                              seconds(second.started_ns, second.ended_ns),
+                 between_s = seconds(first.ended_ns, sum.started_ns) +
+                             seconds(sum.ended_ns, second.started_ns);
+    CHECK(std::abs(times.kernels[0].seconds - products_s) < kExactly_s);
+    CHECK(std::abs(times.kernels[1].seconds - seconds(sum.started_ns, sum.ended_ns)) < kExactly_s);
+    CHECK(std::abs(times.between_s - between_s) < kExactly_s);
   });
 }
 
@@ -108,16 +121,21 @@ TEST_CASE("launch trace: one row a step, one event a launch, in microseconds") {
 
 TEST_CASE("peak: no product is far above it, however busy the machine is") {
   on_every_device([](Device& device) {
-    const double gflops = measure_peak_gflops(device);
-    CHECK(gflops > 0);
     CHECK(measure_read_gbytes_per_s(device, 1 << 20) > 0);
     CHECK(measure_read_gbytes_per_s(device, 1) > 0);  // less than one step of the loop
     constexpr std::size_t kSize = 512;
     Step step(device, kSize);
     step.run();
-    const StepTimes times = time_kernels(
-        device, [&] { step.run(); }, {}, 9);
-    CHECK(2 * 2e-9 * kSize * kSize * kSize / times.kernels[0].seconds < 4 * gflops);
+    // What else runs meanwhile makes a peak too low, but not again and again.
+    bool is_below = false;
+    for (int tries = 0; tries < 5 && !is_below; ++tries) {
+      const double gflops = measure_peak_gflops(device);
+      CHECK(gflops > 0);
+      const StepTimes times = time_kernels(
+          device, [&] { step.run(); }, {}, 9);
+      is_below = 2 * 2e-9 * kSize * kSize * kSize / times.kernels[0].seconds < 4 * gflops;
+    }
+    CHECK(is_below);
   });
 }
 

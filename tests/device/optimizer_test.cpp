@@ -13,12 +13,9 @@ namespace optimizer_test {
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
+using reference::exact;
 
 namespace {
-
-Bounded exact(const MatrixF& values) {
-  return Bounded::exact(values.cast<double>());
-}
 
 void check_within(const MatrixF& got, const Bounded& want) {
   CHECK(reference::misfit(got, want.value, want.bound) == "");

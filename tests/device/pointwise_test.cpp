@@ -12,6 +12,7 @@ namespace pointwise_test {
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
+using reference::exact;
 
 namespace {
 
@@ -20,10 +21,6 @@ struct Size {
 };
 const std::vector<Size> kSmallSizes = {{1, 1}, {3, 3}, {1, 17}, {17, 1}, {7, 13}, {5, 33}};
 const std::vector<Size> kModelSizes = {{100, 96}, {100, 190}, {100, 300}, {480, 300}, {101, 149}};
-
-Bounded exact(const MatrixF& values) {
-  return Bounded::exact(values.cast<double>());
-}
 
 void check_within(const MatrixF& got, const Bounded& want) {
   CHECK(reference::misfit(got, want.value, want.bound) == "");

@@ -6,6 +6,7 @@
 #include "mcdbn/corpus/training_clips.hpp"
 #include "mcdbn/motion_model/training_run.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
+#include "motion_model/tiny_training_config.hpp"
 #include "opencl_layer/opencl_layer.hpp"
 
 namespace mcdbn::test {
@@ -43,28 +44,9 @@ class TinyTraining {
   }
   std::vector<ListedClip> listed() const { return {walks_.files().begin(), walks_.files().end()}; }
 
-  const TrainingConfig config = settings();
+  const TrainingConfig config = tiny_training_config();
 
  private:
-  static TrainingConfig settings() {
-    TrainingConfig config;
-    config.seed = 19;
-    config.hidden = 8;
-    config.mrbm_hidden = 6;
-    config.order = 2;
-    config.look_ahead = 2;
-    config.batch = 20;
-    config.least_batches = 2;
-    config.gaussian.epochs = config.mrbm.epochs = 2;
-    config.gaussian.gibbs_steps = 1;
-    config.mrbm.mean_field_steps = 4;
-    config.augment.views = 2;
-    config.fine_tuning.steps = 3;
-    config.fine_tuning.windows = 4;
-    config.fine_tuning.window_frames = 4;
-    config.fine_tuning.mean_field_steps = 2;
-    return config;
-  }
   static std::vector<MatrixF> bits_of(const Mcdbn& network) {
     std::vector<MatrixF> bits;
     for (const Cdbn& cdbn : network.cdbns)

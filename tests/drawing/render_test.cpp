@@ -148,7 +148,7 @@ TEST_CASE("rendering reports what is wrong and leaves no file behind") {
   const ScratchFolder folder;
   const RenderClip clip{short_clip(SynthesisAction::walk), "walk"};
   CHECK_THROWS_AS(render({}, folder / "a.png"), InputError);
-  CHECK_THROWS_AS(render({clip}, folder / "a.gif"), InputError);
+  CHECK_THROWS_AS(render({clip}, folder / "a.gif"), ConfigError);
   CHECK_THROWS_AS(render({clip}, folder / "missing/a.mp4"), InputError);
   CHECK_THROWS_AS(render({clip}, folder / "missing/a.png"), InputError);
   RenderOptions options;

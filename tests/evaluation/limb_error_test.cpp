@@ -5,7 +5,7 @@
 
 #include "clips.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/evaluation/joint_error.hpp"
+#include "mcdbn/evaluation/limb_error.hpp"
 
 namespace mcdbn {
 namespace {

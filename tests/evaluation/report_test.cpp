@@ -1,7 +1,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <sstream>
 
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
@@ -118,7 +117,7 @@ TEST_CASE("a report names what was done to the tracks and to the answers") {
   CHECK(has_verdict(verdicts(report), Verdict::Kind::note,
                     "5 px of noise, 20 % of the joints missing, an arm hidden for 1 s"));
   CHECK(has_verdict(verdicts(report), Verdict::Kind::note,
-                    "Even the mean pose, fitted to the track,"));
+                    "By the flattened PCC, the mean pose, fitted to the track,"));
   const ordered_json summary = summary_json(report);
   CHECK(summary.at("fit") == "track");
   CHECK(summary.at("track_damage") ==
@@ -147,7 +146,7 @@ TEST_CASE("verdicts put in words which method wins") {
   EvaluationReport report = small_report();
   CHECK(has_verdict(verdicts(report), Kind::good, "beats ridge regression"));
   CHECK(has_verdict(verdicts(report), Kind::note,
-                    "Even a pose that never moves reaches a flattened PCC of 0.9500"));
+                    "By the flattened PCC, a pose that never moves reaches 0.9500"));
   CHECK(!has_verdict(verdicts(report), Kind::bad, "trained on"));
   CHECK(!has_verdict(verdicts(report), Kind::note, "fitted to the 2D track"));
   CHECK(!has_verdict(verdicts(report), Kind::note, "damaged"));

@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "clips.hpp"
 #include "mcdbn/base/errors.hpp"

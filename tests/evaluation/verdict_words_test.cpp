@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <cmath>
 #include <limits>
 
 #include "numbered_report.hpp"
@@ -85,7 +84,7 @@ TEST_CASE("verdicts: nearer, or following better, or both, or neither") {
 TEST_CASE("verdicts: a constant pose by the flattened correlation") {
   CHECK(has_verdict(
       duel({20, 0.7, 0.95}, {50, 0.02, 0.81}, "mean_pose"), Kind::note,
-      "Even a pose that never moves reaches a flattened PCC of 0.8100 (the model: 0.9500): "
+      "By the flattened PCC, a pose that never moves reaches 0.8100 (the model: 0.9500): "
       "judge by the per-channel PCC, where it gets 0.02."));
   CHECK(has_verdict(
       duel({20, 0.7, 0.9}, {50, 0.02, 0.9}, "mean_pose"), Kind::bad,

@@ -4,8 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numeric>
-#include <random>
 
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/camera.hpp"

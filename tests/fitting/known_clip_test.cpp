@@ -82,7 +82,7 @@ TEST_CASE("known of a clip: without a fit the answer's joints are decoded as the
                            m.pose_features.root_features(features).rightCols(3) *
                            scene.camera.camera_from_world;
   const TrackRays seen = track_rays(names, scene.track, scene.camera);
-  const MatrixD root = root_trajectory(about, seen, scene.camera, velocity);
+  const MatrixD root = root_trajectory(about, seen, scene.camera, velocity).root;
   CHECK(largest(got.channels - decoded(root).channels) < 1e-9);
   CHECK(got.fps() == doctest::Approx(m.fps));
   // And that is the truth, as the answer was: a walk of some metres.

@@ -7,6 +7,7 @@
 
 #include "camera/track_noise.hpp"
 #include "fitting/walk_scene.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "motion/foot_joints.hpp"
 
 using namespace mcdbn;
@@ -203,6 +204,20 @@ TEST_CASE("posterior: one frame, two frames, no frame") {
     const Scene few = make_scene(1, frames);
     CHECK(error_cm(few, few.fit()) < 0.7 * error_cm(few, few.unfitted()));
   }
+  Scene none = make_scene(1, 1);
+  none.mean.conservativeResize(0, Eigen::NoChange);
+  for (MatrixD* values : {&none.track.x_px, &none.track.y_px, &none.track.confidence})
+    values->conservativeResize(0, Eigen::NoChange);
+  CHECK_THROWS_AS(none.fit(), InputError);
+}
+
+TEST_CASE("posterior: a rough solution takes no track for exact") {
+  const Scene scene = make_scene(1, 30);
+  TrackFitSettings settings, other;
+  other.exact_parent_correlation = 0.9;
+  CHECK(scene.fit(scene.track, settings).channels != scene.fit(scene.track, other).channels);
+  settings.most_solutions = other.most_solutions = 0;
+  CHECK(scene.fit(scene.track, settings).channels == scene.fit(scene.track, other).channels);
 }
 
 TEST_CASE("posterior: a long clip is solved in windows, and nothing jumps between them") {

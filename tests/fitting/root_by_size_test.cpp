@@ -43,9 +43,7 @@ struct Scene {
       relative.block(0, 3 * k, turned, 2) *= -1;
     }
   }
-  MatrixD path(bool* by_size = nullptr) const {
-    return root_trajectory(relative, track, Camera{}, MatrixD(0, 3), 1.0, by_size);
-  }
+  RootPath path() const { return root_trajectory(relative, track, Camera{}, MatrixD(0, 3)); }
 };
 
 }  // namespace
@@ -53,33 +51,28 @@ struct Scene {
 TEST_CASE("root by size: a body that is upside down is as far away, its middle where it is seen") {
   for (const int frames : {1, 9}) {
     CAPTURE(frames);
-    bool by_size = false;
-    const MatrixD path = Scene(frames, frames).path(&by_size);
-    CHECK(by_size);
+    const RootPath path = Scene(frames, frames).path();
+    CHECK(path.by_size);
     // Middles meet: root - middle = true root + middle.
     const Eigen::Vector3d middle =
         flat_body().reshaped<Eigen::RowMajor>(5, 3).colwise().mean().transpose();
     const Eigen::RowVector3d wanted = (kRoot + 2 * middle).transpose();
-    CHECK((path.rowwise() - wanted).cwiseAbs().maxCoeff() < 1e-6);
+    CHECK((path.root.rowwise() - wanted).cwiseAbs().maxCoeff() < 1e-6);
   }
 }
 
 TEST_CASE("root by size: frames of which most match are bridged as if the others were not seen") {
   for (const int turned : {0, 4}) {
     CAPTURE(turned);
-    bool by_size = true;
-    const MatrixD path = Scene(9, turned).path(&by_size);
-    CHECK_FALSE(by_size);
-    CHECK((path.rowwise() - kRoot.transpose()).cwiseAbs().maxCoeff() < 1e-6);
+    const RootPath path = Scene(9, turned).path();
+    CHECK_FALSE(path.by_size);
+    CHECK((path.root.rowwise() - kRoot.transpose()).cwiseAbs().maxCoeff() < 1e-6);
   }
-  bool by_size = false;
   Scene scene(9, 5);
-  scene.path(&by_size);
-  CHECK(by_size);
+  CHECK(scene.path().by_size);
   // Frames that show too little do not count.
   scene.track.confidence.topRows(2).rightCols(3).setZero();
-  scene.path(&by_size);
-  CHECK_FALSE(by_size);
+  CHECK_FALSE(scene.path().by_size);
 }
 
 TEST_CASE("root by size: every joint is before the camera") {
@@ -89,8 +82,8 @@ TEST_CASE("root by size: every joint is before the camera") {
   scene.track.rays << 0.5, 0, -0.5, 0, 0, 0.5, 0, -0.5, 0, 0;
   // By size alone at 0.2, with the last joint behind the camera: a tenth of its depth is left to
   // it.
-  const MatrixD path = scene.path();
-  CHECK((path - MatrixD(Eigen::RowVector3d(0, 0, 2 / 0.9))).cwiseAbs().maxCoeff() < 1e-9);
+  const MatrixD root = scene.path().root;
+  CHECK((root - MatrixD(Eigen::RowVector3d(0, 0, 2 / 0.9))).cwiseAbs().maxCoeff() < 1e-9);
 }
 
 TEST_CASE("root by size: what cannot be placed is refused for what it is") {

@@ -59,7 +59,8 @@ Motion walk() {
 
 MatrixD solve(const Scene& scene, bool with_velocity) {
   return root_trajectory(scene.relative, track_rays(scene.names, scene.track, scene.camera),
-                         scene.camera, with_velocity ? scene.velocity : MatrixD(0, 3));
+                         scene.camera, with_velocity ? scene.velocity : MatrixD(0, 3))
+      .root;
 }
 
 void add_noise(Track2d& track, double deviation_px, unsigned seed) {
@@ -162,7 +163,8 @@ TEST_CASE("root trajectory: one or two frames, and nothing to see") {
     scene.track = project_motion(motion, scene.camera);
     const MatrixD path = root_trajectory(scene.relative.topRows(frames),
                                          track_rays(scene.names, scene.track, scene.camera),
-                                         scene.camera, MatrixD(0, 3));
+                                         scene.camera, MatrixD(0, 3))
+                             .root;
     CHECK(largest(path - scene.root.topRows(frames)) < 0.1);
   }
   Scene scene = make_scene(walk());

@@ -19,7 +19,8 @@ struct Scene {
 
   MatrixD solve(double velocity_error_m_s2 = 1) const {
     return root_trajectory(relative, track_rays(track.joint_names, track, camera), camera, velocity,
-                           velocity_error_m_s2);
+                           velocity_error_m_s2)
+        .root;
   }
 };
 

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -13,19 +14,22 @@ constexpr double kUnseen = std::numeric_limits<double>::infinity();
 }
 
 TEST_CASE("the smoother's variances are those of the Gaussian process, solved densely") {
-  constexpr double kPrior = 4, kMemory_s = 0.15, kFrame_s = 1.0 / 30;
+  constexpr double kStart = 4, kStartRate = 9, kDensity = 100, kFrame_s = 1.0 / 30;
   std::vector<Measured> series(20, {0, 0.3});
   for (const int gap : {0, 5, 6, 7, 8, 9, 15}) series[gap].variance = kUnseen;
   series[11].variance = 2;
-  const auto smoothed =
-      smooth_series(series, SeriesDynamics::around_zero(kPrior, kMemory_s, kFrame_s));
-  const auto kernel = [&](double frames) {
-    const double x = std::sqrt(3.0) / kMemory_s * std::abs(frames) * kFrame_s;
-    return kPrior * (1 + x) * std::exp(-x);
+  SeriesDynamics dynamics = SeriesDynamics::with_velocity(kDensity, kFrame_s);
+  dynamics.start.diagonal() << kStart, kStartRate;
+  const auto smoothed = smooth_series(series, dynamics);
+  // A start, a rate, and twice integrated white noise.
+  const auto kernel = [&](int a, int b) {
+    const double before = std::min(a, b) * kFrame_s, after = std::max(a, b) * kFrame_s;
+    return kStart + kStartRate * before * after +
+           kDensity * before * before * (3 * after - before) / 6;
   };
   Eigen::MatrixXd all(20, 20);
   for (int a = 0; a < 20; ++a) {
-    for (int b = 0; b < 20; ++b) all(a, b) = kernel(a - b);
+    for (int b = 0; b < 20; ++b) all(a, b) = kernel(a, b);
   }
   std::vector<int> seen;
   for (int t = 0; t < 20; ++t) {

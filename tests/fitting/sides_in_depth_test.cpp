@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "fitting/limb_sides.hpp"
-#include "fitting/rotation.hpp"
 #include "fitting/window_problem.hpp"
 #include "mcdbn/base/random.hpp"
+#include "motion/rotation_vector.hpp"
 
 namespace sides_in_depth_test {
 

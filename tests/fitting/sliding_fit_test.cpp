@@ -8,11 +8,12 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fitting/quadratic_energy.hpp"
+#include "fitting/sliding_scene.hpp"
 #include "fitting/terms/normal_term.hpp"
-#include "fitting/track_smoothing.hpp"
 #include "fitting/walk_scene.hpp"
 #include "fitting/window_problem.hpp"
 #include "motion/body_size.hpp"
@@ -26,20 +27,7 @@ using namespace mcdbn::test;
 
 namespace {
 
-PosePrior some_rows(const PosePrior& prior, Eigen::Index first, Eigen::Index count) {
-  if (!prior.has_deviation()) return MatrixF(prior.mean.middleRows(first, count));
-  return {prior.mean.middleRows(first, count), prior.deviation.middleRows(first, count)};
-}
-
-Track2d some_rows(const Track2d& track, Eigen::Index first, Eigen::Index count) {
-  Track2d part = track;
-  part.x_px = track.x_px.middleRows(first, count);
-  part.y_px = track.y_px.middleRows(first, count);
-  part.confidence = track.confidence.middleRows(first, count);
-  return part;
-}
-
-/// Frame after frame, each settled when `lag` more have come. @return the channels as they settled
+/// Frame after frame, each settled when `lag` more have come: the channels as they settled.
 struct Slid {
   MatrixD channels;
   Skeleton body;
@@ -47,24 +35,8 @@ struct Slid {
 Slid slid(const Scene& scene, const std::optional<Skeleton>& skeleton, Eigen::Index lag,
           const TrackFitSettings& settings, const PosePrior& prior) {
   SlidingFit fit(scene.modalities, {scene.known.camera, skeleton}, scene.track, settings);
-  const Eigen::Index frames = scene.track.frames();
-  Slid result{MatrixD(frames, scene.truth.channels.cols()), {}};
-  Eigen::Index first = 0, settled = 0;
-  for (Eigen::Index t = 0; t < frames; ++t) {
-    const Eigen::Index count = t + 1 - first;
-    fit.solve(some_rows(prior, first + fit.held(), count - fit.held()),
-              some_rows(scene.track, first, count),
-              track_noise_px(some_rows(scene.track, 0, t + 1)));
-    const Eigen::Index done = (t + 1 == frames ? frames : t + 1 - lag) - settled;
-    if (done <= 0) continue;
-    result.channels.middleRows(settled, done) = fit.motion().channels.middleRows(fit.held(), done);
-    settled += done;
-    first += fit.settle(done);
-    CHECK(fit.held() <= SlidingFit::kHeld);
-    CHECK(fit.motion().frames() == t + 1 - first);
-  }
-  result.body = fit.body();
-  return result;
+  MatrixD channels = settled_channels(fit, prior, scene.track, lag, [](Eigen::Index) {});
+  return {std::move(channels), fit.body()};
 }
 
 Slid slid(const Scene& scene, const std::optional<Skeleton>& skeleton, Eigen::Index lag,
@@ -114,6 +86,34 @@ TEST_CASE("a sliding fit: a prior that is surer than usual counts as one without
   };
   CHECK(channels({scene.mean, MatrixF::Zero(scene.mean.rows(), scene.mean.cols())}) ==
         channels(scene.mean));
+}
+
+TEST_CASE("a sliding fit: each joint moves as far as its own features' deviation lets it") {
+  const Scene scene = make_scene();
+  const Modalities& m = scene.modalities;
+  const std::vector<std::string> names = m.pose_features.feature_names();
+  const auto columns_of = [&](const std::string& joint) {
+    std::vector<Eigen::Index> columns;
+    for (std::size_t k = 0; k < m.pose_scale.kept_columns().size(); ++k)
+      if (names[static_cast<std::size_t>(m.pose_scale.kept_columns()[k])].starts_with(joint + "_"))
+        columns.push_back(static_cast<Eigen::Index>(k));
+    REQUIRE_FALSE(columns.empty());
+    return columns;
+  };
+  PosePrior prior{scene.mean, MatrixF::Zero(scene.mean.rows(), scene.mean.cols())};
+  for (const Eigen::Index column : columns_of("LeftForeArm"))
+    prior.deviation.col(column).setConstant(10);  // of how far they stray in the clip
+  TrackFitSettings settings;
+  settings.orientation_deviation_deg = 0.1;
+  const Motion motion{scene.truth.skeleton, scene.truth.frame_time_s,
+                      slid(scene, scene.truth.skeleton, 8, settings, prior).channels};
+  const MatrixF off = m.encode_pose(motion, scene.known.camera->camera_from_world) - scene.mean;
+  const auto moved = [&](const std::string& joint) {
+    double sum = 0;
+    for (const Eigen::Index column : columns_of(joint)) sum += off.col(column).norm();
+    return sum;
+  };
+  CHECK(moved("LeftForeArm") > 5 * moved("RightForeArm"));
 }
 
 TEST_CASE("a sliding fit: that a track is exact shows within a second") {

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "base/settings_table.hpp"
-#include "mcdbn/fitting/track_fit.hpp"
+#include "mcdbn/fitting/track_fit_settings.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;

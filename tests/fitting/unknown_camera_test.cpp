@@ -2,54 +2,20 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <vector>
 
 #include "camera/track_noise.hpp"
-#include "features/clip_modalities.hpp"
 #include "fitting/camera_angles.hpp"
-#include "mcdbn/fitting/track_fit.hpp"
-#include "mcdbn/synthesis/synthesize.hpp"
+#include "fitting/camera_scene.hpp"
 #include "motion/foot_joints.hpp"
+
+namespace unknown_camera_test {
 
 using namespace mcdbn;
 using namespace mcdbn::test;
 
-namespace {
-
-/// A walk before a camera that looks down and is turned, and the answer of a network that has
-/// learnt upright walks, and not how this camera stands.
-struct Scene {
-  CameraPlacement view{60, 0, std::nullopt, 40, 1920, 1080};
-  Motion truth;
-  Modalities modalities;
-  Camera camera;
-  Track2d track;
-  MatrixF pose;
-
-  Scene(double pitch_deg, double roll_deg, SynthesisAction action = SynthesisAction::walk,
-        double seconds = 4)
-      : truth(synthesize({.action = action, .seconds = seconds})),
-        modalities(modalities_of({truth}, view)) {
-    modalities.level_view = true;
-    CameraPlacement placement = view;
-    placement.elevation_deg = pitch_deg;
-    camera = place_camera(truth, placement);
-    const Eigen::Matrix3d roll =
-        Eigen::AngleAxisd(-roll_deg * EIGEN_PI / 180, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    camera.camera_from_world = roll * camera.camera_from_world;
-    camera.translation = roll * camera.translation;
-    track = project_motion(truth, camera);
-    pose = modalities.encode_pose(truth, camera.camera_from_world);
-  }
-
-  FittedClip fit(const AssumedView& given, const TrackFitSettings& settings = {}) const {
-    return fit_to_track(pose, modalities, track, {std::nullopt, truth.skeleton, given}, settings);
-  }
-};
-
-}  // namespace
+using Scene = CameraScene;
 
 TEST_CASE("unknown camera: pitch and roll are those that make an upright walker") {
   for (const double pitch_deg : {-8.0, 0.0, 12.0, 25.0})
@@ -199,3 +165,5 @@ TEST_CASE("unknown camera: standing feet are on one level") {
   };
   CHECK(spread(0.01) < 0.5 * spread(100));
 }
+
+}  // namespace unknown_camera_test

@@ -8,6 +8,7 @@
 #include "fitting/sliding_fit.hpp"
 #include "fitting/two_second_walk.hpp"
 #include "mcdbn/camera/camera.hpp"
+#include "mcdbn/fitting/track_fit.hpp"
 #include "mcdbn/motion/humanoid.hpp"
 #include "motion/body_size.hpp"
 
@@ -56,7 +57,7 @@ TEST_CASE("usual body: as tall as the humanoid, alike on both sides, every bone 
 }
 
 TEST_CASE("usual body: where a detector shows the humanoid, and no skeleton is given") {
-  const Modalities humanoid = modalities_of({moving_humanoid()}, {});
+  const Modalities humanoid = test::modalities_of({moving_humanoid()}, {});
   const Skeleton usual = usual_body(canonical_humanoid());
   const auto elbow = [&](const KnownOfClip& known, const Modalities& modalities) {
     return length(body_to_begin_with(known, modalities), JointRole::left_elbow);
@@ -69,7 +70,7 @@ TEST_CASE("usual body: where a detector shows the humanoid, and no skeleton is g
   const Track2d track = project_motion(moving_humanoid(), *known.camera);
   DOCTEST_CHECK(length(SlidingFit(humanoid, known, track, {}).body(), JointRole::left_elbow) ==
                 length(usual, JointRole::left_elbow));  // live, too
-  const Modalities own = modalities_of({test::two_second_walk()}, {});
+  const Modalities own = test::modalities_of({test::two_second_walk()}, {});
   const Skeleton begun = body_to_begin_with(known, own);
   for (std::size_t joint = 0; joint < begun.joints.size(); ++joint)
     DOCTEST_CHECK(begun.joints[joint].offset == own.pose_features.skeleton().joints[joint].offset);
@@ -79,7 +80,7 @@ TEST_CASE("usual body: where a detector shows the humanoid, and no skeleton is g
 
 TEST_CASE("usual body: bones that a detector never shows keep its proportions in the answer") {
   const Motion motion = moving_humanoid();
-  const Modalities modalities = modalities_of({motion}, {});
+  const Modalities modalities = test::modalities_of({motion}, {});
   KnownOfClip known{place_camera(motion, {}), {}};
   Track2d track = project_motion(motion, *known.camera);
   for (const char* joint :

@@ -4,9 +4,9 @@
 #include <random>
 
 #include "features/clip_modalities.hpp"
-#include "fitting/rotation.hpp"
 #include "fitting/two_second_walk.hpp"
 #include "mcdbn/fitting/track_fit.hpp"
+#include "motion/rotation_vector.hpp"
 
 namespace mcdbn::test {
 

@@ -151,4 +151,42 @@ TEST_CASE("window problem: how far a bone's length strays, by what it is of and 
   DOCTEST_CHECK(deviation(clip) == doctest::Approx(0.25).epsilon(1e-3));
 }
 
+TEST_CASE("window problem: heights of standing feet count by how sure and how many they are") {
+  PosteriorClip clip = hidden_ankle();
+  TrackFitSettings settings;
+  /// What 0.2 m between the ankle and the ground cost.
+  const auto cost = [&](double confidence, double observation_s) {
+    clip.planted.setConstant(confidence);
+    settings.ground_observation_s = observation_s;
+    const auto energy = [&](double off_m) {
+      PosteriorPoint from = PosteriorPoint::zero(clip);
+      from.ground_m[0] = off_m - 0.8;  // both bones hang down
+      return WindowProblem(clip, kNoise, settings, from, 0, kFrames, Unknowns::all).energy();
+    };
+    return energy(0.2) - energy(0);
+  };
+  const double whole = cost(1, clip.frame_time_s);
+  DOCTEST_CHECK(whole > 1);
+  DOCTEST_CHECK(cost(0.25, clip.frame_time_s) / whole == doctest::Approx(0.25));
+  DOCTEST_CHECK(cost(1, 15 * clip.frame_time_s) / whole == doctest::Approx(1.0 / 15));
+  DOCTEST_CHECK(cost(1, 0.1 * clip.frame_time_s) == doctest::Approx(whole));
+}
+
+TEST_CASE(
+    "window problem: a foot that stands with a quarter of the confidence slips twice as far") {
+  PosteriorClip clip = hidden_ankle();
+  PosteriorPoint from = PosteriorPoint::zero(clip);
+  from.ground_m[0] = -0.8;
+  for (Eigen::Index t = 1; t < kFrames; t += 2) from.shift(t, 0) = 0.02;
+  const auto energy = [&](double confidence, double speed_m_s) {
+    clip.planted.setConstant(confidence);
+    TrackFitSettings settings;
+    settings.planted_foot_speed_m_s = speed_m_s;
+    return WindowProblem(clip, kNoise, settings, from, 0, kFrames, Unknowns::all).energy();
+  };
+  const double quarter = energy(0.25, 0.5);
+  DOCTEST_CHECK(std::abs(quarter - energy(1, 1.0)) < 1e-9 * quarter);
+  DOCTEST_CHECK(energy(1, 0.5) > quarter + 0.1);
+}
+
 }  // namespace window_problem_test

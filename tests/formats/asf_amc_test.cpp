@@ -1,7 +1,6 @@
 #include "formats/asf_amc.hpp"
 
 #include <doctest/doctest.h>
-#include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <map>

@@ -188,7 +188,7 @@ TEST_CASE("bad files are refused with file, line and advice") {
 TEST_CASE("10 MB of nesting is refused, not recursed into") {
   std::string joints = "HIERARCHY\nROOT a{\n";
   while (joints.size() < 10'000'000) joints += "JOINT a{\n";
-  CHECK(refusal(joints).find("joints nest deeper than 1000") != std::string::npos);
+  CHECK(refusal(joints).find("joints are nested deeper than 1000") != std::string::npos);
   CHECK(refusal("HIERARCHY\nROOT a\n" + std::string(10'000'000, '{')).starts_with("clip.bvh:3: "));
   CHECK(refusal(std::string(10'000'000, '{')).starts_with("clip.bvh:1: "));
 }

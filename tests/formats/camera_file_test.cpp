@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "base/scratch_folder.hpp"
-#include "base/text_file.hpp"
 #include "camera/odd_camera.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -97,7 +96,7 @@ TEST_CASE("camera files: what is wrong is named with its file and line") {
         Case{"   dt: d", "   dt: \"2d\"", "camera_matrix cannot be read"},
         Case{"800.", "-1.", ":5: camera_matrix"},
         Case{", 0.4 ]", " ]", ":10: distortion_coefficients has 3"},
-        Case{"rvec: [ 0., ", "rvec: [ ", ":11: rvec has not 3"},
+        Case{"rvec: [ 0., ", "rvec: [ ", ":11: rvec needs 3 numbers"},
         Case{"rvec", "vec", "neither rvec nor R"},
         Case{"rvec: [ 0., 0., 1.5707963267948966 ]", "R: [ 1., 2. ]", ":11: R"},
         Case{"2., 3. ]", "2. ]", ":12: tvec"}, Case{"2., 3. ]", ".nan, 3. ]", ":12: tvec"},

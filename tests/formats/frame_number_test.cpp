@@ -52,6 +52,38 @@ TEST_CASE("frame numbers: the last group of digits that is different in each nam
   CHECK(frame_numbers({"99999999999999999999"}) == Numbers{std::nullopt});
 }
 
+TEST_CASE("frame numbers: times are in their order across the seconds") {
+  CHECK(frame_numbers({"1699999999.967", "1700000000.001"}) == Numbers{0, 1});
+  CHECK(are_times({"1699999999.967", "1700000000.001"}));
+  // Fractions of any length, hours with microseconds behind them, the same fractions every second.
+  CHECK(frame_numbers({"9.5", "10.12", "9.75", "front"}) == Numbers{0, 2, 1, std::nullopt});
+  CHECK(frame_numbers({"20261128_143059_970000", "20261128_143058_940000", "20261128_143059_003333",
+                       "20261128_143058_970000", "20261128_143100_003333"}) ==
+        Numbers{3, 0, 2, 1, 4});
+  CHECK(frame_numbers({"7.25", "7.50", "7.75", "8.00", "8.25", "8.50"}) ==
+        Numbers{0, 1, 2, 3, 4, 5});
+  // A camera and a frame, a fraction without its zeros, one second alone: no times.
+  CHECK(frame_numbers({"cam1.0001", "cam1.0002", "cam1.0003", "cam2.0001"}) == Numbers{1, 2, 3, 1});
+  CHECK(frame_numbers({"7_95", "8_1", "8_25"}) == Numbers{95, 1, 25});
+  CHECK(frame_numbers({"7.950", "7.970"}) == Numbers{950, 970});
+  CHECK(!are_times({"7.950", "7.970"}));
+}
+
+TEST_CASE("frame numbers: a folder's files that are named by time are frames one after the other") {
+  const ScratchFolder folder;
+  const TrackReading reading = read_tracks(
+      openpose_folder(folder, "times",
+                      {"1699999999.900.json", "1699999999.933.json", "1699999999.967.json",
+                       "1700000000.000.json", "1700000000.033.json", "1700000000.067.json"}));
+  CHECK(reading.frame_numbers == std::vector<long long>{0, 1, 2, 3, 4, 5});
+  CHECK((reading.people.front().confidence.rowwise().maxCoeff().array() > 0).all());
+  CHECK(reports(reading, "named by time"));
+  CHECK_THROWS_WITH_AS(
+      read_track(openpose_folder(folder, "cameras",
+                                 {"cam1.0001.json", "cam1.0002.json", "cam2.0001.json"})),
+      doctest::Contains("a second file of frame 1"), InputError);
+}
+
 TEST_CASE("frame numbers: gaps are missing joints, steps are none") {
   const ScratchFolder folder;
   const TrackReading gap =

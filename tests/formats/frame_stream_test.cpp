@@ -7,8 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/scratch_folder.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
+#include "mcdbn/formats/track_file.hpp"
+#include "mcdbn/formats/track_lines.hpp"
 #include "motion/synthetic_motion.hpp"
 
 using namespace mcdbn;
@@ -95,6 +98,24 @@ TEST_CASE("frame stream: places as CSV and JSON lines, on the frame's own bones"
   CHECK(frame.at("seen") == true);
   REQUIRE(std::getline(json, line));
   CHECK(nlohmann::json::parse(line).at("seen") == false);
+}
+
+TEST_CASE("frame stream: places in space are not read as a 2D track") {
+  const ScratchFolder folder;
+  const Motion motion = swinging(small_body(), 4);
+  std::stringstream csv, json;
+  for (const auto& stream : {csv_stream(csv, 50), json_stream(json, 50)})
+    for (Eigen::Index t = 0; t < 4; ++t)
+      stream->write(motion.skeleton, motion.channels.row(t), true);
+  for (const auto& path :
+       {folder.write("own.csv", csv.str()), folder.write("own.jsonl", json.str())})
+    CHECK_THROWS_WITH_AS(read_track(path),
+                         doctest::Contains("points in space, as regenerate --follow writes them"),
+                         InputError);
+  std::string line;
+  std::getline(json, line);
+  TrackLines lines("pipe", {.image_size = ImageSize{1280, 720}});
+  CHECK_THROWS_WITH_AS((void)lines.read(line), doctest::Contains("points in space"), InputError);
 }
 
 TEST_CASE("frame stream: every frame has a time of its own, hours after the first, too") {

@@ -3,6 +3,7 @@
 #include "formats/image_shares.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
@@ -105,6 +106,62 @@ TEST_CASE("shares: world landmarks, metres about the hips, are refused, also as 
                          InputError);
     CHECK(!lines.knows_joints());
   }
+}
+
+namespace {
+
+/// A table with columns for each joint, with a depth and no confidence, or the other way round.
+template <typename Place>
+std::string columns_of(const Track2d& figure, bool depths, const Place& place) {
+  std::string text = "frame";
+  for (const std::string& name : figure.joint_names)
+    text += fmt::format(",{0}_x,{0}_y,{0}_{1}", name, depths ? "z" : "visibility");
+  for (int frame = 0; frame < figure.frames(); ++frame) {
+    text += fmt::format("\n{}", frame);
+    for (int joint = 0; joint < figure.joint_count(); ++joint) {
+      const Eigen::Vector2d at = place(figure.x_px(frame, joint), figure.y_px(frame, joint));
+      text += fmt::format(",{},{},0.5", at.x(), at.y());
+    }
+  }
+  return text + '\n';
+}
+
+}  // namespace
+
+TEST_CASE("pixels: points in space in millimetres are refused") {
+  const ScratchFolder folder;
+  const Track2d figure = sample_figure("MEDIAPIPE_33");
+  const double left_px = figure.x_px.minCoeff(), middle_px = figure.x_px.mean();
+  const auto beside = [&](double x, double y) {
+    return Eigen::Vector2d(-4 * (x - left_px) - 100, 4 * y);
+  };
+  // About the origin, seen from above: x and y are of both signs.
+  const auto about = [&](double x, double y) {
+    return Eigen::Vector2d(4 * (x - middle_px), 4 * (x - middle_px) + y - 300);
+  };
+  for (const bool depths : {true, false})
+    CHECK_THROWS_WITH_AS(
+        read_track(folder.write("beside.csv", columns_of(figure, depths, beside)), of_image()),
+        doctest::Contains("points in space"), InputError);
+  CHECK_THROWS_WITH_AS(
+      read_track(folder.write("about.csv", columns_of(figure, true, about)), of_image()),
+      doctest::Contains("points in space"), InputError);
+}
+
+TEST_CASE("pixels: a person partly out of the picture is a track") {
+  const ScratchFolder folder;
+  const Track2d figure = sample_figure("MEDIAPIPE_33");
+  const auto moved = [&](double right_px, double down_px) {
+    return [=](double x, double y) { return Eigen::Vector2d(x + right_px, y + down_px); };
+  };
+  const auto check = [&](bool depths, double right_px, double down_px) {
+    const Track2d track = read_track(
+        folder.write("edge.csv", columns_of(figure, depths, moved(right_px, down_px))), of_image());
+    CHECK((track.x_px.array() - (figure.x_px.array() + right_px)).abs().maxCoeff() < 1e-6);
+    CHECK((track.y_px.array() - (figure.y_px.array() + down_px)).abs().maxCoeff() < 1e-6);
+  };
+  for (const bool depths : {true, false}) check(depths, -305, 0);  // half, as above
+  check(false, 0, -360);                                           // all but the feet
 }
 
 TEST_CASE("shares: most of the joints that are seen decide") {

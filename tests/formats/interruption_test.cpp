@@ -6,7 +6,6 @@
 #include <functional>
 
 #include "base/scratch_folder.hpp"
-#include "base/text_file.hpp"
 #include "formats/figure_track.hpp"
 #include "formats/json_text.hpp"
 #include "formats/track_source.hpp"

@@ -2,10 +2,15 @@
 #include "mcdbn/formats/track_file.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
+#include "base/scratch_folder.hpp"
+#include "base/text_file.hpp"
+#include "formats/csv_table.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "shared_data.hpp"
 
@@ -78,6 +83,25 @@ TEST_CASE("real tracks: every file is recognised and read as what it is") {
     CHECK((track.confidence.array() <= 1).all());
     CHECK((track.x_px.array().isNaN() == (track.confidence.array() == 0)).all());
   }
+}
+
+TEST_CASE("real tracks: FreeMoCap's numbers in columns are refused as well") {
+  const std::string path = "formats/freemocap_csv/freemocap_test_data_by_frame.csv";
+  if (!have_shared_data(path, "real tracks")) return;
+  const std::string text = read_text_file(shared_data() / path);
+  const CsvTable table(text, path);
+  std::string names;
+  std::map<std::string_view, std::string> numbers;  // of a frame
+  for (const CsvTable::Line& line : table.lines()) {
+    if (line.cells[3] != "mediapipe_body") continue;
+    if (line.cells[0] == "0") names += fmt::format(",{0}_x,{0}_y,{0}_z", line.cells[4]);
+    numbers[line.cells[0]] += fmt::format(",{},{},{}", line.cells[5], line.cells[6], line.cells[7]);
+  }
+  REQUIRE(numbers.size() == 2);
+  const ScratchFolder folder;
+  const auto columns = folder.write(
+      "columns.csv", fmt::format("frame{}\n0{}\n1{}\n", names, numbers["0"], numbers["1"]));
+  CHECK_THROWS_WITH_AS(read_track(columns), doctest::Contains("points in space"), InputError);
 }
 
 TEST_CASE("real tracks: points in space are refused") {

@@ -8,6 +8,7 @@
 
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/motion/skeleton_roles.hpp"
+#include "motion/cmu_names.hpp"
 #include "shared_data.hpp"
 
 using namespace mcdbn;
@@ -38,21 +39,6 @@ void check_roles(const std::string& relative, const Names& names, const std::str
   }
 }
 
-const Names kCmu{{pelvis, "Hips"},
-                 {spine, "Spine"},
-                 {chest, "Spine1"},
-                 {neck, "Neck"},
-                 {head, "Head"},
-                 {left_clavicle, "LeftShoulder"},
-                 {left_shoulder, "LeftArm"},
-                 {left_elbow, "LeftForeArm"},
-                 {left_wrist, "LeftHand"},
-                 {left_hand, "LeftHandIndex1"},
-                 {left_hip, "LeftUpLeg"},
-                 {left_knee, "LeftLeg"},
-                 {left_ankle, "LeftFoot"},
-                 {left_toe, "LeftToeBase"}};
-
 const Names kBandai{{pelvis, "Hips"},
                     {spine, "Spine"},
                     {chest, "Chest"},
@@ -82,7 +68,7 @@ Names changed(Names names, const Names& others) {
 TEST_CASE("roles of recorded skeletons: CMU in its spellings") {
   for (const char* file : {"cmu/walk/02_01.bvh", "cmu/jump/13_39.bvh", "cmu/forward_jump/13_11.bvh",
                            "cmu/other/02_01.bvh", "bvh_zoo/example.bvh"})
-    check_roles(file, kCmu, "Left", "Right");
+    check_roles(file, test::kCmuNames, "Left", "Right");
   check_roles("formats/cmu_asf_amc/16_15.bvh",
               {{pelvis, "root"},
                {spine, "upperback"},
@@ -106,8 +92,8 @@ TEST_CASE("roles of recorded skeletons: Bandai") {
 }
 
 TEST_CASE("roles of recorded skeletons: those of other programs") {
-  check_roles("bvh_zoo/bvh_test1.bvh", changed(kCmu, {{chest, "Spine3"}, {left_hand, ""}}), "Left",
-              "Right");
+  check_roles("bvh_zoo/bvh_test1.bvh",
+              changed(test::kCmuNames, {{chest, "Spine3"}, {left_hand, ""}}), "Left", "Right");
   check_roles("bvh_zoo/bvh_test2.bvh",
               {{pelvis, "Hips"},
                {spine, "Chest"},
@@ -123,11 +109,12 @@ TEST_CASE("roles of recorded skeletons: those of other programs") {
                {left_ankle, "LeftAnkle"},
                {left_toe, "LeftToe"}},
               "Left", "Right");
-  check_roles("bvh_zoo/dab.bvh", changed(kCmu, {{chest, "Spine3"}, {left_hand, "LeftHandEnd"}}),
-              "Left", "Right");
-  check_roles("bvh_zoo/walk01.bvh", changed(kCmu, {{left_hand, ""}, {left_toe, ""}}), "Left",
+  check_roles("bvh_zoo/dab.bvh",
+              changed(test::kCmuNames, {{chest, "Spine3"}, {left_hand, "LeftHandEnd"}}), "Left",
               "Right");
-  Names mixamo = changed(kCmu, {{chest, "Spine2"}, {left_hand, "LeftHandMiddle1"}});
+  check_roles("bvh_zoo/walk01.bvh", changed(test::kCmuNames, {{left_hand, ""}, {left_toe, ""}}),
+              "Left", "Right");
+  Names mixamo = changed(test::kCmuNames, {{chest, "Spine2"}, {left_hand, "LeftHandMiddle1"}});
   for (auto& [role, name] : mixamo) name = "mixamorig:" + name;
   check_roles("bvh_zoo/test_freebvh.bvh", mixamo, "Left", "Right");
 }

@@ -80,6 +80,56 @@ TEST_CASE("track details: the numbers that a tracker gave people hold") {
   }
 }
 
+TEST_CASE("track details: a numbered person who is away for long comes back, in every layout") {
+  const ScratchFolder folder;
+  json landmarks = json::array(), instances = json::array();
+  std::string columns = "frame,track_id", rows = "frame,track_id,landmark,x,y\n";
+  for (int joint = 0; joint < 17; ++joint) columns += fmt::format(",L{0}_x,L{0}_y", joint);
+  for (int frame = 0; frame < 150; ++frame) {
+    const bool away = frame >= 45 && frame < 105;
+    const json points = detail_points(200);
+    json named = json::array();
+    if (!away) columns += fmt::format("\n{},7", frame);
+    for (int joint = 0; joint < 17; ++joint) {
+      const double x = points[joint][0], y = points[joint][1];
+      named.push_back({{"x", x}, {"y", y}, {"score", 0.5}});
+      if (away) continue;
+      columns += fmt::format(",{},{}", x, y);
+      rows += fmt::format("{},7,{},{},{}\n", frame, joint, x, y);
+    }
+    json of_tfjs = json::array(), of_mmpose = json::array();
+    if (!away) {
+      of_tfjs.push_back({{"id", 7}, {"keypoints", named}});
+      of_mmpose.push_back({{"track_id", 7},
+                           {"keypoints", points},
+                           {"keypoint_scores", std::vector<double>(17, 0.5)}});
+    }
+    landmarks.push_back(of_tfjs);
+    instances.push_back({{"frame_id", frame}, {"instances", of_mmpose}});
+  }
+  for (const auto& [name, text] : {std::pair{"columns.csv", columns + "\n"},
+                                   {"rows.csv", rows},
+                                   {"movenet.json", landmarks.dump()},
+                                   {"mmpose.json", instances.dump()}}) {
+    CAPTURE(name);
+    const TrackReading reading = read_tracks(folder.write(name, text), {.fps = 30});
+    CHECK(reading.people_seen == 1);
+    CHECK((reading.people.front().confidence.rowwise().maxCoeff().array() > 0).count() == 90);
+  }
+}
+
+TEST_CASE("track details: an object's `id` beside a frame's one body is the frame's") {
+  const ScratchFolder folder;
+  json frames = json::array();
+  for (int frame = 0; frame < 30; ++frame) {
+    json named = json::array();
+    for (const json& point : detail_points(200 + frame))
+      named.push_back({{"x", point[0]}, {"y", point[1]}, {"score", 0.5}});
+    frames.push_back({{"id", frame}, {"keypoints", named}});
+  }
+  CHECK(read_tracks(folder.write("film.json", frames.dump()), {.fps = 30}).people_seen == 1);
+}
+
 TEST_CASE("track details: who is seen for half a second, or a tenth of a short film, stays") {
   const ScratchFolder folder;
   for (const int seen : {14, 15}) {

@@ -122,7 +122,7 @@ TEST_CASE("layouts: what is wrong is reported with its place") {
            Case{"a.json", R"({"keypoints": {"x": [1, 2], "y": [1]}})", "keypoints: lists of diff"},
            Case{"a.csv", "bodyparts,a,a\ncoords,x,q\n0,1,2\n", "a.csv:2: coords 'q'"},
            Case{"a.csv", "bodyparts,a,a\ncoords,x,y\n0,1,two\n", "a.csv:3: 'two' in column 3"},
-           Case{"a.csv", "frame_idx,a.x\n0,1\n", "a.csv:1: node 'a' has not both columns"},
+           Case{"a.csv", "frame_idx,a.x\n0,1\n", "a.csv:1: node 'a' needs both columns"},
            Case{"a.csv", "frame,landmark,x,y\n0,nose,1\n", "a.csv:2: 3 cells"},
            Case{"a.csv", "frame_idx,a.x,a.y\n0,1e300,2\n", "a.csv: a coordinate of 1e+300"},
            Case{"a.csv", "frame,model,keypoint,x,y,z\n0,b,nose,1,2,3\n", "points in space"},

@@ -6,15 +6,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/scratch_folder.hpp"
-#include "base/text_file.hpp"
 #include "formats/csv_text.hpp"
 #include "formats/figure_track.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/formats/track_csv.hpp"
 
 using namespace mcdbn;
 using namespace mcdbn::test;
@@ -143,6 +140,45 @@ TEST_CASE("track lines: every JSON format's frames are what its file is read as"
         CHECK((got.confidence[joint] > 0) == seen);
         if (seen) CHECK(got.x_px[joint] == doctest::Approx(whole.x_px(frame, joint)));
       }
+  }
+}
+
+TEST_CASE("track lines: every layout of a line is a frame, also of a file of such lines") {
+  const ScratchFolder folder;
+  const auto line = [](const std::string& layout, double at_px) {
+    const nlohmann::json people = nlohmann::json::parse(people_line({at_px}));
+    const nlohmann::json points = people["keypoints"][0], scores = people["scores"][0];
+    nlohmann::json flat = nlohmann::json::array(), triples = flat, named = flat;
+    for (std::size_t joint = 0; joint < points.size(); ++joint) {
+      const nlohmann::json &x = points[joint][0], &y = points[joint][1], &c = scores[joint];
+      for (const nlohmann::json& value : {x, y, c}) flat.push_back(value);
+      triples.push_back({x, y, c});
+      named.push_back({{"x", x}, {"y", y}, {"score", c}});
+    }
+    const nlohmann::json instance{{"keypoints", points}, {"keypoint_scores", scores}};
+    if (layout == "rtmlib") return people;
+    if (layout == "instance") return instance;
+    if (layout == "instances") return nlohmann::json::array({instance});
+    if (layout == "frame") return nlohmann::json{{"instances", nlohmann::json::array({instance})}};
+    if (layout == "openpose") return nlohmann::json{{"people", {{{"pose_keypoints_2d", flat}}}}};
+    if (layout == "triples") return triples;
+    return nlohmann::json{{"keypoints", named}};
+  };
+  for (const char* layout :
+       {"rtmlib", "instance", "instances", "frame", "openpose", "triples", "landmarks"}) {
+    CAPTURE(layout);
+    std::string text;
+    for (int frame = 0; frame < 4; ++frame) text += line(layout, 300 + frame).dump() + "\n";
+    TrackLines lines("pipe", of_image());
+    const auto followed = read_all(lines, text);
+    const TrackReading whole = read_tracks(folder.write("track.jsonl", text), of_image());
+    CHECK(whole.people_seen == 1);
+    REQUIRE(whole.people.front().frames() == 4);
+    REQUIRE(followed.size() == 4);
+    for (int frame = 0; frame < 4; ++frame) {
+      CHECK(whole.people.front().x_px(frame, 0) == 300 + frame);
+      CHECK(followed[static_cast<std::size_t>(frame)].x_px[0] == 300 + frame);
+    }
   }
 }
 

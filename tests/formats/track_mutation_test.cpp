@@ -5,8 +5,6 @@
 #include <filesystem>
 #include <random>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"

@@ -1,7 +1,6 @@
 #include "fuzz/readers.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>

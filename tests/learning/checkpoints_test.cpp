@@ -8,9 +8,9 @@
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
 #include "learning/greedy_scene.hpp"
+#include "learning/resumable_training.hpp"
 #include "learning/squared_loss.hpp"
 #include "mcdbn/base/errors.hpp"
-#include "mcdbn/learning/fine_tuning.hpp"
 
 namespace checkpoints_test {
 
@@ -115,7 +115,7 @@ LearningSettings small_settings() {
 
 Training greedy(Device& device, const MatrixSource& source, const LearningSettings& settings) {
   return [&device, &source, settings](const EpochObserver& observer, Checkpoints* checkpoints) {
-    return train_greedy(device, source, settings, observer, nullptr, checkpoints);
+    return train_greedy(device, checkpoints, source, settings, observer);
   };
 }
 
@@ -211,16 +211,16 @@ TEST_CASE("fine-tuning that is killed ends with the same bits, what was kept of 
       CAPTURE(held_out_source != nullptr);
       check_killed(
           [&](const EpochObserver& observer, Checkpoints* checkpoints) {
-            return fine_tune(device, start, source, held_out_source, settings, squares, observer,
-                             checkpoints)
+            return fine_tune(device, checkpoints, start, source, held_out_source, settings, squares,
+                             observer)
                 .network;
           },
           10);
     }
     check_killed(
         [&](const EpochObserver& observer, Checkpoints* checkpoints) {
-          return fine_tune(device, start, ChangingSource(), &held_out_clips, settings, squares,
-                           observer, checkpoints)
+          return fine_tune(device, checkpoints, start, ChangingSource(), &held_out_clips, settings,
+                           squares, observer)
               .network;
         },
         10);
@@ -229,6 +229,44 @@ TEST_CASE("fine-tuning that is killed ends with the same bits, what was kept of 
     };
     const MatrixSource first({{"track", tiny_clips(3, 100)}, {"pose", tiny_clips(5, 900)}});
     CHECK(learnt(ChangingSource()) != learnt(first));
+  });
+}
+
+namespace {
+
+/// Sums nothing up, so that a checkpoint has nothing to keep of it.
+class LossWithoutSums : public SequenceLoss {
+ public:
+  LossWithoutSums(Device& device, const SequenceWindows& windows)
+      : squares_(device, windows, 1.0) {}
+  void differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) override {
+    squares_.differentiate(prediction, target, error);
+  }
+  double read_and_reset() override { return 1.0; }
+
+ private:
+  SquaredLoss squares_;
+};
+
+}  // namespace
+
+TEST_CASE("fine-tuning by a loss without sums, which names no state, ends with the same bits") {
+  const MatrixSource source = small_source();
+  LearningSettings settings = small_settings();
+  settings.fine_tuning.steps = 30;
+  settings.fine_tuning.windows = 3;
+  const SequenceLossMaker make_loss = [](Device& device, const SequenceWindows& windows) {
+    return std::make_unique<LossWithoutSums>(device, windows);
+  };
+  on_every_device([&](Device& device) {
+    const Mcdbn start = train_greedy(device, source, settings);
+    check_killed(
+        [&](const EpochObserver& observer, Checkpoints* checkpoints) {
+          return fine_tune(device, checkpoints, start, source, nullptr, settings, make_loss,
+                           observer)
+              .network;
+        },
+        2);
   });
 }
 

@@ -6,10 +6,9 @@
 #include <thread>
 
 #include "base/scratch_folder.hpp"
-#include "learning/checkpoints.hpp"
+#include "learning/resumable_training.hpp"
 #include "learning/small_network.hpp"
 #include "learning/squared_loss.hpp"
-#include "mcdbn/learning/fine_tuning.hpp"
 
 namespace fine_tuning_speed_test {
 
@@ -49,11 +48,11 @@ std::vector<EpochReport> reports_of(Device& device, const SlowSource& source,
   const Mcdbn start =
       on_device(device, random_network({3, 5}, {{{{4, 1}}, {{6, 1}}}}, 4, 100), 0, 2);
   fine_tune(
-      device, start, source, nullptr, settings,
+      device, checkpoints, start, source, nullptr, settings,
       [](Device& with, const SequenceWindows& windows) {
         return std::make_unique<SquaredLoss>(with, windows, 1.0);
       },
-      [&](const EpochReport& report) { reports.push_back(report); }, checkpoints);
+      [&](const EpochReport& report) { reports.push_back(report); });
   return reports;
 }
 

@@ -69,6 +69,21 @@ TEST_CASE("each layer of a stack is trained on the code beneath, with numbers of
   });
 }
 
+TEST_CASE("equal layers are as many and as large as the settings say, RBMs without history") {
+  MachineSettings settings;
+  settings.layers = 3;
+  settings.hidden = 7;
+  settings.order = 2;
+  for (const bool history : {true, false}) {
+    const std::vector<mcdbn::LayerSize> layers = equal_layers(settings, history);
+    REQUIRE(layers.size() == 3);
+    for (const mcdbn::LayerSize& layer : layers) {
+      CHECK(layer.hidden == 7);
+      CHECK(layer.order == (history ? 2 : 0));
+    }
+  }
+}
+
 TEST_CASE("fitting an RBM raises its exact likelihood, and progress ends at one") {
   on_every_device([](Device& device) {
     // Two patterns and a little noise.

@@ -6,6 +6,7 @@
 
 #include "learning/learning_rule.hpp"
 #include "learning/within_bounds.hpp"
+#include "mcdbn/learning/mrbm_settings.hpp"
 #include "reference/loss_error_bound.hpp"
 #include "reference/units_reference.hpp"
 #include "reference/update_error_bound.hpp"

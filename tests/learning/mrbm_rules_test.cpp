@@ -6,7 +6,6 @@
 #include "learning/mrbm_rules_scene.hpp"
 #include "learning/multi_prediction.hpp"
 #include "learning/perceptron_loss.hpp"
-#include "mcdbn/base/errors.hpp"
 
 namespace mrbm_rules_test {
 

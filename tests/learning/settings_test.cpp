@@ -6,7 +6,7 @@
 
 #include "base/settings_table.hpp"
 #include "learning/contrastive_divergence.hpp"
-#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/learning/learning_settings.hpp"
 
 namespace settings_test {
 

@@ -25,6 +25,12 @@ inline reference::Mrbm in_double(const MrbmParameters& p) {
   return mrbm;
 }
 
+inline void check_close(const char* name, const MatrixF& got, const MatrixD& want,
+                        double tolerance) {
+  INFO("parameter ", std::string(name));
+  CHECK(reference::misfit(got, want, MatrixD::Constant(want.rows(), want.cols(), tolerance)) == "");
+}
+
 inline void check_within(const char* name, const MatrixF& got, const reference::Bounded& want) {
   INFO(std::string(name));
   CHECK(reference::misfit(got, want.value, want.bound) == "");

@@ -5,7 +5,6 @@
 #include "device/every_device.hpp"
 #include "machines/random_crbm.hpp"
 #include "machines/regeneration_reference.hpp"
-#include "mcdbn/base/errors.hpp"
 #include "reference/error_bounds.hpp"
 #include "reference/running_error.hpp"
 
@@ -14,6 +13,7 @@ namespace cdbn_decoder_test {
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
+using reference::exact;
 using reference::misfit;
 using reference::Sum;
 
@@ -29,10 +29,6 @@ CrbmParameters parameters_of(const CrbmShape& shape, unsigned seed) {
 
 MatrixF random_code(std::size_t rows, std::size_t columns) {
   return (0.5F * (random_matrix(rows, columns, 99).array() + 1.0F)).matrix();
-}
-
-Bounded exact(const MatrixF& values) {
-  return Bounded::exact(values.cast<double>());
 }
 
 /// Row i is row i · kFrames + frame.

@@ -15,6 +15,7 @@ namespace crbm_parameters_test {
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
+using reference::exact;
 using reference::misfit;
 using reference::Sum;
 
@@ -33,10 +34,6 @@ CrbmParameters filled(const CrbmShape& shape, unsigned seed) {
     *matrix = random_matrix(static_cast<std::size_t>(matrix->rows()),
                             static_cast<std::size_t>(matrix->cols()), ++seed);
   return p;
-}
-
-Bounded exact(const MatrixF& values) {
-  return Bounded::exact(values.cast<double>());
 }
 
 /// The `order` frames before row t, oldest first (eq 15).

@@ -22,6 +22,7 @@ namespace energy_test {
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
+using reference::exact;
 using reference::misfit;
 using reference::Sum;
 
@@ -32,10 +33,6 @@ constexpr VisibleKind kGaussian = VisibleKind::gaussian, kBinary = VisibleKind::
 const std::vector<CrbmShape> kShapes = {
     {1, 1, 0, kBinary},  {1, 1, 1, kGaussian},   {3, 17, 2, kBinary},  {17, 3, 1, kGaussian},
     {16, 5, 0, kBinary}, {31, 33, 3, kGaussian}, {5, 16, 0, kGaussian}};
-
-Bounded exact(const MatrixF& values) {
-  return Bounded::exact(values.cast<double>());
-}
 
 /// 0 and 1 for binary units, else about 0.
 MatrixF frames_of(const CrbmShape& shape, std::size_t frames, unsigned seed) {

@@ -5,10 +5,6 @@
 namespace mcdbn::reference {
 namespace {
 
-Bounded exact(const MatrixF& matrix) {
-  return Bounded::exact(matrix.cast<double>());
-}
-
 /// bias + Σ over the moments before moment t that the weights see, weighted (eq 16, 17).
 Sum dynamic_bias(const Moments& visible, std::size_t t, const CrbmParameters& p,
                  const MatrixF& weights, const MatrixF& bias) {

@@ -11,10 +11,6 @@ enum class Draw { bernoulli, gaussian, concrete };
 
 constexpr std::uint16_t kDecoderStream = 200, kMrbmStream = 201;
 
-Bounded exact(const MatrixF& matrix) {
-  return Bounded::exact(matrix.cast<double>());
-}
-
 template <typename Number>
 MatrixD numbers(const RandomKey& key, const MatrixD& shape, Number&& number) {
   MatrixD values(shape.rows(), shape.cols());

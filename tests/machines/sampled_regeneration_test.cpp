@@ -3,19 +3,16 @@
 #include <doctest/doctest.h>
 
 #include "device/every_device.hpp"
+#include "machines/drawn_frames.hpp"
 #include "machines/random_crbm.hpp"
 #include "machines/regeneration_reference.hpp"
 #include "machines/two_modalities.hpp"
-#include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/regeneration.hpp"
-#include "reference/error_bounds.hpp"
 
 namespace sampled_regeneration_test {
 
 using namespace mcdbn;
 using namespace mcdbn::test;
-using reference::Bounded;
-using reference::misfit;
 
 namespace {
 
@@ -71,19 +68,7 @@ double check(Device& device, const reference::Network& network,
   const auto want =
       reference::regenerated(network, tracks(), options.samples, options.run_in, rule_of(options));
   const auto got = regenerate(on(device, network), tracks(), options);
-  REQUIRE(got.size() == want.size());
-  std::size_t checked = 0, rows = 0;
-  for (std::size_t i = 0; i < got.size(); ++i) {
-    REQUIRE(got[i].rows() == want[i].value.rows());
-    for (Eigen::Index t = 0; t < got[i].rows(); ++t, ++rows) {
-      if (!(want[i].bound.row(t).maxCoeff() < 1e-3)) continue;
-      ++checked;
-      CAPTURE(i);
-      CAPTURE(t);
-      CHECK(misfit(got[i].row(t), want[i].value.row(t), want[i].bound.row(t)) == "");
-    }
-  }
-  return static_cast<double>(checked) / static_cast<double>(rows);
+  return check_drawn(got, want);
 }
 
 RegenerationOptions options_with(const SamplingRule& sampling, double temperature) {

@@ -24,6 +24,7 @@ using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
 using reference::chi_square_p_value;
+using reference::exact;
 using reference::misfit;
 using reference::state_counts;
 using reference::Sum;
@@ -35,10 +36,6 @@ constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kChains = 20'000;
 /// Chance misses that one seed in a million gives; the seeds are fixed.
 constexpr double kLeastP = 1e-6;
-
-Bounded exact(const MatrixF& values) {
-  return Bounded::exact(values.cast<double>());
-}
 
 /// bias + Σ over the history of frame t of one clip.
 Sum with_history(const std::vector<Bounded>& frames, std::size_t t, const MatrixF& weights,

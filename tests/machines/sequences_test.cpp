@@ -15,6 +15,7 @@ namespace sequences_test {
 using namespace mcdbn;
 using namespace mcdbn::test;
 using reference::Bounded;
+using reference::exact;
 using reference::misfit;
 
 namespace {
@@ -35,10 +36,6 @@ CrbmParameters layer(std::size_t visible, std::size_t hidden, std::size_t order,
   p.a = random_matrix(1, visible, seed + 3);
   p.b = random_matrix(1, hidden, seed + 4);
   return p;
-}
-
-Bounded exact(const MatrixF& values) {
-  return Bounded::exact(values.cast<double>());
 }
 
 /// One layer's codes of one clip's frames; those before `first` stay empty.

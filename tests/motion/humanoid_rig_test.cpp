@@ -1,11 +1,11 @@
 #include "mcdbn/motion/humanoid_rig.hpp"
+#include "mcdbn/motion/retarget_error.hpp"
 
 #include <doctest/doctest.h>
 
-#include <fmt/format.h>
-
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/motion_file.hpp"
+#include "motion/cmu_names.hpp"
 #include "motion/humanoid_motion.hpp"
 #include "motion/resample.hpp"
 #include "shared_data.hpp"
@@ -46,26 +46,11 @@ Motion with_axes(const Motion& motion, const std::map<JointRole, Matrix3d>& give
   return result;
 }
 
-/// The humanoid called otherwise: `left_knee` becomes `LeftLeg` and so on.
-const std::map<JointRole, std::string> kOtherNames{{pelvis, "Hips"},
-                                                   {spine, "Spine"},
-                                                   {chest, "Spine1"},
-                                                   {neck, "Neck"},
-                                                   {head, "Head"},
-                                                   {left_clavicle, "LeftShoulder"},
-                                                   {left_shoulder, "LeftArm"},
-                                                   {left_elbow, "LeftForeArm"},
-                                                   {left_wrist, "LeftHand"},
-                                                   {left_hand, "LeftHandIndex1"},
-                                                   {left_hip, "LeftUpLeg"},
-                                                   {left_knee, "LeftLeg"},
-                                                   {left_ankle, "LeftFoot"},
-                                                   {left_toe, "LeftToeBase"}};
-
+/// The humanoid with CMU's names: `left_knee` becomes `LeftLeg` and so on.
 Motion renamed(Motion motion) {
   for (const JointRole role : joint_roles()) {
-    const auto name = kOtherNames.find(role < right_clavicle ? role : other_side(role));
-    if (name == kOtherNames.end()) continue;
+    const auto name = test::kCmuNames.find(role < right_clavicle ? role : other_side(role));
+    if (name == test::kCmuNames.end()) continue;
     std::string new_name = name->second;
     if (role >= right_clavicle) new_name.replace(0, 4, "Right");
     motion.skeleton.joints[humanoid_roles().joint(role)].name = new_name;

@@ -49,10 +49,10 @@ TEST_CASE("joint uncertainty: the root's in the world, the others' from the root
 
 TEST_CASE("joint uncertainty: from another joint than the first") {
   const MatrixD found = joint_uncertainty(bone(2, 5, 90), {bone(2, 8, 90), bone(4, 5, 90)}, 1);
-  // The hand where it is, at first 2 right of the root; the root from the hand.
+  // The hand where it is, at first 2 right of the root, and so the root above it.
   CHECK(found(0, 3) == doctest::Approx(std::sqrt((9 + 4) / 2.0)));
-  CHECK(found(0, 0) == doctest::Approx(std::sqrt(4 / 2.0)));
-  CHECK(found(1, 1) == doctest::Approx(std::sqrt(4 / 2.0)));
+  CHECK(found(0, 0) == doctest::Approx(std::sqrt(9 / 2.0)));
+  CHECK(found(1, 1) == doctest::Approx(0));
 }
 
 TEST_CASE("joint uncertainty: without draws nothing, and draws of the clip's shape") {

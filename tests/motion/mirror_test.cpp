@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/formats/motion_file.hpp"
 #include "shared_data.hpp"
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/near.hpp"
 #include "motion/body_size.hpp"
 #include "motion/synthetic_motion.hpp"
 
@@ -132,9 +133,9 @@ TEST_CASE("other body: height makes all bones longer, proportions each by itself
     shins.push_back(std::log(own[shin]));
     ratios.push_back(std::log(own[foot] / own[shin]));
   }
-  CHECK(deviation(heights) == doctest::Approx(0.1).epsilon(0.1));
-  CHECK(deviation(shins) == doctest::Approx(0.2).epsilon(0.1));
-  CHECK(deviation(ratios) == doctest::Approx(0.2 * std::sqrt(2.0)).epsilon(0.1));
+  CHECK(deviation(heights) == near(0.1, 0.15));
+  CHECK(deviation(shins) == near(0.2, 0.15));
+  CHECK(deviation(ratios) == near(0.2 * std::sqrt(2.0), 0.15));
 }
 
 TEST_CASE("other body: both sides are alike where single letters mark them, as in ASF") {

@@ -2,7 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
 #include <numbers>

@@ -39,7 +39,7 @@ struct ExampleModel {
     network.fills_gaps = false;
     return {std::move(network),
             modalities(),
-            {{"/folder/a.bvh", "0012"}, {"/other/b.bvh", "ff00"}},
+            {{"/folder/a.bvh", "0012", {}, "Anna", "walk"}, {"/other/b.bvh", "ff00"}},
             {{"seed", 9},
              {"fps", 24.5},
              {"order", 3},

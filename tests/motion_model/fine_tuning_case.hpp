@@ -7,6 +7,7 @@
 #include "learning/small_network.hpp"
 #include "mcdbn/learning/fine_tuning.hpp"
 #include "mcdbn/motion_model/training_schedule.hpp"
+#include "motion_model/fine_tuning_on_views.hpp"
 #include "motion_model/pose_judge.hpp"
 
 namespace mcdbn::test {

@@ -17,6 +17,7 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
+#include "motion_model/fine_tuning_on_views.hpp"
 
 namespace fine_tuning_test {
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "corpus/fresh_views.hpp"
 #include "corpus/training_files.hpp"
@@ -147,7 +148,7 @@ TEST_CASE("fresh views are learnt from where they are asked for") {
   config.fine_tuning.view_uses = 0;
   CHECK_FALSE(learns_from_fresh_views(scene.clips, config));
   // More than can be kept.
-  std::vector<ClipRecord> many(70, {{}, {}, {}, {}, 1.0 / 30, 3000});
+  std::vector<ClipRecord> many(70, {{}, {}, 1.0 / 30, 3000});
   CHECK(learns_from_fresh_views(ClipStore(many, nullptr), config));
   CHECK(fresh_views_at_once(ClipStore(many, nullptr), config) == 400);
   config.fine_tuning.steps = 0;
@@ -170,11 +171,38 @@ TEST_CASE("of several people one is held out of them, and judges by the same vie
   CHECK(held_out_views.tracks[3] == again.held_out_views()->tracks[3]);
 }
 
+TEST_CASE("the record of who was held out has all of the person's clips, drawn or not") {
+  // More clips than the person has views.
+  std::vector<LoadedClip> clips = load_clips(TrainingFiles{{{1, 1, 30.0, 1.0}}}.files());
+  const LoadedClip clip = clips.front();
+  constexpr int kClips = 40;
+  for (int i = 0; i < kClips; ++i) {
+    clips.push_back(clip);
+    clips.back().clip.path = "/folder/" + std::to_string(i) + ".bvh";
+    clips.back().clip.person = "stranger";
+  }
+  TrainingConfig config = Scene::settings();
+  config.hold_out_among = 2;  // the one with several clips
+  config.hidden = config.mrbm_hidden = 4;
+  config.order = config.look_ahead = 1;
+  config.augment.views = 1;
+  config.fine_tuning.from_greedy = false;
+  config.fine_tuning.steps = 1;
+  const ClipStore store(std::move(clips));
+  const TrainingSet data = make_training_set(store, config);
+  on_every_device([&](Device& device) {
+    const TrainedNetwork trained = train_network(device, data, store, config);
+    REQUIRE(trained.early_stopping);
+    CHECK(trained.early_stopping->held_out.size() == kClips);
+  });
+}
+
 TEST_CASE("views of the person held out come as the actions weigh, and are not weighed again") {
   const TrainingFiles walks{
       {{1, 1, 30.0, 2.0}, {1, 2, 30.0, 2.0}, {2, 1, 30.0, 1.8}, {2, 2, 30.0, 1.0}}};
   std::vector<LoadedClip> clips = load_clips(walks.files());
-  for (std::size_t i = 0; i < clips.size(); ++i) clips[i].action = i % 2 == 0 ? "walk" : "stroll";
+  for (std::size_t i = 0; i < clips.size(); ++i)
+    clips[i].clip.action = i % 2 == 0 ? "walk" : "stroll";
   TrainingConfig config = Scene::settings();
   config.hold_out_among = 2;
   config.fine_tuning.people_power = 0;

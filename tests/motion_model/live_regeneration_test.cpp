@@ -8,7 +8,7 @@
 #include <chrono>
 #include <thread>
 
-#include "camera/detector_track.hpp"
+#include "camera/projected_keypoints.hpp"
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
@@ -31,28 +31,14 @@ Track2d coco_keypoints_of(const LiveScene& scene) {
 
 /// Bytes that are taken, once no thread takes or gives back any more.
 double memory_at_rest() {
-  for (std::size_t before = 0;;) {
-    const std::size_t now = mallinfo2().uordblks;
-    if (now == before) return static_cast<double>(now);
+  std::size_t before = 0, now = mallinfo2().uordblks;
+  for (int tries = 0; now != before && tries < 50; ++tries) {
     before = now;
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    now = mallinfo2().uordblks;
   }
-}
-
-/// Joints from the root, mm of a 1.7 m body. [frames x 3·joints]
-MatrixD places_mm(const Motion& motion) {
-  const MatrixD all = joint_positions(motion);
-  return 1000 / file_units_per_metre(motion.skeleton) *
-         (all - all.leftCols(3).replicate(1, all.cols() / 3));
-}
-
-/// Mean distance between two motions' joints, from frame `first` on.
-double apart_mm(const Motion& one, const Motion& other, Eigen::Index first = 0) {
-  const MatrixD off = (places_mm(one) - places_mm(other)).bottomRows(one.frames() - first);
-  double sum = 0;
-  for (Eigen::Index column = 0; column < off.cols(); column += 3)
-    sum += off.middleCols<3>(column).rowwise().norm().mean();
-  return 3 * sum / static_cast<double>(off.cols());
+  REQUIRE(now == before);
+  return static_cast<double>(now);
 }
 
 /// Mean distance between two motions' joint of that name in those frames.
@@ -120,10 +106,13 @@ TEST_CASE("live: a frame between two poses is between them") {
   Skeleton skeleton;
   skeleton.joints.push_back({"Hips", -1, {0, 0, 0}, {Channel::x_position}, {}});
   LiveOutput output(30, 75);
+  for (int frame = 0; frame < 6; ++frame) output.expect(frame != 4);
   std::vector<double> got;
   for (const double at : {0.0, 10.0, 20.0})
-    for (const LiveFrame& frame : output.add(skeleton, RowVectorD::Constant(1, at), true))
+    for (const LiveFrame& frame : output.add(skeleton, RowVectorD::Constant(1, at), true)) {
+      CHECK(frame.seen == (got.size() != 4));
       got.push_back(frame.channels[0]);
+    }
   REQUIRE(got.size() == 6);
   for (std::size_t frame = 0; frame < 6; ++frame)
     CHECK(got[frame] == doctest::Approx(4.0 * static_cast<double>(frame)));

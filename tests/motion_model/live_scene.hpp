@@ -7,6 +7,7 @@
 #include "features/clip_modalities.hpp"
 #include "mcdbn/motion_model/live_regeneration.hpp"
 #include "mcdbn/synthesis/synthesize.hpp"
+#include "motion/body_size.hpp"
 #include "motion_model/live_networks.hpp"
 
 namespace mcdbn::test {
@@ -45,6 +46,22 @@ struct LiveScene {
     return motion;
   }
 };
+
+/// Joints from the root, mm of a 1.7 m body. [frames x 3·joints]
+inline MatrixD places_mm(const Motion& motion) {
+  const MatrixD all = joint_positions(motion);
+  return 1000 / file_units_per_metre(motion.skeleton) *
+         (all - all.leftCols(3).replicate(1, all.cols() / 3));
+}
+
+/// Mean distance between two motions' joints, from frame `first` on.
+inline double apart_mm(const Motion& one, const Motion& other, Eigen::Index first = 0) {
+  const MatrixD off = (places_mm(one) - places_mm(other)).bottomRows(one.frames() - first);
+  double sum = 0;
+  for (Eigen::Index column = 0; column < off.cols(); column += 3)
+    sum += off.middleCols<3>(column).rowwise().norm().mean();
+  return 3 * sum / static_cast<double>(off.cols());
+}
 
 inline TrackFrame frame_of(const Track2d& track, Eigen::Index frame) {
   return {track.x_px.row(frame), track.y_px.row(frame), track.confidence.row(frame)};

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "base/interruption.hpp"
-#include "camera/detector_track.hpp"
+#include "camera/projected_keypoints.hpp"
 #include "device/every_device.hpp"
 #include "fitting/usual_body.hpp"
 #include "mcdbn/base/errors.hpp"

@@ -204,6 +204,8 @@ TEST_CASE("every number of a model's description has a range; file and field are
              {"modalities.track_scale.kept[4]", 99, ": modalities.track_scale: kept[4]: "},
              {"modalities.track_scale.kept", {2, 5}, ": track[0].visible: 5 units for frames of 2"},
              {"training_clips[0].path", 3},
+             {"training_clips[0].person", 3},
+             {"training_clips[0].action", 3},
              {"early_stopping.steps", -1},
              {"early_stopping.loss", "low"},
              {"early_stopping.held_out[0]", 3},

@@ -83,6 +83,8 @@ void check_same(const Model& got, const Model& want, const ExampleModel& example
   for (std::size_t i = 0; i < got.training_clips.size(); ++i) {
     CHECK(got.training_clips[i].path == want.training_clips[i].path);
     CHECK(got.training_clips[i].fingerprint == want.training_clips[i].fingerprint);
+    CHECK(got.training_clips[i].person == want.training_clips[i].person);
+    CHECK(got.training_clips[i].action == want.training_clips[i].action);
   }
   CHECK(got.config == want.config);
   REQUIRE(got.early_stopping.has_value() == want.early_stopping.has_value());

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "camera/track_noise.hpp"
@@ -12,7 +14,9 @@
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/level_view.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
+#include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/body_size.hpp"
+#include "motion/joint_uncertainty.hpp"
 #include "motion/resample.hpp"
 #include "motion_model/clip_scene.hpp"
 #include "motion_model/several_answers.hpp"
@@ -74,6 +78,10 @@ std::vector<Motion> step_by_step(const Model& model, const Track2d& track,
 
 double largest(const MatrixD& difference) {
   return difference.cwiseAbs().maxCoeff();
+}
+
+double pitch_deg(const Camera& camera) {
+  return std::asin(-camera.camera_from_world.col(1).z()) * 180 / EIGEN_PI;
 }
 
 }  // namespace
@@ -170,6 +178,19 @@ TEST_CASE(
   });
 }
 
+TEST_CASE("regenerate_clip: missing joints are counted in frames of the track") {
+  on_every_device([](Device& device) {
+    Scene scene(60.0, 100);
+    const Model model = scene.model(device);
+    scene.track.confidence.col(scene.track.find("RFoot")).segment(20, 24).setZero();
+    TrackFindings found;
+    regenerate_clip(model, scene.track, scene.placement(), {}, &found);
+    // The model sees 12 such frames at its 30 a second, one more or less at the ends.
+    CHECK(std::abs(found.filled.missing - 24) <= 2);
+    CHECK(found.filled.interpolated == 0);
+  });
+}
+
 TEST_CASE("regenerate_clip: a pose that does not match what the camera shows is placed by size") {
   Scene scene(30.0);
   const Modalities& m = scene.modalities;
@@ -211,6 +232,7 @@ TEST_CASE("regenerate_clip: the camera that the first answer finds sees the othe
     TrackFindings found;
     const auto got = regenerate_clip(m, scene.track, placement, single, several(single, 2), &found);
     REQUIRE(got.size() == 2);
+    if (fitted) CHECK(std::abs(pitch_deg(found.camera) - scene.view.elevation_deg) < 3);
     // As if it were the only one, and that camera were known.
     placement.camera = found.camera;
     const PoseAnswers second = [&](const MatrixF& features) {
@@ -222,6 +244,31 @@ TEST_CASE("regenerate_clip: the camera that the first answer finds sees the othe
     for (std::size_t joint = 0; joint < alone.skeleton.joints.size(); ++joint)
       CHECK(got[1].skeleton.joints[joint].offset == alone.skeleton.joints[joint].offset);
   }
+}
+
+TEST_CASE("regenerate_clip: how sure the network is of its answer comes with it") {
+  on_every_device([](Device& device) {
+    const Scene scene(30.0);
+    Model model = scene.model(device);
+    Mcdbn& network = model.network;
+    const auto features = static_cast<std::size_t>(scene.modalities.pose_scale.output_dimension());
+    network.deviation = {random_matrix(network.modality(kPose).visible, features, 5, 0.3F),
+                         MatrixF::Constant(1, static_cast<Eigen::Index>(features), -1.2F)};
+    ClipPlacement placement = scene.placement();
+    placement.uncertainty_draws = {20, 3};
+    TrackFindings found, without;
+    regenerate_clip(model, scene.track, placement, {}, &found);
+    const MatrixF seen = scene.modalities.encode_track(smooth_track(scene.track), scene.camera);
+    const CodedAnswer answer = coded_answers(network, {seen}).front();
+    const FittedClip want =
+        fit_to_track({answer.mean, network.deviation->of(answer.code)}, scene.modalities,
+                     scene.track, placement, std::nullopt, placement.uncertainty_draws);
+    const MatrixD uncertainty = joint_uncertainty(want.motion, want.draws);
+    CHECK(largest(found.uncertainty - uncertainty) < 1e-9 * largest(uncertainty));
+    network.deviation.reset();
+    regenerate_clip(model, scene.track, placement, {}, &without);
+    CHECK(largest(found.uncertainty - without.uncertainty) > 0.1 * largest(uncertainty));
+  });
 }
 
 TEST_CASE("gaps are filled in two rounds, each from the answer to the round before") {

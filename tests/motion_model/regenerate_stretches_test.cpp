@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/numbers.hpp"
-#include "camera/detector_track.hpp"
+#include "camera/projected_keypoints.hpp"
 #include "camera/show_only.hpp"
 #include "features/clip_modalities.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
@@ -200,6 +200,39 @@ TEST_CASE("regenerate stretches: a body that was found is as little known in all
     const double part = width(kFirst, kFrames - kFirst) / width(0, kFirst);
     CHECK(part > 0.7);
     CHECK(part < 3);  // it is shorter
+  }
+}
+
+TEST_CASE(
+    "regenerate stretches: deviations are from the body's root, below a node that stands still") {
+  const auto deviations = [](const Motion& clip) {
+    Scene scene;
+    scene.modalities = modalities_of({clip}, {});
+    ClipPlacement placement;
+    placement.camera = scene.camera;
+    placement.uncertainty_draws = {40, 3};
+    TrackFindings found;
+    scene.regenerated(project_motion(clip, scene.camera), placement, &found);
+    return found.uncertainty;
+  };
+  const Motion plain = Scene::walk();
+  Motion below = plain;
+  Skeleton& skeleton = below.skeleton;
+  skeleton.joints.insert(skeleton.joints.begin(),
+                         {"Node", -1, {0, 0, 0}, {Channel::x_position}, {}});
+  for (std::size_t joint = 1; joint < skeleton.joints.size(); ++joint)
+    ++skeleton.joints[joint].parent;
+  below.channels.resize(plain.channels.rows(), plain.channels.cols() + 1);
+  below.channels << Eigen::VectorXd::Zero(plain.frames()), plain.channels;
+  const MatrixD wanted = deviations(plain), got = deviations(below);
+  REQUIRE(got.cols() == wanted.cols() + 3);
+  // Draws differ, as one more joint turns; a distance counted in would make hands three times as
+  // uncertain.
+  for (Eigen::Index joint = 0; joint < wanted.cols(); joint += 3) {
+    CAPTURE(skeleton.joints[static_cast<std::size_t>(joint / 3 + 1)].name);
+    const double width = wanted.middleCols<3>(joint).norm();
+    CHECK(got.middleCols<3>(joint + 3).norm() > 0.6 * width);
+    CHECK(got.middleCols<3>(joint + 3).norm() < 1.6 * width);
   }
 }
 

@@ -5,7 +5,6 @@
 #include "device/every_device.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion_model/clip_regeneration.hpp"
-#include "mcdbn/motion_model/training_sources.hpp"
 #include "motion/resample.hpp"
 #include "motion_model/clip_scene.hpp"
 

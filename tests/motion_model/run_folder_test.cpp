@@ -1,7 +1,6 @@
 #include "mcdbn/motion_model/run_folder.hpp"
 
 #include <doctest/doctest.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
 #include "mcdbn/base/errors.hpp"
+#include "mcdbn/motion/joint_role.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
 #include "motion_model/example_model.hpp"
 
@@ -28,6 +28,7 @@ TrainingConfig odd_config() {
   config.fps = 29.97;
   config.gaussian.rate = 0.1 + 0.2;  // all digits come back
   config.skeleton = SkeletonUse::humanoid;
+  config.joint_map = {{JointRole::left_knee, "Knie, links"}, {JointRole::head, "spam"}};
   return config;
 }
 
@@ -58,6 +59,7 @@ TEST_CASE("a run folder keeps what a training was begun with") {
   CHECK(!run.is_complete());
   CHECK(settings_json(run.config()) == settings_json(odd_config()));
   CHECK(run.config().skeleton == SkeletonUse::humanoid);
+  CHECK(run.config().joint_map == odd_config().joint_map);
   REQUIRE(run.clips().size() == 2);
   CHECK(run.clips()[0].file == "/clips/b.bvh");
   CHECK(run.clips()[0].person == "Anna");
@@ -156,6 +158,7 @@ TEST_CASE("what is no run folder is refused, and so is what is no text") {
                                            {"/settings", "x", ": settings: "},
                                            {"/settings/hidden", 1000000000, ": settings: "},
                                            {"/settings/unknown", 1, ": settings: "},
+                                           {"/joint_map/head", 7, ": joint_map.head: "},
                                            {"/clips", {{"a", 1}}, ": clips: "},
                                            {"/clips/1/person", 7, ": clips[1].person: "}}) {
     CAPTURE(one.field);

@@ -72,6 +72,35 @@ TEST_CASE("seen clips: a track of the model's joints is taken as it is") {
   CHECK(scene.see(track).features == seen.features);
 }
 
+TEST_CASE("seen clips: frames that show nobody lie between those around them, not at the mean") {
+  Scene scene;
+  scene.placement.fit.reset();
+  // Longer than what is interpolated joint by joint, and at the end.
+  const int first = 20, frames = 12, last = 48;
+  for (const bool keypoints : {false, true}) {
+    CAPTURE(keypoints);
+    Track2d track = keypoints ? scene.seen(coco_keypoints()) : scene.exact;
+    track.confidence.middleRows(first, frames).setZero();
+    track.confidence.bottomRows(track.frames() - last).setZero();
+    std::vector<MatrixF> asked;
+    see_clip(scene.modalities, track, scene.placement, [&](const MatrixF& features) -> MatrixF {
+      asked.push_back(features);
+      return scene.pose;
+    });
+    REQUIRE_FALSE(asked.empty());
+    // Joints that no keypoint shows stay unknown.
+    const MatrixF seen = asked.front().array().isNaN().select(0.0F, asked.front());
+    const auto before = seen.row(first - 1), after = seen.row(first + frames);
+    CHECK(asked.front().row(first).array().isNaN().cast<int>().sum() < asked.front().cols() / 2);
+    CHECK((before - after).norm() > 0.5F);
+    for (int t = first; t < first + frames; ++t) {
+      const float share = static_cast<float>(t - first + 1) / (frames + 1);
+      CHECK(seen.row(t).isApprox((1 - share) * before + share * after, 1e-5F));
+    }
+    for (int t = last; t < track.frames(); ++t) CHECK(seen.row(t) == seen.row(last - 1));
+  }
+}
+
 TEST_CASE("seen clips: a detector's keypoints, the answer's own pose takes off what lies between") {
   Scene scene;
   for (const auto& keypoints : {coco_keypoints(), body_25_keypoints()}) {
@@ -95,6 +124,17 @@ TEST_CASE("seen clips: a detector's keypoints, the answer's own pose takes off w
     CHECK((std::ranges::count(seen.filled.unseen, "LeftToeBase") == 0) == feet);
     CHECK(std::ranges::count(seen.filled.unseen, "Spine") == 1);
   }
+}
+
+TEST_CASE("seen clips: a keypoint's confidence counts by the track's usual one") {
+  Scene scene;
+  Track2d track = scene.seen(coco_keypoints());
+  track.confidence.setConstant(0.6);
+  track.confidence.col(track.find("left_wrist")).segment(20, 10).setConstant(0.3);
+  const SeenClip seen = scene.see(track);
+  const auto hand = seen.joints.confidence.col(seen.joints.find("LeftHand"));
+  for (Eigen::Index t = 0; t < track.frames(); ++t)
+    CHECK(hand[t] == doctest::Approx(t >= 20 && t < 30 ? std::pow(0.5, 2.5) : 1));
 }
 
 TEST_CASE("seen clips: roles given by hand are used") {
@@ -163,6 +203,34 @@ TEST_CASE("seen clips: the view of an unknown camera is found as the clip is see
   CHECK_FALSE(finds_view(scene.modalities, scene.placement));
   scene.placement = {{scene.camera, scene.truth.skeleton}};
   CHECK_FALSE(finds_view(scene.modalities, scene.placement));
+}
+
+TEST_CASE("seen clips: the last fit begins with the view in which the network answered") {
+  Scene scene;
+  scene.truth = synthesize({.seconds = 3});
+  scene.view.elevation_deg = 25;
+  scene.camera = place_camera(scene.truth, scene.view);
+  scene.modalities.level_view = true;
+  scene.pose = scene.modalities.encode_pose(scene.truth, scene.camera.camera_from_world);
+  scene.placement.camera.reset();
+  scene.placement.view.field_of_view_deg = 45;
+  const Track2d track = project_motion(scene.truth, scene.camera);
+  const SeenClip seen = scene.see(track);
+  REQUIRE(*seen.view.pitch_deg > 5);
+  const auto answer = [&](const MatrixF&) -> PosePrior { return scene.pose; };
+  const MatrixD got =
+      regenerate_clip(scene.modalities, track, scene.placement, answer,
+                      [&](const MatrixF&) { return std::vector<PosePrior>{scene.pose}; })
+          .at(0)
+          .channels;
+  const auto fitted_from = [&](const AssumedView& found) {
+    KnownOfClip known = scene.placement;
+    known.found = found;
+    return fit_to_track(scene.pose, scene.modalities, seen.joints, known, scene.placement.fit)
+        .motion.channels;
+  };
+  CHECK((fitted_from(seen.view) - got).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK((fitted_from({}) - got).cwiseAbs().maxCoeff() > 1e-3);
 }
 
 TEST_CASE("seen clips: legs that come back with the other's sides get their own") {

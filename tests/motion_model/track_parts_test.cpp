@@ -6,7 +6,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 
 #include "base/numbers.hpp"
 #include "camera/show_only.hpp"

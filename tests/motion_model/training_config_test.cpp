@@ -48,6 +48,7 @@ TEST_CASE("training config: its settings are its parts' and the loss's, with the
 TEST_CASE("training config: presets are those of learning") {
   CHECK(changed_by(TrainingConfig::greedy()) == changed_by(LearningSettings::greedy()));
   CHECK(changed_by(TrainingConfig::paper()) == changed_by(LearningSettings::paper()));
+  CHECK(changed_by(TrainingConfig::paper_stable()) == changed_by(LearningSettings::paper_stable()));
   Values generation = changed_by(LearningSettings::generation());
   generation["phases"] = "4";
   generation["directions"] = "4";
@@ -55,9 +56,28 @@ TEST_CASE("training config: presets are those of learning") {
   generation["binary.epochs"] = "12";
   generation["mrbm.epochs"] = "7";
   CHECK(changed_by(TrainingConfig::generation()) == generation);
-  for (const TrainingConfig& config : {TrainingConfig{}, TrainingConfig::greedy(),
-                                       TrainingConfig::paper(), TrainingConfig::generation()})
+  for (const TrainingConfig& config :
+       {TrainingConfig{}, TrainingConfig::greedy(), TrainingConfig::paper(),
+        TrainingConfig::paper_stable(), TrainingConfig::generation(), TrainingConfig::general()})
     CHECK_NOTHROW(config.validate());
+}
+
+TEST_CASE("training config: the preset for many people is that of docs/corpus.md") {
+  const TrainingConfig general = TrainingConfig::general();
+  CHECK(changed_by(general) == Values{{"augment.detector", "0.8"},
+                                      {"augment.limbs-exchanged", "0.5"},
+                                      {"augment.limbs-turned", "0.4"},
+                                      {"augment.arms-anywhere", "0.35"},
+                                      {"augment.leaning", "0.25"},
+                                      {"augment.turning-round", "0.25"},
+                                      {"augment.gravity", "1.5"},
+                                      {"fine-tuning.steps", "30000"},
+                                      {"fine-tuning.view-uses", "16"},
+                                      {"fine-tuning.weight-decay", "0.1"},
+                                      {"fine-tuning.windows", "40"},
+                                      {"fine-tuning.settle-frames", "10"},
+                                      {"fine-tuning.hold-out-among", "0"}});
+  CHECK(general.skeleton == SkeletonUse::humanoid);
 }
 
 TEST_CASE("training config: its parts' ranges hold, and its own") {

@@ -13,7 +13,9 @@
 #include "learning/small_network.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/learning/fine_tuning.hpp"
+#include "motion_model/fine_tuning_on_views.hpp"
 #include "motion_model/pose_loss.hpp"
+#include "motion_model/tiny_training_config.hpp"
 
 namespace training_schedule_test {
 
@@ -25,7 +27,7 @@ namespace {
 /// Files, settings and the training set of a run that takes a second.
 struct SmallTraining {
   TrainingFiles walks{{{1, 1, 30.0, 1.2}, {2, 1, 30.0, 1.0}}};
-  TrainingConfig config = settings();
+  TrainingConfig config = tiny_training_config();
   TrainingSet data = make_training_set(load_clips(walks.files()), config);
 
   TrainedNetwork train(Device& device, const TrainingConfig& with,
@@ -41,27 +43,6 @@ struct SmallTraining {
         {{"track", static_cast<std::size_t>(data.tracks.front().cols()), VisibleKind::gaussian},
          {"pose", static_cast<std::size_t>(data.poses.front().cols()), VisibleKind::gaussian}},
         with);
-  }
-
- private:
-  static TrainingConfig settings() {
-    TrainingConfig config;
-    config.seed = 19;
-    config.hidden = 8;
-    config.mrbm_hidden = 6;
-    config.order = 2;
-    config.look_ahead = 2;
-    config.batch = 20;
-    config.least_batches = 2;
-    config.gaussian.epochs = config.mrbm.epochs = 2;
-    config.gaussian.gibbs_steps = 1;
-    config.mrbm.mean_field_steps = 4;
-    config.augment.views = 2;
-    config.fine_tuning.steps = 3;
-    config.fine_tuning.windows = 4;
-    config.fine_tuning.window_frames = 4;
-    config.fine_tuning.mean_field_steps = 2;
-    return config;
   }
 };
 

@@ -73,7 +73,7 @@ TEST_CASE("a training from a model begins with its parameters, in its features a
     const TrainingSet data = make_training_set(scene.second, start.modalities, still);
     CHECK(data.modalities.pose_scale.mean() == start.modalities.pose_scale.mean());
     CHECK(data.modalities.track_scale.deviation() == start.modalities.track_scale.deviation());
-    const Model same = train_model(device, data, scene.second, still, {}, nullptr, &start).model;
+    const Model same = train_model(device, data, scene.second, still, {}, &start).model;
     const Eigen::VectorXd before = parameters(start.network), after = parameters(same.network),
                           anew = parameters(
                               train_model(device, data, scene.second, still).model.network);
@@ -81,15 +81,14 @@ TEST_CASE("a training from a model begins with its parameters, in its features a
     CHECK((before - after).cwiseAbs().maxCoeff() < 1e-6);
     CHECK((before - anew).cwiseAbs().maxCoeff() > 0.1);
 
-    const Model learnt =
-        train_model(device, data, scene.second, scene.config, {}, nullptr, &start).model;
+    const Model learnt = train_model(device, data, scene.second, scene.config, {}, &start).model;
     CHECK(parameters(learnt.network) != before);
     // What either was trained on is no test.
     REQUIRE(learnt.training_clips.size() == 2);
     CHECK(learnt.training_clips[0].path == scene.first.record(0).clip.path);
     CHECK(learnt.training_clips[1].path == scene.second.record(0).clip.path);
     // Learnt again it is listed once.
-    const Model again = train_model(device, data, scene.second, still, {}, nullptr, &learnt).model;
+    const Model again = train_model(device, data, scene.second, still, {}, &learnt).model;
     REQUIRE(again.training_clips.size() == 2);
     CHECK(again.training_clips[0].path == scene.first.record(0).clip.path);
     CHECK(again.training_clips[1].path == scene.second.record(0).clip.path);

@@ -7,7 +7,6 @@
 #include "device/pointwise.hpp"
 #include "features/small_figure.hpp"
 #include "learning/small_network.hpp"
-#include "mcdbn/base/errors.hpp"
 #include "mcdbn/machines/regeneration.hpp"
 #include "motion_model/pose_loss.hpp"
 #include "reference/error_bounds.hpp"

@@ -36,6 +36,10 @@ Bounded Bounded::exact(const MatrixD& value) {
   return {value, MatrixD::Zero(value.rows(), value.cols())};
 }
 
+Bounded exact(const MatrixF& values) {
+  return Bounded::exact(values.cast<double>());
+}
+
 Sum& Sum::add_terms(const MatrixD& value, const MatrixD& inherited, const MatrixD& size,
                     double count) {
   if (roundings_ == 0) {

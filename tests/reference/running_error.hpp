@@ -16,6 +16,9 @@ struct Bounded {
   Bounded transposed() const { return {value.transpose(), bound.transpose()}; }
 };
 
+/// As Bounded::exact(), for numbers as the device has them.
+Bounded exact(const MatrixF& values);
+
 /// Terms that are added up in any order, all at once or in pieces that are stored in between: each
 /// is rounded at most once for every term that there is (Higham, sections 3.1 and 4.2).
 class Sum {

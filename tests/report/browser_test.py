@@ -29,7 +29,7 @@ except ImportError:
     sys.exit(77)
 
 TINY = (
-    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --binary-epochs 2 --mrbm-epochs 2 "
+    "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --mrbm-epochs 2 "
     "--fine-tuning-steps 30 --fine-tuning-windows 4 --augment-views 2"
 ).split()
 

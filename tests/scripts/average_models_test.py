@@ -100,7 +100,8 @@ class AverageModels(unittest.TestCase):
 
     def test_what_is_passed_on(self):
         write_model(self.further, [1.0], [2.0], seed=2,
-                    training_clips=[{"path": "/home/me/walk.bvh", "fingerprint": "1"}],
+                    training_clips=[{"path": "/home/me/walk.bvh", "fingerprint": "1", "person": "Anna",
+                                     "action": "walk"}],
                     started_from={"model": "/home/me/mean.safetensors", "fingerprint": "2"})
         start = self.folder / "mean.safetensors"
         for models, kept in (((self.model, self.second), True), ((), False)):

@@ -15,6 +15,8 @@ import subprocess
 import sys
 import unittest
 
+from devices import require_device
+
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/digits_halves"
 MINVI, JOINT = "MinVI, multi-prediction", "joint likelihood, persistent"
 MEAN = "mean of the training digits"
@@ -50,10 +52,5 @@ if __name__ == "__main__":
     if not has_scikit_learn(DigitsHalves.python):
         print("SKIPPED: no scikit-learn here; scripts/install_dependencies --test installs it")
         sys.exit(77)
-    if subprocess.run([DigitsHalves.cli, "devices"], capture_output=True, check=False).returncode != 0:
-        if "MCDBN_ALLOW_NO_DEVICE" not in os.environ:
-            sys.exit("no OpenCL device: nothing would be tested; "
-                     "MCDBN_ALLOW_NO_DEVICE=1 skips these tests")
-        print("SKIPPED: no OpenCL device here")
-        sys.exit(77)
+    require_device(DigitsHalves.cli)
     unittest.main(argv=sys.argv[:1])

@@ -5,8 +5,8 @@
 
 namespace mcdbn {
 
-/// Names one family of draws: every (row, column) below it has its own Philox number. The same on
-/// host, CPU and GPU (kernels/philox.clh defines how the counter is filled).
+/// Names one family of draws: every (row, column) below it has its own Philox number, which is the
+/// same on host, CPU and GPU (kernels/philox.clh defines how the counter is filled).
 struct RandomKey {
   std::uint64_t seed = 0;
   std::uint32_t step = 0;    ///< mini-batch number, or frame
@@ -20,7 +20,7 @@ std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
 
 /// The 32 bits that the kernels draw for that row and column.
 std::uint32_t random_bits(const RandomKey& key, std::uint32_t row, std::uint32_t column);
-/// The same as a number in (0, 1).
+/// random_bits() as a number in (0, 1).
 float random_uniform(const RandomKey& key, std::uint32_t row, std::uint32_t column);
 /// Standard normal, by Box-Muller in double precision.
 double random_normal(const RandomKey& key, std::uint32_t row, std::uint32_t column);

@@ -74,7 +74,7 @@ void visit_settings(Settings& settings, const Visit& visit) {
   std::remove_const_t<Settings>::visit(settings, visit);
 }
 
-/// The same with "group." before every name: for the settings that are members of others.
+/// As visit_settings(), with "group." before every name: for settings that are members of others.
 template <typename Settings, typename Visit>
 void visit_group(const std::string& group, Settings& settings, const Visit& visit) {
   visit_settings(settings, [&](Setting setting, auto& member) {

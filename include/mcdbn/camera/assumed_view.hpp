@@ -6,7 +6,7 @@
 
 namespace mcdbn {
 
-/// What is given of a camera without calibration; what is not given is assumed
+/// Known angles of a camera without calibration; the others are assumed
 /// (Modalities::assumed_camera).
 struct AssumedView {
   static constexpr Range kPitch_deg = within(-89, 89), kRoll_deg = within(-180, 180);

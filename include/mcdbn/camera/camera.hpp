@@ -4,7 +4,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,18 +14,18 @@
 
 namespace mcdbn {
 
-/// A pinhole camera with OpenCV's distortion, or with OpenCV's fisheye lens. What is so far aside
-/// that the distortion turns back is not seen. Camera axes are OpenCV's: x right, y down, z
+/// A pinhole camera with OpenCV's distortion, or with OpenCV's fisheye lens. Rays beyond the angle
+/// at which the distortion turns back are not seen. Camera axes are OpenCV's: x right, y down, z
 /// forward.
 struct Camera {
-  /// What an image's width and height may be.
+  /// Range of an image's width and height.
   static constexpr Range kImage_px = within(1, 100'000);
 
   Eigen::Matrix3d camera_from_world = Eigen::Matrix3d::Identity();  ///< rotation
   Eigen::Vector3d translation{0, 0, 0};  ///< x_camera = R·x_world + translation
   double fx_px = 1000, fy_px = 1000, cx_px = 960, cy_px = 540;
   std::vector<double> distortion;  ///< k1 k2 p1 p2 [k3 …], of a fisheye k1 k2 k3 k4; may be empty
-  bool fisheye = false;            ///< what is 84 degrees aside and more is not seen
+  bool fisheye = false;            ///< rays 84 degrees aside and more are not seen
   int width_px = 1920, height_px = 1080;
   bool size_is_guess = false;  ///< twice the principal point: its file gives none
   /// How many metres the translation's unit is; unset: it is in file units of the motion seen.
@@ -40,7 +39,7 @@ Camera in_file_units(Camera camera, const Skeleton& skeleton);
 /// that it can be brought into another motion's. One that has a unit is returned as it is.
 Camera with_unit(Camera camera, const Skeleton& skeleton);
 
-/// The same view in an image of another size.
+/// The camera with its view unchanged, in an image of another size.
 Camera scaled(Camera camera, int width_px, int height_px);
 /// The camera of its own images scaled to that size, which is rounded to whole pixels. Where the
 /// size of its own is a guess the images are taken to be its own.
@@ -78,7 +77,7 @@ struct CameraPlacement {
   }
 };
 
-/// That placement and others, evenly around the figure, each further to its left.
+/// `count` placements evenly around the figure: `first`, then each further to the figure's left.
 std::vector<CameraPlacement> placements_around(const CameraPlacement& first, std::size_t count);
 
 /// camera_from_world of that azimuth and elevation, with the world's +y up.
@@ -90,7 +89,8 @@ Camera camera_at_origin(const CameraPlacement& placement);
 
 /// Aims a camera at the centre of the clip, with every joint of every frame in view.
 Camera place_camera(const Motion& motion, const CameraPlacement& placement);
-/// The same for points. @param points [frames x 3·joints] world  @throws InputError if none
+/// As place_camera() for a motion, for points. @param points [frames x 3·joints] world
+/// @throws InputError if none
 Camera place_camera(const MatrixD& points, const CameraPlacement& placement);
 
 /// Projects world points through the camera by cv::projectPoints or cv::fisheye::projectPoints.

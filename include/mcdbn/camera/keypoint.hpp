@@ -9,7 +9,7 @@
 
 namespace mcdbn {
 
-/// What a column of a detector's track shows: a place on the body, relative to the joint that
+/// The place on the body that a column of a detector's track shows, relative to the joint that
 /// carries it.
 struct Keypoint {
   std::string name;  ///< as the detector's documents spell it

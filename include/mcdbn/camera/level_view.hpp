@@ -7,8 +7,8 @@
 
 namespace mcdbn {
 
-/// Of the angle between a ray and the level view's direction: what is 84 degrees or more aside is
-/// not in it.
+/// Least cosine of the angle between a ray and the level view's direction: a ray 84 degrees or more
+/// aside is not in the view.
 inline constexpr double kLevelViewLeastCosine = 0.1;
 
 /// level_from_world of a camera with the world's +y up: its pitch and roll are taken out, its

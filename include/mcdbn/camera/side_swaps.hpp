@@ -7,7 +7,7 @@
 
 namespace mcdbn {
 
-/// Joints are followed over gaps of so long.
+/// Longest gap over which joints are followed.
 inline constexpr double kLongestFollowedGap_s = 0.2;
 
 enum class LimbPair { arms, legs };
@@ -19,14 +19,14 @@ struct SideSwap {
   std::vector<int> left, right;         ///< columns to exchange, those of a place side by side
 };
 
-/// Finds them over the whole clip: each frame of the arms and of the legs is swapped or not, and
+/// Finds swaps over the whole clip: each frame of the arms and of the legs is swapped or not, and
 /// the sequence is sought in which the joints jump least, their velocity kept, against a cost of
-/// each switch (Viterbi). Of a limb the places are exchanged that jump less for it. If swaps fill
+/// each switch (Viterbi). Those places of a limb are exchanged that jump less for it. If swaps fill
 /// more than half of a clip, the rest is taken for swapped.
 /// @param track with keypoints; without them nothing is found
 std::vector<SideSwap> find_side_swaps(const Track2d& track);
 
-/// The same in a track that has so many frames more before it, or fewer.
+/// The swap in a track with `frames` more frames before it; negative: fewer.
 SideSwap moved(SideSwap swap, int frames);
 
 /// Exchanges what find_side_swaps found.

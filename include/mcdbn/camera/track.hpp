@@ -11,7 +11,7 @@ namespace mcdbn {
 /// 2D joints over time as one camera sees them. A missing joint is NaN with confidence 0.
 struct Track2d {
   std::vector<std::string> joint_names;
-  /// What each column shows, of a detector's joint set; empty where the columns are a skeleton's
+  /// Keypoint of each column, of a detector's joint set; empty where the columns are a skeleton's
   /// own joints, which are joined by name.
   std::vector<Keypoint> keypoints;
   MatrixD x_px, y_px, confidence;  ///< each [frames x joints]

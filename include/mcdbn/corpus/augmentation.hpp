@@ -98,8 +98,8 @@ struct AugmentationSettings {
                   "share of the views in which the person turns around in the course of the clip"},
           self.turning_round);
     visit(Setting{"gravity", within(0, 180), "degrees",
-                  "deviation of the error of the direction taken as down: for phones and assumed "
-                  "cameras"},
+                  "standard deviation of an error in the direction of gravity: for phones and "
+                  "assumed cameras"},
           self.gravity_deg);
   }
 };
@@ -113,7 +113,7 @@ struct AugmentedView {
   Track2d track;
 };
 
-/// A changed view of the clip. The same key gives the same view. A detector's track, too, is of the
+/// A changed view of the clip. A key always gives the same view. A detector's track, too, is of the
 /// skeleton's own joints, as far as its keypoints show them.
 /// @param raw at its own rate
 /// @param hide_no_limb no limb is hidden; what a detector loses is missing all the same

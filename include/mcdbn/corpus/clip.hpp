@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mcdbn/corpus/training_clip.hpp"
 #include "mcdbn/motion/skeleton.hpp"
 
 namespace mcdbn {
@@ -27,27 +28,10 @@ Motion load_clip(const std::filesystem::path& path, const ClipOptions& options =
 /// @throws InputError if a path does not exist or a folder holds none
 std::vector<std::filesystem::path> find_clips(const std::vector<std::filesystem::path>& paths);
 
-/// A clip that the model was trained on, so that it is not taken for a test.
-struct TrainingClip {
-  std::string path;  ///< absolute
-  /// Of the file's bytes, and of an AMC its ASF's too: knows the clip again under another name.
-  std::string fingerprint;
-  /// Of an AMC's bytes alone, as earlier models recorded it; empty of other files.
-  std::string former_fingerprint = {};
-};
-
-/// @throws InputError if the file, or an AMC's ASF, cannot be read
-TrainingClip identify_clip(const std::filesystem::path& path);
-
-/// Whether one of the clips has the same bytes. Of an AMC that an earlier model recorded the ASF is
-/// not compared.
-bool is_among(const std::vector<TrainingClip>& clips, const TrainingClip& clip);
-
 /// A clip to train on, its file read once for all that is made of it.
 struct LoadedClip {
   TrainingClip clip;
-  Motion motion;                         ///< at the file's own rate
-  std::string person = {}, action = {};  ///< who does what; empty where not given
+  Motion motion;  ///< at the file's own rate
 };
 
 /// @param notices as load_clip collects them, but what is the same of several clips once

@@ -16,8 +16,9 @@ struct ListedClip {
   std::string person, action;
 };
 
-/// Clips that a command line means: files and folders as find_clips takes them, and lists.
-/// @throws InputError as find_clips and read_clip_list do
+/// Clips that a command line means: files and folders as find_clips takes them, and lists. Each
+/// clip counts once; its person and action are those of any list that names it.
+/// @throws InputError as find_clips and read_clip_list do, or if two lists contradict each other
 std::vector<ListedClip> find_listed_clips(const std::vector<std::filesystem::path>& paths);
 
 /// A list of clips, TOML: a table `[[clip]]` for each with `file`, relative to the list's folder or

@@ -7,10 +7,9 @@
 
 namespace mcdbn {
 
-/// What is known of a clip beside its motion.
+/// Metadata of a clip: all but its motion.
 struct ClipRecord {
   TrainingClip clip;
-  std::string person = {}, action = {};
   Skeleton skeleton;
   double frame_time_s = 0;
   int frames = 0;
@@ -41,7 +40,7 @@ class ClipStore {
   Motion motion(std::size_t clip) const { return piece(clip, 0, records_[clip].frames); }
   /// Some of a clip's frames. Several threads may ask at once.
   Motion piece(std::size_t clip, int first, int frames) const;
-  /// Of all clips at another rate.
+  /// Number of frames of all clips together at `fps`.
   double frames_at(double fps) const;
 
  private:

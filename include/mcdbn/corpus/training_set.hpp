@@ -42,10 +42,11 @@ struct CorpusSettings {
   static void visit(Self& self, const Visit& visit) {
     visit(Setting{"fps", kFrameRate_hz, "Hz", "frame rate of the model; clips are resampled to it"},
           self.fps);
-    visit(Setting{"phases", within(1, 1000), "resamplings",
-                  "shifted resamplings of each clip, at most clip rate / fps: they use the frames "
-                  "in between"},
-          self.phases);
+    visit(
+        Setting{"phases", within(1, 1000), "resamplings",
+                "shifted resamplings of each clip when nothing is fine-tuned, at most clip rate / "
+                "fps: they use the frames in between"},
+        self.phases);
     visit(Setting{"directions", Modalities::kDirections, "directions",
                   "camera directions, evenly around, that each clip is projected from when nothing "
                   "is fine-tuned"},
@@ -64,22 +65,21 @@ struct TrainingSet {
   std::vector<MatrixF> poses;   ///< 3D
   /// All files as they were read; of augmented views, each view's.
   std::vector<TrainingClip> clips;
-  /// Who is seen in each of `poses`, counted from 0.
+  /// Person of each of `poses`, counted from 0.
   std::vector<std::size_t> people;
   /// What was seen of each of `tracks`, 1, and what was not, 0, where the track is at its mean;
   /// empty where everything was.
   std::vector<MatrixF> tracks_seen;
-  /// Who does what in each of `poses`, a number for each person and action; empty where no
-  /// actions are given.
+  /// Person and action of each of `poses`, as one number; empty where no actions are given.
   std::vector<std::size_t> groups = {};
-  /// What views of the clips need for poses that no clip holds, if there are to be such.
+  /// Poses for views of the clips with poses that no clip holds; none: there are no such views.
   std::shared_ptr<const PosePool> new_poses = {};
   std::size_t frames() const;
 };
 
-/// Resamples each clip on `phases` shifted grids, projects it through the camera, without views
-/// from `directions` all around, and learns the features and their scaling. Of more than some two
-/// hours pieces stand for all (clip_pieces.hpp).
+/// Resamples each clip, without views on `phases` shifted grids, projects it through the camera,
+/// without views from `directions` all around, and learns the features and their scaling. Of more
+/// than some two hours pieces stand for all (clip_pieces.hpp).
 /// @param clips at their own rate (load_clips)
 /// @param with_views the scaling is learnt from augmented views, too (make_augmented_views)
 /// @param held_out a person, as the set numbers them, of whose clips no new poses are made
@@ -88,9 +88,9 @@ TrainingSet make_training_set(const ClipStore& clips, const CorpusSettings& sett
                               std::uint64_t seed, bool with_views,
                               std::optional<std::size_t> held_out = {});
 
-/// The same with the features and the scaling of `modalities`.
+/// As make_training_set(), with the features and the scaling of `modalities` instead of new ones.
 /// @param with_views new poses are made ready, if the settings ask for such
-/// @param held_out likewise
+/// @param held_out a person, as the set numbers them, of whose clips no new poses are made
 /// @throws InputError if a clip lacks a joint of theirs
 TrainingSet encoded_training_set(const ClipStore& clips, const Modalities& modalities,
                                  const CorpusSettings& settings, bool with_views,

@@ -39,7 +39,7 @@ std::vector<DeviceInfo> list_devices();
 /// The list as text, one device a line; where there is none, what to install.
 std::string describe_devices(const std::vector<DeviceInfo>& devices);
 
-/// What the user asked for: an index or part of a name (case-insensitive), empty for any.
+/// The device that the user asked for: an index or part of a name (case-insensitive); empty: any.
 struct DeviceSelection {
   std::string platform;
   std::string device;
@@ -47,7 +47,7 @@ struct DeviceSelection {
   static DeviceSelection from_environment();
 };
 
-/// Those of list_devices() that match, in its order.
+/// The devices of list_devices() that match, in its order.
 std::vector<DeviceInfo> matching_devices(const DeviceSelection& selection);
 
 /// When a kernel ran, in nanoseconds of the device's own clock.
@@ -75,7 +75,7 @@ class Device {
   ProgramCache& programs() { return *programs_; }
   /// The user's tuned choices for this device, else what suits its kind.
   const Tuning& tuning() const { return tuning_; }
-  /// As far as the device takes it.
+  /// Sets the tuning, limited to what the device can do.
   void set_tuning(const Tuning& tuning);
   /// Waits until everything enqueued has run. @throws DeviceError
   void finish();
@@ -90,7 +90,7 @@ class Device {
   /// kernels, keep the last event.
   bool keeps_launch_times() const { return keeps_launch_times_; }
   void keep_launch(std::string kernel, const cl::Event& event);
-  /// Those of the launches since the last call, in order; waits for the queue. @throws DeviceError
+  /// Times of the launches since the last call, in order; waits for the queue. @throws DeviceError
   std::vector<LaunchTime> take_launch_times();
 
  private:

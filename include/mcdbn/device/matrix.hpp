@@ -32,7 +32,7 @@ class Matrix {
   /// (parameters.hpp). @throws ShapeError if they do not lie within it
   Matrix part(std::size_t first, std::size_t rows, std::size_t columns) const;
 
-  /// `row` [1 x n] so many times. @return [rows x n]  @throws ShapeError for more than one row
+  /// `row` [1 x n] repeated. @return [rows x n]  @throws ShapeError for more than one row
   static Matrix filled_with_row(const Matrix& row, std::size_t rows);
 
   std::size_t rows() const { return rows_; }
@@ -93,8 +93,8 @@ struct Rows {
   static Rows indexed(const Matrix& from, const IndexBuffer& index, std::size_t index_first,
                       std::size_t row_count, int shift = 0, std::size_t frames = 1);
 
-  /// Rows first, first + step, first + 2·step …, each running on over `frames` rows: the same
-  /// moment of many sequences that lie one after another.
+  /// Rows first, first + step, first + 2·step …, each running on over `frames` rows: one frame of
+  /// many sequences that lie one after another.
   static Rows strided(const Matrix& from, std::size_t first, std::size_t count, std::size_t step,
                       std::size_t frames = 1);
 

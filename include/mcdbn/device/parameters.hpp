@@ -44,7 +44,7 @@ class Parameters {
   const Entry& entry(std::string_view name) const;
   /// [device_rows x columns], in place: what is done to it is done to the parameter.
   Matrix matrix(std::string_view name) const;
-  /// The same entries in another buffer of this layout [1 x floats], of gradients or averages.
+  /// These entries in another buffer of this layout [1 x floats], of gradients or averages.
   /// @throws ShapeError
   Parameters in(const Matrix& buffer) const;
 

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace mcdbn {
@@ -30,12 +29,12 @@ struct Tuning {
   /// Rounds of a sum's loop that are made one (UNROLL in types.clh): a GPU has that many loads
   /// under way, where a single one is waited for. A CPU reads ahead by itself.
   int unroll = 1;
-  /// Products of at least so many multiply-adds go to CLBlast; 0: none.
+  /// Least number of multiply-adds of a product that goes to CLBlast; 0: none goes.
   std::int64_t clblast_from = 0;
   bool operator==(const Tuning&) const = default;
 };
 
-/// What suits most CPUs or GPUs.
+/// Tuning that suits most CPUs or GPUs.
 Tuning default_tuning(const DeviceInfo& info);
 
 /// `tuning` with no larger work-groups than the device takes, and without CLBlast where its groups

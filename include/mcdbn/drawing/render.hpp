@@ -40,8 +40,8 @@ struct RenderOptions {
 /// rows of one clip, or one row a clip (the first, e.g. the truth, on top). Written atomically.
 /// Over a film nothing else is drawn, and of a sheet both rows show the film.
 /// @param notices if given, collects what was adapted to a film
-/// @throws InputError if there is no frame, the ending is another one, the film cannot be read, or
-///         the file cannot be written; ConfigError if an option is out of range, or a film is to be
+/// @throws InputError if there is no frame, the film cannot be read, or the file cannot be written;
+///         ConfigError if the ending is another one, an option is out of range, or a film is to be
 ///         drawn over without a camera
 void render(const std::vector<RenderClip>& clips, const std::filesystem::path& path,
             const RenderOptions& options = {}, std::vector<std::string>* notices = nullptr);

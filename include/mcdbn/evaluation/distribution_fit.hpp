@@ -13,7 +13,7 @@ namespace mcdbn {
 /// location.
 enum class DistributionFamily { normal, log_normal, gamma, weibull, generalized_extreme_value };
 
-/// As in reports: normal, log-normal, gamma, Weibull, GEV.
+/// The family's name in reports: normal, log-normal, gamma, Weibull, GEV.
 std::string family_name(DistributionFamily family);
 
 struct FittedParameter {

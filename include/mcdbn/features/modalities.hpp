@@ -37,7 +37,7 @@ struct Modalities {
   MatrixD pose_values(const Motion& clip, const Eigen::Matrix3d& camera_from_world) const;
   /// @return [frames x pose_scale.output_dimension()]
   MatrixF encode_pose(const Motion& clip, const Eigen::Matrix3d& camera_from_world) const;
-  /// What encode_pose scaled, as 3D features along the camera's own axes.
+  /// Inverse of encode_pose()'s scaling: 3D features along the camera's own axes.
   /// @return [frames x pose_features.dimension()]
   MatrixD pose_in_camera(const MatrixF& standardized,
                          const Eigen::Matrix3d& camera_from_world) const;

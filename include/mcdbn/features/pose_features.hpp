@@ -34,7 +34,7 @@ class PoseFeatures {
   /// one that is more along the joint's longest bone, so that this axis alone shows where the bone
   /// ends, and the other how the bone is turned about its length.
   int leading_axis(int block) const { return leading_axes_[static_cast<std::size_t>(block)]; }
-  /// What the channels of joints without features are, [1 x channels]; see decode.
+  /// Values of the channels of joints without features, [1 x channels]; see decode.
   const RowVectorD& fixed_channels() const { return constant_channels_; }
   std::vector<std::string> feature_names() const;
 
@@ -58,7 +58,7 @@ class PoseFeatures {
   /// v_z (camera's frame, m/s on a 1.7 m body)
   MatrixD root_features(const MatrixD& features) const;
 
-  /// The same poses along the axes of another camera.
+  /// Turns the poses to the axes of another camera.
   /// @param features [frames x dimension]  @param other_from_camera rotation  @throws ShapeError
   MatrixD turned(const MatrixD& features, const Eigen::Matrix3d& other_from_camera) const;
 

@@ -16,7 +16,7 @@ struct KnownOfClip {
   /// The person's own; unset: the model's, and the fit allows for other proportions.
   std::optional<Skeleton> skeleton;
   AssumedView view = {};   ///< what is known of the camera that is assumed
-  AssumedView found = {};  ///< what was found out of it besides; `view` holds
+  AssumedView found = {};  ///< what was estimated of that camera; `view` takes precedence
   /// Whether the joints are a detector's keypoints: they are taken for no better than usual.
   bool detected = false;
   /// Whether the skeleton is not given but was found, in another part of the clip: the fit keeps
@@ -31,7 +31,7 @@ struct KnownOfClip {
   Camera camera_of(const Track2d& track, const Modalities& modalities) const {
     return camera ? *camera : modalities.assumed_camera(assumed(), track.width_px, track.height_px);
   }
-  /// What was given of the view, and what was found where nothing was.
+  /// `view`, and `found` where `view` has nothing.
   AssumedView assumed() const {
     AssumedView all = view;
     if (!all.pitch_deg) all.pitch_deg = found.pitch_deg;

@@ -6,13 +6,13 @@
 
 namespace mcdbn {
 
-/// What is likely of each pose of a clip before its track is looked at: a normal distribution for
-/// each frame and feature. It is all that the fit knows of a network. Standardized 3D features,
-/// [frames x Modalities::pose_scale.output_dimension()] both.
+/// Prior of the poses of a clip, before its track is looked at: a normal distribution for each
+/// frame and feature. It is all that the fit knows of a network. Standardized 3D features, [frames
+/// x Modalities::pose_scale.output_dimension()] both.
 struct PosePrior {
   MatrixF mean;
   /// Standard deviation, finite and not negative; 0 x 0: not known, and the settings' typical
-  /// ones are taken. Those of height and the root's position are not used.
+  /// ones are taken. Deviations of height and the root's position are not used.
   MatrixF deviation;
 
   PosePrior() = default;

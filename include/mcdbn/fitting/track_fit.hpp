@@ -1,7 +1,7 @@
-// The room fitting: poses that are likely beforehand meet the 2D track that shows them.
-// It uses features. Its door is fit_to_track; behind it: root paths, one problem for all frames of
-// a clip, its costs; Ceres is included here alone. Add here: a cost, as a file of terms/ and lines
-// in window_problem.cpp.
+// The room fitting: fits a prior mean and deviation to a 2D track.
+// It uses features. Its one entry point is fit_to_track. Also here: root paths, one problem for all
+// frames of a clip, its costs; Ceres is included here alone. Add here: a cost, as a file of terms/
+// and lines in window_problem.cpp.
 #pragma once
 
 #include <cstddef>
@@ -20,19 +20,19 @@
 
 namespace mcdbn {
 
-/// Motions that are asked for besides the likeliest, as likely as the posterior has them.
+/// Draws from the posterior, beside the likeliest motion.
 struct PosteriorDraws {
   std::size_t count = 0;
   std::uint64_t seed = 1;
 };
 
-/// A motion that meets its track.
+/// A motion fitted to its track.
 struct FittedClip {
   Motion motion;  ///< at the model's rate; on the model's skeleton with the lengths that were
                   ///< found, if none was known
   Track2d shown;  ///< all its joints as the camera sees them; image size as the track's
   Camera camera;  ///< that sees `motion` so, in the skeleton's file units
-  AssumedView view = {};  ///< of it, where none was known
+  AssumedView view = {};  ///< of the camera, where none was known
   /// Whether the prior's mean does not match what the camera shows: the root started from how large
   /// body and image are, and the motion may be far off.
   bool placed_by_size = false;
@@ -49,7 +49,7 @@ struct FittedClip {
 /// right alike (docs/concepts.md, The fit). Without settings only the root is put where the track
 /// shows it. Without a camera only the path's shape is known: it
 /// starts above the origin, at the features' height.
-/// @param features what decodes features to poses, and the joints to look at
+/// @param modalities decode features to poses, and name the joints to look at
 /// @param track at the model's rate, as many frames as the prior; joined by name
 /// @param settings unset: orientations stay as the prior's mean has them, and draws are what the
 ///        prior alone leaves open
@@ -58,7 +58,7 @@ struct FittedClip {
 ///        uncertainty take different settings
 /// @throws ShapeError; InputError if the skeleton lacks a joint of the model, no frame shows enough
 ///         joints, or a deviation is negative or not finite
-FittedClip fit_to_track(const PosePrior& prior, const Modalities& features, const Track2d& track,
+FittedClip fit_to_track(const PosePrior& prior, const Modalities& modalities, const Track2d& track,
                         const KnownOfClip& known, const std::optional<TrackFitSettings>& settings,
                         const PosteriorDraws& draws = {});
 

@@ -77,22 +77,23 @@ struct TrackFitSettings {
           self.orientation_deviation_deg);
     // At 1 a joint would turn with its parent and no other way.
     visit(Setting{"parent-correlation", share_below_one(), "",
-                  "correlation of what is wrong with an orientation with its parent's"},
+                  "correlation of an orientation's error with its parent's"},
           self.parent_correlation);
     visit(Setting{"prior-error-time", above(0), "seconds",
-                  "how long the prior's errors last: frames so near are one observation"},
+                  "correlation time of the prior's errors: frames within it count as one "
+                  "observation"},
           self.prior_error_time_s);
-    visit(Setting{"measured-prior-error-time", above(0), "seconds",
-                  "the same where a solution measured the noise: of a known body that no detector "
-                  "saw"},
-          self.measured_prior_error_time_s);
-    // Errors that last longer than that are there, too. A detector's hide them.
     visit(
-        Setting{"exact-prior-weight", above(0, 1), "",
-                "how much the prior's mean counts where rays are exact, of what it does elsewhere"},
-        self.exact_prior_weight);
+        Setting{"measured-prior-error-time", above(0), "seconds",
+                "as prior-error-time, where a solution measured the noise: of a known body that no "
+                "detector saw"},
+        self.measured_prior_error_time_s);
+    // Errors that last longer than that are there, too. A detector's hide them.
+    visit(Setting{"exact-prior-weight", above(0, 1), "",
+                  "weight of the prior's mean where rays are exact, relative to elsewhere"},
+          self.exact_prior_weight);
     visit(Setting{"exact-parent-correlation", share_below_one(), "",
-                  "the parent-correlation where a track of a known body shows no noise itself"},
+                  "as parent-correlation, where a track of a known body shows no noise itself"},
           self.exact_parent_correlation);
     visit(
         Setting{
@@ -107,22 +108,22 @@ struct TrackFitSettings {
                   "noise that even exact rays are taken to have: what is left of rounding"},
           self.least_noise_px);
     visit(Setting{"exact-energy-ratio", above(1), "",
-                  "how many times the energy may become by a third of the noise: what becomes more "
-                  "has noise"},
+                  "largest ratio of the energies with a third of the noise and with all of it; "
+                  "above it the track is noisy, not exact"},
           self.exact_energy_ratio);
     visit(Setting{"detector-noise", above(0), "body heights",
-                  "how far off detectors are for longer than a frame"},
+                  "deviation of a detector's errors that last for longer than a frame"},
           self.detector_noise_heights);
     visit(Setting{"detector-noise-time", at_least(0), "seconds", "how long such an error lasts"},
           self.detector_noise_time_s);
     visit(Setting{"noise-factor", above(0), "",
-                  "how many times the noise that is new in each frame it is taken to be"},
+                  "factor on the noise that is new in each frame, as a margin"},
           self.noise_factor);
     visit(Setting{"measured-noise-factor", above(0), "",
-                  "the same where a solution measured the noise"},
+                  "as noise-factor, where a solution measured the noise"},
           self.measured_noise_factor);
     visit(Setting{"outlier", above(0), "deviations",
-                  "how far off a ray counts less and less (Cauchy): it shows something else"},
+                  "Cauchy scale: beyond so many deviations a ray loses weight"},
           self.outlier_deviations);
   }
 
@@ -134,17 +135,20 @@ struct TrackFitSettings {
             "deviation of the logarithm of a bone's length from the usual, where the person's own "
             "is not known: people, and where a detector sees the joints between them"},
         self.bone_log_deviation);
-    visit(Setting{"arm-log-deviation", above(0), "", "the same of upper arms and forearms"},
+    visit(Setting{"arm-log-deviation", above(0), "",
+                  "as bone-log-deviation, of upper arms and forearms"},
           self.arm_log_deviation);
     // Legs tell how large the person is, and so how far away.
-    visit(Setting{"leg-log-deviation", above(0), "", "the same of thighs and shanks"},
+    visit(Setting{"leg-log-deviation", above(0), "", "as bone-log-deviation, of thighs and shanks"},
           self.leg_log_deviation);
-    visit(Setting{"partial-body-log-deviation", above(0), "",
-                  "the same of all bones where no frame shows a leg: nothing else shows how large "
-                  "the person is"},
-          self.partial_body_log_deviation);
+    visit(
+        Setting{
+            "partial-body-log-deviation", above(0), "",
+            "as bone-log-deviation, of all bones where no frame shows a leg: nothing else shows "
+            "how large the person is"},
+        self.partial_body_log_deviation);
     visit(Setting{"people-log-deviation", above(0), "",
-                  "the same of people alone: how far draws without a track's fit stray"},
+                  "as bone-log-deviation, of people alone: for draws without a track's fit"},
           self.people_log_deviation);
     visit(Setting{"planted-foot-speed", above(0), "m/s", "how fast a foot that stands slips"},
           self.planted_foot_speed_m_s);
@@ -152,7 +156,7 @@ struct TrackFitSettings {
                   "deviation of a standing foot's height above the clip's ground"},
           self.ground_deviation_m);
     visit(Setting{"ground-observation", above(0), "seconds",
-                  "in which all heights of a foot are one observation"},
+                  "time within which a foot's heights count as one observation"},
           self.ground_observation_s);
   }
 
@@ -163,7 +167,7 @@ struct TrackFitSettings {
                   "ceiling"},
           self.pitch_deviation_deg);
     visit(Setting{"roll-deviation", above(0), "degrees",
-                  "of its roll: held by hand, or a tripod that is not level"},
+                  "standard deviation of its roll: hand-held, or a tripod that is not level"},
           self.roll_deviation_deg);
     visit(Setting{"balance-deviation", above(0), "degrees",
                   "deviation of the body's middle from straight above the feet, on average"},
@@ -181,26 +185,25 @@ struct TrackFitSettings {
         Setting{
             "focal-log-deviation", above(0), "",
             "deviation of the logarithm of a camera's focal length where it is not given; cameras "
-            "differ by more, but one that gives way further follows the pose's errors"},
+            "differ by more, but a wider prior lets the focal length absorb errors of the pose"},
         self.focal_log_deviation);
   }
 
   template <typename Self, typename Visit>
   static void visit_solutions(Self& self, const Visit& visit) {
     visit(Setting{"first-solution-step", above(0), "seconds",
-                  "between the frames of the first solution, which the others start from"},
+                  "time between the frames of the first solution, which the others start from"},
           self.first_solution_step_s);
+    visit(Setting{"most-solutions", at_least(0), "",
+                  "largest number of solutions of all frames after the first; each uses the noise "
+                  "and the standing feet that the one before found"},
+          self.most_solutions);
     visit(
-        Setting{"most-solutions", at_least(0), "",
-                "of all frames at most, after that one; each with the noise and the standing feet "
-                "that the one before found"},
-        self.most_solutions);
-    visit(Setting{"most-alternatives", at_least(0), "",
-                  "rounds at most in which limbs are tried on other sides in depth, where rays are "
-                  "exact"},
-          self.most_alternatives);
-    visit(Setting{"draw-width-factor", above(0), "",
-                  "how many times wider the posterior is drawn than its equations make it"},
+        Setting{"most-alternatives", at_least(0), "",
+                "largest number of rounds in which limbs are tried on other sides in depth, where "
+                "rays are exact"},
+        self.most_alternatives);
+    visit(Setting{"draw-width-factor", above(0), "", "factor on the posterior's width for draws"},
           self.draw_width_factor);
     visit(Setting{"draws-noise-time", at_least(0), "seconds",
                   "as detector-noise-time, for draws: a detector's error that passes makes the "

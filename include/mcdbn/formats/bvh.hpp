@@ -21,7 +21,7 @@ namespace mcdbn {
 /// @throws InputError `file:line: what`
 Motion read_bvh(const std::filesystem::path& path, std::vector<std::string>* warnings = nullptr);
 
-/// The same from text; `name` stands for the file in messages.
+/// As read_bvh(), from text. @param name of the file, for messages
 Motion parse_bvh(std::string_view text, const std::string& name,
                  std::vector<std::string>* warnings = nullptr);
 

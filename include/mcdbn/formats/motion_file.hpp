@@ -24,7 +24,7 @@ std::filesystem::path skeleton_file_of(const std::filesystem::path& path);
 /// @throws InputError `file:line: what`
 Motion read_motion(const std::filesystem::path& path, std::vector<std::string>* warnings = nullptr);
 
-/// The same of a file whose text was read before.
+/// As read_motion(), of a file that was read before. @param text all that it holds
 Motion parse_motion(std::string_view text, const std::filesystem::path& path,
                     std::vector<std::string>* warnings = nullptr);
 

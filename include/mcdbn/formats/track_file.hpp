@@ -42,7 +42,7 @@ struct ImageSize {
   bool operator==(const ImageSize&) const = default;
 };
 
-/// What a track file may leave open.
+/// How a track file is read, and values that it may lack.
 struct TrackReadOptions {
   std::string format = {};                   ///< a name of track_formats(); empty: by content
   std::string person = "largest";            ///< largest, all, or a number: 1 is the largest

@@ -16,9 +16,9 @@ namespace mcdbn {
 /// first line that is not empty decides which of the two it is. JSON in which nobody is, in any
 /// layout, is a frame that shows nobody. What reading a whole file finds from all of it is found
 /// here from what has come so far: joints and whether coordinates are shares of the image by the
-/// first frame that shows a person, rate and image size by `options` or the file itself. Of several
-/// people the largest of that frame, or the one of that number, is followed. Confidences beyond 1
-/// are 1.
+/// first frame that shows a person, rate and image size by `options` or the file itself. If that
+/// frame shows several people, the largest, or the one of the number that is wanted, is followed.
+/// Confidences beyond 1 are 1.
 class TrackLines {
  public:
   /// @param name of the source, for messages
@@ -35,7 +35,7 @@ class TrackLines {
 
   /// Whether joints, rate and image size are known.
   bool knows_joints() const;
-  /// They, as a track without frames.
+  /// Joints, rate and image size, as a track without frames.
   const Track2d& like() const;
   /// What was assumed or left out, each once.
   std::vector<std::string> take_notices();

@@ -9,7 +9,7 @@
 
 namespace mcdbn {
 
-/// What an observer learns of each epoch.
+/// Report of one epoch to an observer.
 struct EpochReport {
   std::string stage;  ///< a modality and its layer (pose.0), mrbm, fine-tuning
   std::size_t epoch = 0, epochs = 0;

@@ -3,14 +3,12 @@
 #include <optional>
 
 #include "mcdbn/learning/epoch_report.hpp"
+#include "mcdbn/learning/learning_settings.hpp"
 #include "mcdbn/learning/sequence_loss.hpp"
 #include "mcdbn/learning/sequence_source.hpp"
-#include "mcdbn/learning/settings.hpp"
 #include "mcdbn/machines/mcdbn.hpp"
 
 namespace mcdbn {
-
-class Checkpoints;
 
 /// The mini-batches after which the parameters that were kept stood, and their loss on the clips
 /// held out.
@@ -19,7 +17,7 @@ struct KeptStep {
   double loss = 0;
 };
 
-/// What fine-tuning makes.
+/// Result of fine-tuning.
 struct FineTuned {
   Mcdbn network;
   std::optional<KeptStep> kept;  ///< if clips were held out
@@ -33,13 +31,11 @@ struct FineTuned {
 /// before those fared worse. The observer may throw to stop.
 /// @param held_out sequences that are not learnt from and decide when to stop, or none
 /// @param make_loss of the last modality
-/// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
 /// @throws ConfigError if the settings' look-ahead is not the network's; ShapeError, InputError for
 ///         sequences that SynchronizedClips::check() refuses or that do not fit the network; those
 ///         that come by renew() are not checked. DivergenceError naming what to lower
 FineTuned fine_tune(Device& device, const Mcdbn& start, const SequenceSource& source,
                     const SequenceSource* held_out, const LearningSettings& settings,
-                    const SequenceLossMaker& make_loss, const EpochObserver& observer = {},
-                    Checkpoints* checkpoints = nullptr);
+                    const SequenceLossMaker& make_loss, const EpochObserver& observer = {});
 
 }  // namespace mcdbn

@@ -7,26 +7,23 @@
 #include <string>
 #include <vector>
 
+#include "mcdbn/learning/cd_settings.hpp"
 #include "mcdbn/learning/epoch_report.hpp"
+#include "mcdbn/learning/learning_settings.hpp"
 #include "mcdbn/learning/sequence_source.hpp"
-#include "mcdbn/learning/settings.hpp"
 #include "mcdbn/machines/mcdbn.hpp"
 
 namespace mcdbn {
-
-class Checkpoints;
 
 /// Algorithm 1: the last modality's CDBN layer by layer (3D), those before it, then the MRBM on
 /// their codes. Two modalities or more.
 /// The observer may throw to stop.
 /// @param start weights to start from; nothing: small random ones, of the settings' deviations
-/// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
 /// @throws ShapeError for one modality, or two of one name; ShapeError, InputError for sequences
 ///         that SynchronizedClips::check() refuses; ConfigError where the deviation of units is to
 ///         be learnt that were not always seen; DivergenceError naming what to lower
 Mcdbn train_greedy(Device& device, const SequenceSource& source, const LearningSettings& learning,
-                   const EpochObserver& observer = {}, const Mcdbn* start = nullptr,
-                   Checkpoints* checkpoints = nullptr);
+                   const EpochObserver& observer = {}, const Mcdbn* start = nullptr);
 
 struct TrainedCdbn {
   Cdbn cdbn;
@@ -49,7 +46,7 @@ std::vector<CrbmShape> layer_shapes(std::size_t visible, const LearningSettings&
 TrainedCdbn train_cdbn(Device& device, Sequences visible, const std::vector<CrbmShape>& layers,
                        const LearningSettings& learning, std::uint16_t first_stream = 0,
                        const EpochObserver& observer = {}, const std::string& name = "cdbn",
-                       const Cdbn* start = nullptr, Checkpoints* checkpoints = nullptr);
+                       const Cdbn* start = nullptr);
 
 /// One layer of Algorithm 1: CD-k on every window of `visible` for settings.epochs epochs.
 /// @param visible [all frames x visible units]
@@ -60,8 +57,7 @@ TrainedCdbn train_cdbn(Device& device, Sequences visible, const std::vector<Crbm
 ///         what to lower
 Crbm train_crbm(Device& device, const Sequences& visible, CrbmParameters initial,
                 const CdSettings& settings, const LearningSettings& learning, std::uint16_t stream,
-                const EpochObserver& observer = {}, const std::string& stage = "crbm",
-                Checkpoints* checkpoints = nullptr);
+                const EpochObserver& observer = {}, const std::string& stage = "crbm");
 
 /// An MRBM's first weights: small random ones, and visible biases with which the mean field starts
 /// near the codes' own means rather than at one half.
@@ -78,6 +74,6 @@ MrbmParameters initial_mrbm_weights(const MrbmShape& shape, std::span<const Sequ
 ///         sequences; DivergenceError naming what to lower
 Mrbm train_mrbm(Device& device, std::span<const Sequences> codes, const MrbmParameters& initial,
                 const LearningSettings& learning, std::uint16_t stream,
-                const EpochObserver& observer = {}, Checkpoints* checkpoints = nullptr);
+                const EpochObserver& observer = {});
 
 }  // namespace mcdbn

@@ -27,7 +27,7 @@ inline constexpr std::size_t kHealthWindows = 16;
 /// At most kHealthWindows windows, evenly over all frames. @return [frames x dimension] each
 std::vector<MatrixF> health_windows(const Sequences& sequences, std::size_t frames);
 
-/// Those that crbm_health takes: of order + kFreeRunFrames frames or, where no clip has so many, of
+/// Windows for crbm_health(): of order + kFreeRunFrames frames or, where no clip has so many, of
 /// order + 1. @return [frames x dimension] each
 std::vector<MatrixF> crbm_health_windows(const Sequences& sequences, std::size_t order);
 

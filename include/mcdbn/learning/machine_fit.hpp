@@ -3,8 +3,10 @@
 #include <span>
 #include <vector>
 
+#include "mcdbn/learning/cd_settings.hpp"
 #include "mcdbn/learning/epoch_report.hpp"
-#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/learning/learning_settings.hpp"
+#include "mcdbn/learning/mrbm_settings.hpp"
 #include "mcdbn/machines/cdbn.hpp"
 #include "mcdbn/machines/mrbm.hpp"
 
@@ -31,7 +33,8 @@ struct MachineSettings {
     visit(Setting{"order", within(1, size_limits::kHistory.most), "frames",
                   "frames of history of every layer, of machines with history"},
           self.order);
-    visit(Setting{"hidden", size_limits::kUnits, "units", "hidden units of every layer"},
+    visit(Setting{"hidden", size_limits::kUnits, "units",
+                  "hidden units of every layer, or of the MRBM"},
           self.hidden);
     visit(Setting{"layers", size_limits::kLayers, "machines",
                   "layers of a stack; each learns the code of the one below"},
@@ -52,11 +55,14 @@ struct LayerSize {
   std::size_t order = 0;  ///< frames of history; 0 makes it an RBM
 };
 
+/// As many layers as the settings say, all alike. @param history false: RBMs, of order 0
+std::vector<LayerSize> equal_layers(const MachineSettings& settings, bool history = true);
+
 /// A stack, fitted layer by layer by contrastive divergence (train_cdbn); one layer is an RBM or a
 /// CRBM, orders of 0 make it a DBN. Stages are called layer.0, layer.1 …
 /// @param data numbers throughout, within 0 … 1 where the lowest layer's units are binary
 /// @param kind of the lowest layer's visible units; those above see the code, which is binary
-/// @param layers from below; they stand in place of the settings' order, hidden and layers
+/// @param layers from below, e.g. equal_layers(settings)
 /// @param observer is called after each epoch; may throw to stop
 /// @throws InputError naming the first value that the units cannot take, its row counted over all
 /// sequences; ConfigError for sizes or settings out of range; ShapeError if no row has a history,

@@ -17,8 +17,8 @@ struct SequenceWindows {
   std::size_t rows() const { return count * frames; }
 };
 
-/// What fine-tuning minimizes: an error of the frames that a network predicted for a mini-batch of
-/// windows, summed up on the device until it is asked for.
+/// The loss that fine-tuning minimizes: an error of the frames that a network predicted for a
+/// mini-batch of windows, summed up on the device until it is asked for.
 class SequenceLoss {
  public:
   virtual ~SequenceLoss() = default;
@@ -27,8 +27,9 @@ class SequenceLoss {
   virtual void differentiate(const Matrix& prediction, const Matrix& target, Matrix& error) = 0;
   /// The weighted loss, its mean since the last call. Waits for the queue.
   virtual double read_and_reset() = 0;
-  /// Its sums, on their way into a checkpoint or back.
-  virtual void visit_state(TrainingState& state) = 0;
+  /// What a checkpoint has to keep of the loss: sums that were not read yet. A loss without sums
+  /// needs none.
+  virtual void visit_state(TrainingState& /*state*/) {}
 };
 
 /// Makes a loss for windows of that shape.

@@ -24,7 +24,8 @@ struct Cdbn {
   Sequences up_pass(const Sequences& visible) const;
 };
 
-/// The same through one layer. @return [all frames x hidden]  @throws ShapeError
+/// Mean-field up-pass through one layer, as Cdbn::up_pass(). @return [all frames x hidden]
+/// @throws ShapeError
 Sequences up_pass(const Crbm& layer, const Sequences& visible);
 
 }  // namespace mcdbn

@@ -42,7 +42,7 @@ struct CrbmParameters {
   /// W, A and B drawn from N(0, deviation²), biases zero.
   /// @param key theirs are the three phases that follow its own
   static CrbmParameters random(const CrbmShape& shape, double deviation, const RandomKey& key);
-  /// What stands in a machine's buffer (Crbm::parameter_shapes), or in one of gradients;
+  /// The contents of a machine's buffer (Crbm::parameter_shapes), or of one of gradients;
   /// visible_mean is zero, visible_deviation one.
   static CrbmParameters read(const Parameters& from, const CrbmShape& shape);
   /// W, A, B, a and b. @throws ShapeError
@@ -67,7 +67,7 @@ class Crbm : public CrbmMatrices {
 
   /// @throws ShapeError if a matrix does not have the shape that CrbmParameters gives for it
   Crbm(Device& device, const CrbmParameters& start);
-  /// Of these parameters as they are; they may stand among those of a larger machine.
+  /// A CRBM on existing parameters, which it shares; they may be part of a larger machine's.
   /// @param visible_mean_row [1 x visible]  @param visible_deviation_row [1 x visible]; none: ones
   /// @throws ShapeError
   Crbm(const Parameters& parameters, const CrbmShape& shape, const MatrixF& visible_mean_row,
@@ -84,7 +84,7 @@ class Crbm : public CrbmMatrices {
   /// @throws ShapeError if a row has fewer frames before it than the order; of indexed rows the
   ///         caller answers for that. So do all that follow, which read histories
   Rows history(const Rows& rows) const;
-  /// What A and B see of it: order_A and order_B frames.
+  /// The parts of the history for A and B: order_A and order_B frames.
   Rows history_for_A(const Rows& rows) const;
   Rows history_for_B(const Rows& rows) const;
 

@@ -15,8 +15,8 @@ namespace mcdbn {
 /// @return [all frames x 1], rows numbered as the frames are  @throws ShapeError
 Sequences free_energy(const Crbm& crbm, const Sequences& visible);
 
-/// That of the top machine on its code, the up-pass of the layers beneath: the stack's own has no
-/// closed form.
+/// Free energy of the top machine on its code, the up-pass of the layers beneath: that of the whole
+/// stack has no closed form.
 Sequences free_energy(const Cdbn& cdbn, const Sequences& visible);
 
 /// F(v¹, v² …) of an MRBM, its hidden units summed out (eq 19): −log p(v¹, v² …) but for the
@@ -24,7 +24,7 @@ Sequences free_energy(const Cdbn& cdbn, const Sequences& visible);
 /// @param modalities [rows x visible] of each, not indexed  @return [rows x 1]  @throws ShapeError
 Matrix free_energy(const Mrbm& mrbm, const std::vector<Rows>& modalities);
 
-/// That of the MRBM on the modalities' codes, where all of them have one that belongs together.
+/// Free energy of the MRBM on the modalities' codes, in frames where every modality has one.
 /// @param modalities the same clips in each  @return [all frames x 1], rows numbered as the frames
 /// of the modalities without a look-ahead are; NaN where there is none: before valid_from, and in
 /// the last look_ahead frames of each clip  @throws ShapeError

@@ -7,30 +7,29 @@
 
 namespace mcdbn {
 
-/// Whether what was generated is bounded and alive.
+/// Whether generated sequences stay bounded and keep moving.
 struct GenerationHealth {
-  /// [1 x visible] of each channel over all frames of all sequences: where data is standardized,
-  /// the share of the training data's deviation.
+  /// Standard deviation of each channel over all frames of all sequences [1 x visible]: where data
+  /// is standardized, relative to the training data's.
   RowVectorD deviation;
-  /// Of each sequence, RMS change of a channel from frame to frame over the last kLateFrames: next
-  /// to nothing where it came to a stop.
+  /// RMS change of a channel from frame to frame over the last kLateFrames, by sequence; near 0: it
+  /// stopped.
   std::vector<double> late_speed;
-  /// Of each sequence, mean_speed of what it went on from; empty where not given.
+  /// mean_speed() of the motion that each sequence continues; empty where not given.
   std::vector<double> seed_speed = {};
-  /// Of each sequence, the shortest lag in frames after which it comes back to where it was
-  /// (shortest_cycle).
+  /// shortest_cycle() of each sequence, in frames; 0: it does not repeat itself.
   std::vector<std::size_t> cycle;
-  /// Of those that come back at all; 0 if none does.
+  /// Shortest `cycle` above 0; 0 if no sequence repeats itself.
   std::size_t shortest_of_cycles() const;
 
   static constexpr int kLateFrames = 200;
-  /// How many sequences move at less than kSlow of their seed's speed in the end.
+  /// Number of sequences that move at less than kSlowShare of their seed's speed in the end.
   std::size_t slow_sequences() const;
-  static constexpr double kSlow = 0.5;
+  static constexpr double kSlowShare = 0.5;
 };
 
 /// @param sequences standardized, [frames x visible] each
-/// @param seed_speed mean_speed of what each went on from; or empty
+/// @param seed_speed mean_speed of the motion that each continues; or empty
 /// @throws ShapeError if there are not as many of both
 GenerationHealth generation_health(const std::vector<MatrixF>& sequences,
                                    const std::vector<double>& seed_speed = {});
@@ -39,11 +38,11 @@ GenerationHealth generation_health(const std::vector<MatrixF>& sequences,
 double mean_speed(const MatrixF& sequence);
 
 /// The first lag from 2 frames on at which the mean squared change has a minimum that is below
-/// kComesBack of what it was at the largest on the way there: e.g. the stride of a walk; at least
+/// kCycleDepth of what it was at the largest on the way there: e.g. the stride of a walk; at least
 /// two cycles must be in the sequence. 0 if there is none up to half of the sequence, the lag after
 /// it being at most kLongestLag, as for what wanders or only shakes.
 std::size_t shortest_cycle(const MatrixF& sequence);
-inline constexpr double kComesBack = 0.7;
+inline constexpr double kCycleDepth = 0.7;
 inline constexpr std::size_t kLongestLag = 90;  ///< frames
 
 }  // namespace mcdbn

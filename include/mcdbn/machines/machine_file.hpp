@@ -11,11 +11,11 @@
 
 namespace mcdbn {
 
-/// A machine of its own, and what its data were.
+/// A machine with the scaling of its data.
 struct SavedMachine {
   std::variant<Crbm, Cdbn, Mrbm, Mcdbn> machine;
-  /// What the data were scaled by before the machine saw them, one of each modality; a scale
-  /// without columns, or none: data as they are.
+  /// Scaling of the data before the machine sees them, one of each modality; a scale without
+  /// columns, or none: data as they are.
   std::vector<ColumnScale> scales = {};
   nlohmann::json config = {};  ///< the settings that it was fitted with
 };

@@ -42,12 +42,12 @@ struct Mcdbn {
   /// The CDBN itself fills in missing values of what is present. Else they are 0, the mean of
   /// standardized values, as a network that was trained as a whole has learnt to see them.
   bool fills_gaps = true;
-  /// Of the last modality given the others; unset where it was not learnt.
+  /// Deviation of the last modality given the others; unset where it was not learnt.
   std::optional<AnswerDeviation> deviation = {};
 
   std::size_t modality_count() const { return cdbns.size(); }
   const Modality& modality(std::size_t m) const { return mrbm.shape().modalities[m]; }
-  /// How many frames later than the others the codes of modality m are that belong to them.
+  /// Number of frames by which codes of modality m are later than the others' that they belong to.
   std::size_t ahead(std::size_t m) const { return m == 0 ? look_ahead : 0; }
 };
 

@@ -36,7 +36,7 @@ struct MrbmParameters {
   /// @param key of the first modality's W, as CrbmParameters::random takes it; each further one's
   ///        is a step further on
   static MrbmParameters random(const MrbmShape& shape, double deviation, const RandomKey& key);
-  /// What stands in a machine's buffer (Mrbm::parameter_shapes), or in one of gradients.
+  /// The contents of a machine's buffer (Mrbm::parameter_shapes), or of one of gradients.
   static MrbmParameters read(const Parameters& from, const MrbmShape& shape);
   /// @throws ShapeError
   void write(Parameters to) const;
@@ -59,8 +59,8 @@ class Mrbm : public MrbmMatrices {
   /// @throws ShapeError for a shape that check() refuses, or a matrix of another shape than
   ///         MrbmParameters gives for it
   Mrbm(Device& device, const MrbmParameters& start);
-  /// Of these parameters as they are, of parameter_shapes(); they may stand among those of a larger
-  /// machine. @throws ShapeError
+  /// An MRBM on existing parameters, which it shares. @param parameters of parameter_shapes(); they
+  /// may be part of a larger machine's  @throws ShapeError
   Mrbm(const Parameters& parameters, const MrbmShape& shape);
   MrbmParameters to_host() const;
   const MrbmShape& shape() const { return shape_; }

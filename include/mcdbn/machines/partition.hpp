@@ -29,8 +29,8 @@ struct AisSettings {
 
 struct LogPartition {
   double value = 0;
-  /// Of the chains' weights over their mean. Few temperatures leave the weights so uneven that it
-  /// is too small itself.
+  /// Standard error of `value`, from the spread of the chains' weights. Too small where there are
+  /// few temperatures, which leave the weights uneven.
   double standard_error = 0;
 };
 

@@ -18,7 +18,7 @@ struct RegenerationOptions {
   /// settles from the training mean: no ground truth at the start.
   std::size_t run_in = 30;
 
-  /// What draws are multiplied by.
+  /// Factor on draws' deviation from the mean.
   double drawn_share() const { return temperature * sampling.scale; }
   /// Whether the decoder's top layer is drawn; else mean field.
   bool samples_decoder() const { return drawn_share() > 0.0 && sampling.gibbs_steps > 0; }

@@ -49,8 +49,8 @@ Sequences reconstruct(const Cdbn& cdbn, const Sequences& visible, std::size_t st
 /// @throws ShapeError for no steps, and where the columns are not the visible units
 Sequences sample_given(const Crbm& crbm, const Sequences& given, const ChainSettings& settings);
 
-/// The same up and down through all layers in each step. The lower layers are directed, so these
-/// are no exact draws from the stack's own conditional distribution.
+/// As sample_given() of a CRBM, each step up and down through all layers. The lower layers are
+/// directed, so these are no exact draws from the stack's own conditional distribution.
 /// @param given [all frames x visible units of the lowest layer]
 /// @throws ShapeError, also for a stack without layers
 Sequences sample_given(const Cdbn& cdbn, const Sequences& given, const ChainSettings& settings);
@@ -80,10 +80,10 @@ std::vector<Matrix> sample(const Mrbm& mrbm, const std::vector<Matrix>& modaliti
 ///         sequences instead
 Matrix sample(const Crbm& rbm, const Matrix& start, const ChainSettings& settings);
 
-/// Of a DBN: the chains are the top machine's, from the code of `start`; the layers beneath give
-/// one draw down (Hinton et al. 2006).
+/// Free chains of a DBN: the top machine's chains start from the code of `start`, and the layers
+/// beneath give one draw down (Hinton et al. 2006).
 /// @param start [chains x visible units of the lowest layer]  @return of that shape
-/// @throws ShapeError as of an RBM, for a history in any layer, and for a stack without layers
+/// @throws ShapeError as sample() of an RBM, for a history in any layer, and for no layers
 Matrix sample(const Cdbn& dbn, const Matrix& start, const ChainSettings& settings);
 
 }  // namespace mcdbn

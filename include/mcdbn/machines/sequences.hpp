@@ -31,7 +31,8 @@ struct Sequences {
 
   /// Rows that have a code and `order` coded rows before them within their clip.
   std::vector<std::int32_t> window_rows(std::size_t order) const;
-  /// Of rows in ascending order, as their clips' frames weigh; none where all weigh the same.
+  /// Weight of each row in the draw of mini-batches, its clip's; empty where all clips weigh the
+  /// same. @param rows in ascending order
   std::vector<double> weights(std::span<const std::int32_t> rows) const;
 };
 

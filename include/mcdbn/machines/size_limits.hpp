@@ -9,7 +9,8 @@ namespace mcdbn::size_limits {
 inline constexpr Range kUnits = within(1, 100'000);   ///< of a layer
 inline constexpr Range kHistory = within(0, 1000);    ///< frames that a machine sees of the past
 inline constexpr Range kLookAhead = within(0, 1000);  ///< frames
-/// Machines of a stack. As many have random numbers of their own (greedy_schedule.cpp).
+/// Machines of a stack: at most as many as have random numbers of their own (layers_of() in
+/// base/random_streams.hpp).
 inline constexpr Range kLayers = within(1, 64);
 inline constexpr Range kMeanFieldSteps = within(1, 1000);
 inline constexpr Range kGibbsSteps = within(0, 1000);

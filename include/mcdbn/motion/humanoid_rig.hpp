@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "mcdbn/motion/humanoid.hpp"
@@ -26,7 +25,7 @@ class HumanoidRig {
   /// lacks is as long as in the canonical one of that height.
   const Skeleton& body() const { return body_; }
   const Skeleton& skeleton() const { return skeleton_; }
-  /// As given, but that the spine is the first joint of the trunk that turns.
+  /// The roles that were given, except that the spine is the first joint of the trunk that turns.
   const SkeletonRoles& roles() const { return roles_; }
 
   /// The motion on body(), the pelvis where it is.
@@ -61,12 +60,12 @@ class HumanoidRig {
   /// By role; see RigAxes.
   std::array<Eigen::Matrix3d, kJointRoleCount> axes_;
   std::vector<Chain> chains_;
-  // Of joints without a role, and where each joint is on its parent: at rest, or on average.
-  std::vector<Eigen::Matrix3d> parent_from_joint_;
-  std::vector<Eigen::Vector3d> local_;
+  // At rest, or on average:
+  std::vector<Eigen::Matrix3d> parent_from_joint_;  ///< used of joints without a role
+  std::vector<Eigen::Vector3d> local_;              ///< where each joint is on its parent
 };
 
-/// What a person has of each side, and the skeleton of a person, too; of the left.
+/// Joints that a person's skeleton needs on each side; the left ones.
 inline constexpr std::array kPersonsLimbs{
     std::array{JointRole::left_hip, JointRole::left_knee, JointRole::left_ankle},
     std::array{JointRole::left_shoulder, JointRole::left_elbow, JointRole::left_wrist}};
@@ -78,28 +77,9 @@ inline constexpr std::array kPersonsLimbs{
 ///         hips, knees, ankles, shoulders, elbows and wrists of both sides, neck or head
 HumanoidRig rig_of_person(const Motion& motion, const JointMap& joint_map = {});
 
-/// What a person moves and no joint of a skeleton is known to be, so that it is lost where the
-/// skeleton takes a person's motion: roles of limbs; the spine where the trunk has no joint.
-/// @throws InputError naming what lacks if nothing is known of a whole limb, or of neck and head
+/// Roles that a person moves and that no joint of the skeleton has, so that their motion is lost
+/// where the skeleton takes a person's: roles of limbs; the spine where the trunk has no joint.
+/// @throws InputError naming what is missing if a whole limb, or neck and head, have no joint
 std::vector<JointRole> lost_roles(const SkeletonRoles& roles);
-
-/// What is lost of a motion that goes to the humanoid and comes back.
-struct RetargetError {
-  struct OfJoint {
-    std::string name;
-    double mean_deg = 0, worst_deg = 0;  ///< of its orientation in the world
-    double mean_mm = 0, worst_mm = 0;    ///< of its place, on a body 1.7 m tall
-    double humanoid_mm = 0;              ///< mean, of a role's place on the humanoid, likewise
-  };
-  std::vector<OfJoint> joints;  ///< HumanoidRig::kept_joints
-  double mean_deg() const;
-  double mean_mm() const;
-  double humanoid_mm() const;  ///< over all
-  const OfJoint& worst_turned() const;
-  const OfJoint& worst_placed() const;
-};
-
-/// In at most 200 frames spread over the clip.
-RetargetError retarget_error(const HumanoidRig& rig, const Motion& motion);
 
 }  // namespace mcdbn

@@ -7,7 +7,7 @@
 
 namespace mcdbn {
 
-/// What a joint is in a human body, whatever its file calls it. A limb's role is the centre of the
+/// A joint's part in a human body, whatever its file calls it. A limb's role is the centre of the
 /// joint: `left_shoulder` is where the upper arm turns, `left_hip` where the thigh does.
 enum class JointRole {
   pelvis,
@@ -45,7 +45,7 @@ std::string_view name_of(JointRole role);
 /// The role of that spelling, or none.
 std::optional<JointRole> joint_role_of(std::string_view name);
 
-/// The same role on the body's other side; itself if it is in the middle.
+/// The role's counterpart on the body's other side; the role itself if it is in the middle.
 JointRole other_side(JointRole role);
 
 }  // namespace mcdbn

@@ -23,10 +23,9 @@ struct PlantedFoot {
   }
 };
 
-/// Of captured motion, where the ground is the joint's own lowest height of the clip.
+/// For captured motion: the ground is the joint's own lowest height of the clip.
 inline constexpr PlantedFoot kPlantedInCapture{};
-/// Of a regenerated pose, where the ground is the lowest foot of the frame, itself some
-/// centimetres off.
+/// For a regenerated pose: the ground is the lowest foot of the frame, itself some centimetres off.
 inline constexpr PlantedFoot kPlantedInAnswer{.within_m = 0.05};
 
 /// A joint's step to a frame from the one before.

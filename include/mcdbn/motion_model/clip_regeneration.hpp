@@ -12,7 +12,7 @@
 
 namespace mcdbn {
 
-/// What was found out about a track on the way.
+/// Findings about a track from its regeneration.
 struct TrackFindings {
   TrackFeatures::FillCount filled;
   std::vector<SideSwap> swaps;  ///< that were put right
@@ -45,7 +45,8 @@ bool is_other_skeleton(const Modalities& modalities, const Skeleton& wanted);
 /// Several answers.
 using PoseAnswers = std::function<std::vector<PosePrior>(const MatrixF& features)>;
 
-/// The same by any method. @param single gives what the track itself does not show
+/// As regenerate_clip() with a model, but the poses come from any method.
+/// @param single answer for what the track itself does not show  @param all the samples' answers
 std::vector<Motion> regenerate_clip(const Modalities& modalities, const Track2d& track,
                                     const ClipPlacement& placement, const PoseAnswer& single,
                                     const PoseAnswers& all, TrackFindings* findings = nullptr);

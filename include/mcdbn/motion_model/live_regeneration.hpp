@@ -17,12 +17,12 @@ struct LiveFrame {
   bool seen = true;
 };
 
-/// 3D motion from a 2D track that is still growing: regenerate_clip for those who cannot wait for
-/// the end. Frames come back in order, each once, at most latency_frames() frames of the model's
-/// rate after they were pushed; memory and time of a frame do not grow beyond what the last 15 s
-/// take. The past is settled: what has come back is not changed any more, so that it differs a
-/// little from the whole clip's answer (docs/concepts.md, Live). Body and camera are looked for
-/// on a thread of its own. Clips are independent: one object each.
+/// 3D motion from a 2D track that is still growing, frame by frame. Frames come back in order, each
+/// once, at most latency_frames() frames of the model's rate after they were pushed; memory and
+/// time of a frame do not grow beyond what the last 15 s take. A frame that was returned does not
+/// change any more, so that the motion differs a little from the whole clip's answer
+/// (docs/concepts.md, Live). Body and camera are looked for on a thread of its own. Clips are
+/// independent: one object each.
 class LiveRegeneration {
  public:
   /// Frames that an answer waits for beside the model's look-ahead, so that the fit sees how the
@@ -64,8 +64,8 @@ class LiveRegeneration {
 
  private:
   int latency_frames_;
-  class Frames;
-  std::unique_ptr<Frames> frames_;
+  class Pipeline;
+  std::unique_ptr<Pipeline> pipeline_;
 };
 
 }  // namespace mcdbn

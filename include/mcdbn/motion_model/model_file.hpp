@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "mcdbn/corpus/clip.hpp"
+#include "mcdbn/corpus/training_clip.hpp"
 #include "mcdbn/features/modalities.hpp"
 #include "mcdbn/machines/mcdbn.hpp"
 
@@ -38,7 +38,7 @@ struct Model {
   std::optional<StartedFrom> started_from = {};
 };
 
-/// The same file with numbers of 16 bits takes half the room.
+/// Numbers of a model file: 32 bits each, or 16 bits, which halve the file.
 enum class StoredNumbers { single, half };
 
 /// One .safetensors file: tensors `pose.0.W` …, metadata with format version, modalities, skeleton

@@ -36,7 +36,7 @@ class RunFolder {
 
   const TrainingConfig& config() const { return config_; }
   const std::vector<ListedClip>& clips() const { return clips_; }
-  /// What it starts from, if that is a model; its file is start_model().
+  /// The model that the training starts from, if it does; its file is start_model().
   const std::optional<StartedFrom>& started_from() const { return started_from_; }
   std::filesystem::path start_model() const { return unfinished() / "start.safetensors"; }
   /// Whether all is done already.

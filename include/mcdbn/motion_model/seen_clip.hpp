@@ -11,7 +11,7 @@
 
 namespace mcdbn {
 
-/// What is known of a regenerated clip, and how near it is to come to its track.
+/// What is known of a clip to regenerate, and how it is fitted to its track.
 struct ClipPlacement : KnownOfClip {
   std::optional<TrackFitSettings> fit =
       TrackFitSettings{};   ///< unset: the network's answer as it is
@@ -23,7 +23,7 @@ struct ClipPlacement : KnownOfClip {
   PosteriorDraws uncertainty_draws = {};
 };
 
-/// What a method answers to a track's standardized features [frames x dimension]: what is likely of
+/// A method that infers poses from a track's standardized features [frames x dimension]: a prior of
 /// the poses, or standardized poses alone.
 using PoseAnswer = std::function<PosePrior(const MatrixF& features)>;
 
@@ -45,14 +45,15 @@ struct SeenClip {
   MatrixF features;  ///< standardized 2D, nothing missing
   Track2d joints;    ///< the model's joints by name, for fit_to_track
   TrackFeatures::FillCount filled;
-  /// Of the camera that is assumed where none is known: what was given, and what was found from
-  /// the clip where nothing was given: feet stand on level ground.
+  /// View of the camera that is assumed where none is known: what was given, and, where nothing was
+  /// given, what was found from the clip: feet stand on level ground.
   AssumedView view;
-  /// What was exchanged besides what find_side_swaps finds, in frames of the model's rate.
+  /// Swaps that were undone besides those that find_side_swaps() finds, in frames of the model's
+  /// rate.
   std::vector<SideSwap> swaps = {};
 };
 
-/// What a model sees of a track. Where the columns are the model's joints by name, that is the
+/// The track as a model sees it. Where the columns are the model's joints by name, that is the
 /// track, its gaps filled (fill_gaps). Where they are a detector's, or another skeleton's, the
 /// joints follow from them by their roles, and the offset between a place and its joint is taken
 /// off as the answer has it, in the rounds that fill the gaps. In these the view is found, too.

@@ -4,16 +4,17 @@
 #include <string>
 
 #include "mcdbn/corpus/training_set.hpp"
-#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/learning/learning_settings.hpp"
 #include "mcdbn/motion/planted_foot.hpp"
 
 namespace mcdbn {
 
-/// What fine-tuning minimizes on the 3D modality, each a mean over what it counts.
+/// Weights of the parts of fine-tuning's loss on the 3D modality, each a mean.
 struct PoseLossWeights {
-  double features = 1.0;  ///< of squared standardized features: what the others are weighed by
+  /// Weight of the squared errors of standardized features; the others are relative to it.
+  double features = 1.0;
   double positions = 0.0, velocities = 0.0, contacts = 0.0;
-  /// Of the contacts: a foot's speed alone decides, on a 1.7 m body; see PlantedFoot.
+  /// Largest speed of a foot that counts as a contact, m/s on a 1.7 m body; see PlantedFoot.
   double planted_below_m_s = kPlantedInCapture.below_m_s;
 
   template <typename Self, typename Visit>
@@ -36,10 +37,11 @@ struct PoseLossWeights {
 /// Everything that shapes a training run on clips: how they become sequences, and how those are
 /// learnt. Its settings are those of its parts and one more.
 struct TrainingConfig : CorpusSettings, LearningSettings {
-  /// Of fine-tuning's loss on the 3D modality.
+  /// Weights of fine-tuning's loss on the 3D modality.
   PoseLossWeights pose_loss{.positions = 0.5, .velocities = 0.2, .contacts = 0.1};
-  /// Of few people none is held out: without one of nine CMU walkers the error on unseen people
-  /// is 28.7 instead of 23.6 mm, and the one held out did better to the end.
+  /// Fewest people for one to be held out. With fewer people none is held out: without one of nine
+  /// CMU walkers the error on unseen people is 28.7 instead of 23.6 mm, and the error on the one
+  /// held out fell to the end.
   std::size_t hold_out_among = 20;
   bool half_precision = false;
 
@@ -52,7 +54,7 @@ struct TrainingConfig : CorpusSettings, LearningSettings {
   /// Many people, actions and skeletons, seen by a detector from anywhere, with poses that no clip
   /// holds: what the model that comes with the program is trained with (docs/corpus.md).
   static TrainingConfig general();
-  /// Of views that a detector sees, where only that is asked for.
+  /// Share of detector views for `--tracks detector`.
   static constexpr double kShareOfDetectorViews = 0.8;
   /// @throws ConfigError naming the setting that is out of range
   void validate() const { check_settings(*this); }
@@ -72,8 +74,8 @@ struct TrainingConfig : CorpusSettings, LearningSettings {
   }
 };
 
-/// The name that a setting had up to version 0.1, which is still understood: fine-tuning was called
-/// the joint stage. Empty if it never had another.
+/// A setting's name up to version 0.1, still accepted: fine-tuning was called the joint stage.
+/// Empty if it had no other name.
 std::string former_name(const std::string& setting);
 
 }  // namespace mcdbn

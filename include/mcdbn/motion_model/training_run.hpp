@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "mcdbn/base/settings.hpp"
 #include "mcdbn/corpus/training_set.hpp"
@@ -12,8 +11,6 @@
 #include "mcdbn/motion_model/training_config.hpp"
 
 namespace mcdbn {
-
-class Checkpoints;
 
 struct TrainedRun {
   Model model;
@@ -42,17 +39,16 @@ struct TrainingWatch {
 
 /// Trains on clips and sets how the model draws samples.
 /// @param data of make_training_set(clips, config)
-/// @param checkpoints of a training that may be interrupted and go on (learning/checkpoints.hpp)
 /// @param start the model that it starts from (training_start.hpp), whose modalities data has;
 ///        none: random weights
 /// @throws ConfigError, DivergenceError
 TrainedRun train_model(Device& device, const TrainingSet& data, const ClipStore& clips,
                        const TrainingConfig& config, const EpochObserver& observer = {},
-                       Checkpoints* checkpoints = nullptr, const Model* start = nullptr);
+                       const Model* start = nullptr);
 
-/// The same into a run folder: metrics.jsonl gets a line for each epoch, checkpoints are written
-/// now and then, and at last the model. A folder with a checkpoint goes on from there, to the same
-/// bits on the same device.
+/// Trains as train_model() and writes into a run folder: a line of metrics.jsonl for each epoch,
+/// checkpoints now and then, and at last the model. A folder with a checkpoint goes on from there,
+/// to the same bits on the same device.
 /// @param data, clips of the folder's own settings and clips
 /// @throws InputError if a file cannot be written, or the checkpoint is of other clips; Interrupted
 /// once a checkpoint is written, if that was asked for (base/interruption.hpp)

@@ -3,7 +3,6 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "mcdbn/corpus/clip_store.hpp"
 #include "mcdbn/corpus/training_set.hpp"
@@ -16,7 +15,7 @@ namespace mcdbn {
 inline constexpr std::size_t kTrack = 0, kPose = 1;  // 2D, 3D
 inline constexpr std::array<const char*, 2> kModalityNames{"track", "pose"};
 
-/// A training set's clips; the set must live on. Those of one person and action belong together, or
+/// A training set's clips; the set must live on. Clips of one person and action belong together, or
 /// of one person where no actions are given.
 class ClipSource : public SequenceSource {
  public:
@@ -39,7 +38,7 @@ class ViewSource : public SequenceSource {
   /// @param data of those clips (make_training_set), must live on
   ViewSource(ClipStore clips, const TrainingSet& data, TrainingConfig config);
 
-  /// Those to learn from.
+  /// The views to learn from, without those of the person held out.
   SynchronizedClips sequences() const override { return ClipSource(made().to_learn).sequences(); }
   /// Views of the person held out, if one is.
   const std::optional<TrainingSet>& held_out_views() const { return made().held_out; }
@@ -60,11 +59,11 @@ class ViewSource : public SequenceSource {
 
 class ViewLoader;
 
-/// Views of pieces of clips (FreshViews) that give way to fresh ones while they are learnt from,
-/// one after config.fine_tuning.view_uses windows of it. People and actions come as their frames to
-/// the power config.fine_tuning.people_power; the greedy stages weigh the views for theirs. Threads
-/// of its own make them ahead. Which views a mini-batch is drawn from depends on its number alone.
-/// So does its cost, whatever the corpus.
+/// Views of pieces of clips (FreshViews), each replaced by a new one after
+/// config.fine_tuning.view_uses windows were drawn from it. People and actions come as their frames
+/// to the power config.fine_tuning.people_power; the greedy stages weigh the views for theirs.
+/// Threads of its own make the views ahead. Which views a mini-batch is drawn from depends on its
+/// number alone. Its cost depends on that number too, not on the corpus.
 class FreshViewSource : public SequenceSource {
  public:
   /// One person is held out as config.hold_out_among specifies.
@@ -75,7 +74,7 @@ class FreshViewSource : public SequenceSource {
 
   SynchronizedClips sequences() const override;
   bool renew(std::size_t step) const override;
-  /// Mini-batches from any one on after which all views are others.
+  /// Number of mini-batches after which all views have been replaced, from any one on.
   std::size_t lifetime() const;
   /// Views of the person held out, always the same, if one is.
   const std::optional<TrainingSet>& held_out_views() const { return held_out_views_; }

@@ -11,7 +11,7 @@ namespace mcdbn {
 // A training that starts from a model: its parameters, features and scaling instead of random and
 // new ones. The greedy stages are left out: they would train them anew.
 
-/// What is the model's own and no training's choice: rate, sizes, camera.
+/// Settings that belong to the model and that a training cannot change: rate, sizes, camera.
 std::vector<GivenSetting> settings_of_start(const Model& start);
 
 /// Whether those settings are the model's, the skeleton is, and there is fine-tuning and nothing

@@ -16,7 +16,7 @@ enum class SynthesisAction { walk, jump, jumping_jacks, wave_one, wave_two, clap
 
 /// Every action, in the order of the enumeration.
 const std::vector<SynthesisAction>& synthesis_actions();
-/// As on the command line and in file names: walk, jump, jumping-jacks, wave-one, …
+/// The action's name on the command line and in file names: walk, jump, jumping-jacks, wave-one, …
 std::string_view synthesis_action_name(SynthesisAction action);
 /// @throws ConfigError that lists the actions
 SynthesisAction parse_synthesis_action(std::string_view name);

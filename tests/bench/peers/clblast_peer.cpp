@@ -1,7 +1,5 @@
 // The CRBM steps of `mcdbn-cl bench` with CLBlast's products and one elementwise kernel after each.
 
-#include <iostream>
-
 #include "device/gemm.hpp"
 #include "device/losses.hpp"
 #include "device/optimizer.hpp"

@@ -1,4 +1,4 @@
-#include "mcdbn/learning/settings.hpp"
+#include "mcdbn/learning/learning_settings.hpp"
 
 namespace mcdbn {
 
