@@ -94,7 +94,7 @@ Eigen::RowVector3d mean_root(const fs::path& bvh) {
 TEST_CASE(
     "regenerate --person all: without a camera all stand in one world, as far apart as seen") {
   if (!have_device()) return;
-  const Film film(2, 6);
+  const Film film(2, 7);
   const CliResult result = regenerate_all(film);
   CAPTURE(result.standard_error);
   REQUIRE(result.exit_code == 0);
@@ -112,7 +112,7 @@ TEST_CASE(
   CHECK(result.standard_error.find(assumed, at + 1) == std::string::npos);
   CHECK(result.standard_error.find(
             fmt::format("{}: person 2: nobody is seen in frames {}-{}:", film.track.string(),
-                        Film::kFirstNumber, Film::kFirstNumber + 5)) != std::string::npos);
+                        Film::kFirstNumber, Film::kFirstNumber + 6)) != std::string::npos);
 }
 
 TEST_CASE("regenerate --person all: who shows too little is left out, the others come") {

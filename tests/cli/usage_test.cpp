@@ -64,7 +64,8 @@ TEST_CASE("evaluate's help gives the defaults of the paper's protocol") {
   std::string help;
   for (std::string word; words >> word;) help += word + " ";
   CHECK(help.find("(default: 1; 10 with --protocol paper)") != std::string::npos);
-  CHECK(help.find("trained to be sampled; else 0); 1 with --protocol paper") != std::string::npos);
+  CHECK(help.find("with --regeneration-sampled; else 0); 1 with --protocol paper") !=
+        std::string::npos);
 }
 
 TEST_CASE("wrong usage is exit code 2") {
