@@ -15,7 +15,6 @@
 #include "base/interruption.hpp"
 #include "base/named_errors.hpp"
 #include "base/output_file.hpp"
-#include "camera/keypoint_map.hpp"
 #include "camera_options.hpp"
 #include "formats/track_reading.hpp"
 #include "line_source.hpp"
@@ -104,15 +103,9 @@ class FrameOutput {
 /// @param like the track without frames, from which the model can regenerate
 std::vector<std::string> joints_without_column(const Modalities& modalities, const Track2d& like,
                                                const ClipPlacement& placement) {
-  const TrackFeatures& features = modalities.track_features;
-  const Skeleton& skeleton =
-      placement.skeleton ? *placement.skeleton : modalities.pose_features.skeleton();
-  const Track2d shown = joined_by_name(like, features)
-                            ? like
-                            : KeypointMap(keypoints_of_columns(like), skeleton,
-                                          skeleton_roles(skeleton, placement.joint_map))
-                                  .joints_of(like);
-  std::vector<std::string> missing = features.joint_names();
+  const auto map = keypoint_map_of(modalities, like, placement);
+  const Track2d shown = map ? map->joints_of(like) : like;
+  std::vector<std::string> missing = modalities.track_features.joint_names();
   std::erase_if(missing, [&](const std::string& joint) { return shown.find(joint) >= 0; });
   return missing;
 }

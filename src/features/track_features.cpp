@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/fill_gap.hpp"
 #include "base/json_place.hpp"
 #include "base/numbers.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -62,18 +63,6 @@ bool never_seen(const Pixels& pixels, Eigen::Index column) {
   return pixels.x.col(column).array().isNaN().all();
 }
 
-/// Fills rows first..last-1 of one column from the numbers on both sides, or on the one side that
-/// there is.
-void fill_gap(MatrixD& values, Eigen::Index column, Eigen::Index first, Eigen::Index last) {
-  const bool has_left = first > 0, has_right = last < values.rows();
-  const double left = values(has_left ? first - 1 : last, column);
-  const double right = values(has_right ? last : first - 1, column);
-  const double step = (right - left) / static_cast<double>(last - first + 1);
-  for (Eigen::Index row = first; row < last; ++row) {
-    values(row, column) = left + step * static_cast<double>(row - first + 1);
-  }
-}
-
 TrackFeatures::FillCount fill_short_gaps(Pixels& pixels, double fps) {
   TrackFeatures::FillCount count;
   const auto longest = static_cast<Eigen::Index>(TrackFeatures::kLongestGap_s * fps + 1e-6);
@@ -86,8 +75,10 @@ TrackFeatures::FillCount fill_short_gaps(Pixels& pixels, double fps) {
       while (last < frames && std::isnan(pixels.x(last, column))) ++last;
       const int gap = static_cast<int>(last - first);
       if (gap <= longest && gap < frames) {
-        fill_gap(pixels.x, column, first, last);
-        fill_gap(pixels.y, column, first, last);
+        for (MatrixD* px : {&pixels.x, &pixels.y}) {
+          auto values = px->col(column);
+          fill_gap(values, first, last);
+        }
         count.interpolated += gap;
       } else {
         count.missing += gap;

@@ -28,8 +28,7 @@ constexpr double kNearest = 0.1;
 constexpr double kNearest_m = 0.01;
 /// Below this confidence a standing foot adds no term.
 constexpr double kLeastPlanted = 0.05;
-/// Cauchy scale of the balance, in deviations: who is on hands and feet is nowhere near above the
-/// feet.
+/// Cauchy scale of the balance, in deviations: on hands and feet nobody is above the feet.
 constexpr double kUnbalanced = 2;
 /// Huber threshold of a slipping foot, in deviations.
 constexpr double kSlips = 2;

@@ -15,16 +15,12 @@ bool are_shares(const std::vector<std::vector<SeenPerson>>& frames, const std::s
   // that much above the image, and some of it left of it as well.
   constexpr double kLeft = -0.02, kAbove = -0.2;
   long long all = 0, small = 0, left = 0, above = 0;
-  for (const auto& people : frames)
-    for (const SeenPerson& person : people)
-      for (std::size_t joint = 0; joint < person.x_px.size(); ++joint) {
-        if (!(person.confidence[joint] > 0)) continue;
-        const double x = person.x_px[joint], y = person.y_px[joint];
-        ++all;
-        small += std::max(std::abs(x), std::abs(y)) <= kLargestShare ? 1 : 0;
-        left += x < kLeft ? 1 : 0;
-        above += y < kAbove ? 1 : 0;
-      }
+  for_each_seen_joint(frames, [&](double x, double y, double) {
+    ++all;
+    small += std::max(std::abs(x), std::abs(y)) <= kLargestShare ? 1 : 0;
+    left += x < kLeft ? 1 : 0;
+    above += y < kAbove ? 1 : 0;
+  });
   if (2 * small <= all) return false;
   if (20 * left >= all && 5 * above >= all)
     throw InputError(
@@ -42,17 +38,11 @@ void require_image_places(const std::vector<std::vector<SeenPerson>>& frames, bo
   const double most_outside = depths ? 0.5 : 0.9;
   constexpr double kBeyond = 0.02;  // of the extent: detectors guess a little beyond the edge
   double extent = 0;
-  const auto for_each_joint = [&](const auto& visit) {
-    for (const auto& people : frames)
-      for (const SeenPerson& person : people)
-        for (std::size_t joint = 0; joint < person.x_px.size(); ++joint)
-          if (person.confidence[joint] > 0) visit(person.x_px[joint], person.y_px[joint]);
-  };
-  for_each_joint([&](double x, double y) {
+  for_each_seen_joint(frames, [&](double x, double y, double) {
     extent = std::max({extent, std::abs(x), std::abs(y)});
   });
   long long all = 0, outside = 0;
-  for_each_joint([&](double x, double y) {
+  for_each_seen_joint(frames, [&](double x, double y, double) {
     ++all;
     outside += std::min(x, y) < -kBeyond * extent ? 1 : 0;
   });

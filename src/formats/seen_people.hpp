@@ -25,6 +25,17 @@ struct SeenPerson {
   std::optional<long long> id;  ///< the file's own number of the person
 };
 
+/// Calls visit(x, y, confidence) for each joint that was seen of each person of each frame.
+/// @param frames people of each frame, which visit may change if they are not const
+template <typename Frames, typename Visit>
+void for_each_seen_joint(Frames& frames, const Visit& visit) {
+  for (auto& people : frames)
+    for (auto& person : people)
+      for (std::size_t joint = 0; joint < person.x_px.size(); ++joint)
+        if (person.confidence[joint] > 0)
+          visit(person.x_px[joint], person.y_px[joint], person.confidence[joint]);
+}
+
 /// The content of a track file, before the people are followed over the frames.
 struct SeenPeople {
   std::vector<std::string> joint_names;

@@ -30,15 +30,6 @@ struct Extent {
   double least_x = 1e300, most_x = -1e300, least_y = 1e300, most_y = -1e300;
 };
 
-template <typename Visit>
-void for_each_joint(Frames& frames, const Visit& visit) {
-  for (auto& people : frames)
-    for (SeenPerson& person : people)
-      for (std::size_t joint = 0; joint < person.x_px.size(); ++joint)
-        if (person.confidence[joint] > 0)
-          visit(person.x_px[joint], person.y_px[joint], person.confidence[joint]);
-}
-
 /// The frames in their order, with empty ones where numbers are missing; their numbers and notices
 /// are the reading's.
 Frames frames_by_number(SeenPeople& seen, TrackReading& reading) {
@@ -75,9 +66,9 @@ void require_people(const Frames& frames, const std::vector<long long>& numbers,
                                    frames[i].size(), numbers[i], kMostPeople));
 }
 
-Extent extent_of(Frames& frames) {
+Extent extent_of(const Frames& frames) {
   Extent extent;
-  for_each_joint(frames, [&](double x, double y, double) {
+  for_each_seen_joint(frames, [&](double x, double y, double) {
     extent.least_x = std::min(extent.least_x, x);
     extent.most_x = std::max(extent.most_x, x);
     extent.least_y = std::min(extent.least_y, y);
@@ -157,7 +148,7 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
 /// Heat maps overshoot 1 a little; other scales end where nearly all of the file's values do.
 void limit_confidences(Frames& frames, std::vector<std::string>& notices) {
   std::vector<double> all;
-  for_each_joint(frames, [&](double, double, double c) { all.push_back(c); });
+  for_each_seen_joint(frames, [&](double, double, double c) { all.push_back(c); });
   const auto greatest = std::ranges::max_element(all);
   if (greatest == all.end() || *greatest <= 1) return;
   double scale = 1;
@@ -175,8 +166,8 @@ void limit_confidences(Frames& frames, std::vector<std::string>& notices) {
   }
   // What was seen stays seen, however small the share is that is left.
   constexpr double kLeast = std::numeric_limits<double>::min();
-  for_each_joint(frames,
-                 [&](double, double, double& c) { c = std::clamp(c / scale, kLeast, 1.0); });
+  for_each_seen_joint(frames,
+                      [&](double, double, double& c) { c = std::clamp(c / scale, kLeast, 1.0); });
 }
 
 Track2d track_of(const SeenPeople& seen, const Frames& frames, const Followed& followed) {

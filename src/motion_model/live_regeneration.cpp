@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "camera/keypoint_map.hpp"
 #include "fitting/sliding_fit.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "fitting/usual_body.hpp"
@@ -47,15 +46,6 @@ void check_skeleton(const Modalities& modalities, const ClipPlacement& placement
           "a track is followed onto the model's joints, and the skeleton has no {}: regenerate the "
           "whole track onto it",
           joint.name));
-}
-
-std::optional<KeypointMap> map_of(const Modalities& modalities, const Track2d& like,
-                                  const ClipPlacement& placement) {
-  if (joined_by_name(like, modalities.track_features)) return {};
-  const Skeleton& skeleton =
-      placement.skeleton ? *placement.skeleton : modalities.pose_features.skeleton();
-  return KeypointMap(keypoints_of_columns(like), skeleton,
-                     skeleton_roles(skeleton, placement.joint_map));
 }
 
 KnownOfClip known_of(const ClipPlacement& placement, bool detected) {
@@ -99,7 +89,7 @@ class LiveRegeneration::Pipeline {
         network_(model.network),
         track_hz_(like.fps),
         frames_(like, modalities_.fps),
-        joints_(like, modalities_.fps, map_of(modalities_, like, placement)),
+        joints_(like, modalities_.fps, keypoint_map_of(modalities_, like, placement)),
         running_(model.network),
         fit_(modalities_, known_of(placement, joints_.from_keypoints()), like, fit_of(placement)),
         output_(modalities_.fps, like.fps) {

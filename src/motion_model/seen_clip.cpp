@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "base/fill_gap.hpp"
 #include "camera/agreeing_joints.hpp"
 #include "camera/confidence_weights.hpp"
 #include "camera/cut_off.hpp"
-#include "camera/keypoint_map.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "motion_model/keypoint_columns.hpp"
 #include "motion_model/returned_sides.hpp"
@@ -38,18 +38,15 @@ ClipPlacement roughly(ClipPlacement placement, double every_s = kOfRounds_s) {
 /// mean pose, which looks the same way in every camera: a walker whom something hides for half a
 /// second would turn to it and back.
 MatrixF bridged(MatrixF features) {
-  Eigen::Index known = -1;  // the last frame of which something is
-  for (Eigen::Index t = 0; t < features.rows(); ++t) {
-    if (features.row(t).array().isNaN().all()) continue;
-    const Eigen::Index before = known < 0 ? t : known;
-    for (Eigen::Index gap = known + 1; gap < t; ++gap) {
-      const float share = known < 0 ? 0 : static_cast<float>(gap - known) / (t - known);
-      features.row(gap) = (1 - share) * features.row(before) + share * features.row(t);
-    }
-    known = t;
+  const Eigen::Index frames = features.rows();
+  const auto is_unknown = [&](Eigen::Index t) { return features.row(t).array().isNaN().all(); };
+  for (Eigen::Index first = 0; first < frames; ++first) {
+    if (!is_unknown(first)) continue;
+    Eigen::Index last = first;
+    while (last < frames && is_unknown(last)) ++last;
+    if (last - first < frames) fill_gap(features, first, last);
+    first = last;
   }
-  for (Eigen::Index gap = known + 1; known >= 0 && gap < features.rows(); ++gap)
-    features.row(gap) = features.row(known);
   return features;
 }
 
@@ -102,6 +99,15 @@ bool joined_by_name(const Track2d& track, const TrackFeatures& features) {
          found >= std::min<std::ptrdiff_t>(2, std::ssize(features.joint_names()));
 }
 
+std::optional<KeypointMap> keypoint_map_of(const Modalities& modalities, const Track2d& track,
+                                           const ClipPlacement& placement) {
+  if (joined_by_name(track, modalities.track_features)) return {};
+  const Skeleton& skeleton =
+      placement.skeleton ? *placement.skeleton : modalities.pose_features.skeleton();
+  return KeypointMap(keypoints_of_columns(track), skeleton,
+                     skeleton_roles(skeleton, placement.joint_map));
+}
+
 namespace {
 
 /// The model's joints, by name.
@@ -129,42 +135,38 @@ SeenClip see_joints(const Modalities& modalities, const Track2d& track,
 
 SeenClip see_clip(const Modalities& modalities, const Track2d& track,
                   const ClipPlacement& placement, const PoseAnswer& answer) {
-  if (joined_by_name(track, modalities.track_features))
-    return see_joints(modalities, track, placement, answer);
+  const std::optional<KeypointMap> map = keypoint_map_of(modalities, track, placement);
+  if (!map) return see_joints(modalities, track, placement, answer);
   SeenClip seen;
   ClipPlacement rough = roughly(placement);
   const auto features_of = [&](const Track2d& joints) {
     return modalities.encode_track(smooth_track(joints), rough.camera_of(track, modalities));
   };
-  const Skeleton& skeleton =
-      placement.skeleton ? *placement.skeleton : modalities.pose_features.skeleton();
-  const KeypointMap map(keypoints_of_columns(track), skeleton,
-                        skeleton_roles(skeleton, placement.joint_map));
   Track2d weighted = without_cut_off(weighted_by_confidence(track));
   if (placement.fit) {
     // A spell lasts for some frames.
     const ClipPlacement finer = roughly(placement, placement.fit->first_solution_step_s);
     seen.swaps = swapped_spells(weighted, [&](const Track2d& some) {
-      const Track2d joints = map.joints_of(some);
-      return fit_to_track(answer(bridged(features_of(joints))), modalities, map.evidence(joints),
+      const Track2d joints = map->joints_of(some);
+      return fit_to_track(answer(bridged(features_of(joints))), modalities, map->evidence(joints),
                           finer, finer.fit)
           .energy;
     });
     exchange_sides(weighted, seen.swaps);
   }
-  Track2d joints = map.joints_of(weighted);
+  Track2d joints = map->joints_of(weighted);
   seen.features = bridged(features_of(joints));
   for (int round = 0; round < kRounds; ++round) {
     const FittedClip clip =
-        fit_to_track(answer(seen.features), modalities, map.evidence(joints), rough, rough.fit);
-    joints = map.joints_of(weighted, clip.motion, clip.camera);
+        fit_to_track(answer(seen.features), modalities, map->evidence(joints), rough, rough.fit);
+    joints = map->joints_of(weighted, clip.motion, clip.camera);
     if (finds_view(modalities, placement)) rough.found = clip.view;
     seen.features =
         where_known(features_of(placement.fit ? agreeing_joints(joints, clip.shown) : joints),
                     modalities.encode_track(clip.shown, rough.camera_of(track, modalities)));
   }
   modalities.encode_track(joints, rough.camera_of(track, modalities), &seen.filled);
-  seen.joints = map.evidence(joints);
+  seen.joints = map->evidence(joints);
   seen.view = rough.assumed();
   return seen;
 }
