@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace mcdbn {
 namespace {
@@ -25,10 +27,12 @@ double extent_px(const Track2d& track, Eigen::Index frame) {
 }  // namespace
 
 Track2d agreeing_joints(Track2d joints, const Track2d& answer) {
+  std::vector<int> columns;
+  for (const std::string& name : joints.joint_names) columns.push_back(answer.find(name));
   for (Eigen::Index t = 0; t < joints.frames(); ++t) {
     const double farthest_px = kElsewhere * extent_px(answer, t);
     for (Eigen::Index k = 0; k < joints.joint_count(); ++k) {
-      const int column = answer.find(joints.joint_names[static_cast<std::size_t>(k)]);
+      const int column = columns[static_cast<std::size_t>(k)];
       if (column < 0 || !(joints.confidence(t, k) < kSure)) continue;
       const double away_px = std::hypot(joints.x_px(t, k) - answer.x_px(t, column),
                                         joints.y_px(t, k) - answer.y_px(t, column));

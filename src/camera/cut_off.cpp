@@ -1,9 +1,12 @@
 #include "camera/cut_off.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
+
+#include "mcdbn/motion/humanoid.hpp"
 
 namespace mcdbn {
 namespace {
@@ -13,25 +16,16 @@ constexpr double kSurelySeen = 0.1;
 /// As near to the edge is on it, as a share of the image's size.
 constexpr double kEdge = 0.01;
 
-/// The joint before a limb's end.
+using enum JointRole;
+constexpr std::array kLimbEnds{left_ankle,  left_toe,  left_wrist,
+                               right_ankle, right_toe, right_wrist};
+
+/// The joint before a limb's end, as the humanoid has it; none for other joints.
 std::optional<JointRole> joint_before_end(JointRole role) {
-  using enum JointRole;
-  switch (role) {
-    case left_ankle:
-      return left_knee;
-    case right_ankle:
-      return right_knee;
-    case left_toe:
-      return left_ankle;
-    case right_toe:
-      return right_ankle;
-    case left_wrist:
-      return left_elbow;
-    case right_wrist:
-      return right_elbow;
-    default:
-      return std::nullopt;
-  }
+  if (std::ranges::find(kLimbEnds, role) == kLimbEnds.end()) return {};
+  const SkeletonRoles& roles = humanoid_roles();
+  const auto joint = static_cast<std::size_t>(roles.joint(role));
+  return roles.role_of(canonical_humanoid().joints[joint].parent);
 }
 
 bool on_edge(double place_px, int size_px) {
