@@ -102,8 +102,8 @@ ImageSize guessed_image(const Extent& extent) {
 
 /// @param likely whether the people in it show that it is of that shape
 std::string shares_notice(const ImageSize& size, bool known, bool likely) {
-  const std::string taken = fmt::format("coordinates are shares of the image, taken as {} x {} px",
-                                        size.width_px, size.height_px);
+  std::string taken = fmt::format("coordinates are shares of the image, taken as {} x {} px",
+                                  size.width_px, size.height_px);
   if (known) return taken;
   const std::string so =
       fmt::format(" and people look likelier so than in {} x {}", size.height_px, size.width_px);
