@@ -56,7 +56,7 @@ bool has_simpler_methods(const ReportClip& clip) {
 
 class ClipWriter {
  public:
-  ClipWriter(const ReportClip& clip, const Detail& detail) : clip_(clip), detail_(detail) {
+  ClipWriter(const ReportClip& clip, const Detail& detail) : detail_(detail) {
     json_ = {{"name", clip.name},
              {"action", clip.action},
              {"trained_on", clip.trained_on},
@@ -99,7 +99,6 @@ class ClipWriter {
       json_["motions"].back()["deviation_mm"] = code(motion.deviation_mm);
   }
 
-  const ReportClip& clip_;
   const Detail& detail_;
   ordered_json json_;
   std::size_t bytes_ = 0;

@@ -132,20 +132,48 @@ void ClipEvidence::find_planted(const Motion& motion) {
   }
 }
 
-Eigen::VectorXd ClipEvidence::ground(const PosteriorPoint& point) const {
+std::vector<double> ClipEvidence::standing_heights(const PosteriorPoint& point,
+                                                   std::size_t foot) const {
   constexpr double kStands = 0.5;
   const Eigen::Vector3d up = rotation_of(point.lean) * clip.up;
+  std::vector<double> heights;
+  for (Eigen::Index t = 0; t < clip.frames(); ++t)
+    if (clip.planted(t, static_cast<Eigen::Index>(foot)) > kStands)
+      heights.push_back(up.dot(place_of(clip, point, t, clip.feet[foot])));
+  return heights;
+}
+
+Eigen::VectorXd ClipEvidence::ground(const PosteriorPoint& point) const {
   std::vector<std::vector<double>> heights(static_cast<std::size_t>(point.ground_m.size()));
-  for (std::size_t f = 0; f < clip.feet.size(); ++f)
-    for (Eigen::Index t = 0; t < clip.frames(); ++t)
-      if (clip.planted(t, static_cast<Eigen::Index>(f)) > kStands)
-        heights[static_cast<std::size_t>(clip.grounds[f])].push_back(
-            up.dot(place_of(clip, point, t, clip.feet[f])));
+  for (std::size_t f = 0; f < clip.feet.size(); ++f) {
+    auto& of_kind = heights[static_cast<std::size_t>(clip.grounds[f])];
+    const std::vector<double> own = standing_heights(point, f);
+    of_kind.insert(of_kind.end(), own.begin(), own.end());
+  }
   Eigen::VectorXd ground = point.ground_m;
   for (std::size_t i = 0; i < heights.size(); ++i)
     if (!heights[i].empty())
       ground[static_cast<Eigen::Index>(i)] = upper_median(std::move(heights[i]));
   return ground;
+}
+
+bool ClipEvidence::is_ankle(std::size_t foot) const {
+  const int above = skeleton_.joints[static_cast<std::size_t>(feet_[foot])].parent;
+  return std::ranges::find(feet_, above) == feet_.end();
+}
+
+std::optional<double> ClipEvidence::first_height(const PosteriorPoint& point) const {
+  constexpr double kAnkle_m = 0.039 * 1.7;
+  std::vector<double> ankles;
+  for (std::size_t f = 0; f < clip.feet.size(); ++f) {
+    if (!is_ankle(f)) continue;
+    const std::vector<double> own = standing_heights(point, f);
+    ankles.insert(ankles.end(), own.begin(), own.end());
+  }
+  if (ankles.empty()) return std::nullopt;
+  const Eigen::Vector3d up = rotation_of(point.lean) * clip.up;
+  const double root_m = up.dot((clip.root.row(0) + point.shift.row(0)).transpose());
+  return units_per_m_ * (body(point).scale * (root_m - upper_median(std::move(ankles))) + kAnkle_m);
 }
 
 ExpectedLean ClipEvidence::balanced(const Stance& stance, const TrackFitSettings& settings) const {

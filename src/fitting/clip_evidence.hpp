@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "camera/track_rays.hpp"
 #include "fitting/clip_posterior.hpp"
 #include "fitting/stance.hpp"
@@ -39,6 +42,10 @@ class ClipEvidence {
   /// How high the ground is under each kind of foot joint: the middle height of those that stand;
   /// as before where none does. @return as PosteriorPoint::ground_m
   Eigen::VectorXd ground(const PosteriorPoint& point) const;
+  /// How high the first frame's root is above the ground that ankles stand on, in file units of
+  /// body(point): where they stand, ankles are 0.039 of stature high (Drillis and Contini). Unset
+  /// where none stands.
+  std::optional<double> first_height(const PosteriorPoint& point) const;
   /// How the camera stands if the body's middle is, on average, straight above the feet.
   /// This is less certain where the person moves fast, and so leans, and where they sit or squat.
   ExpectedLean balanced(const Stance& stance, const TrackFitSettings& settings) const;
@@ -60,6 +67,10 @@ class ClipEvidence {
   double usual_speed_m_s() const;
 
  private:
+  /// Of a foot joint in the frames where it stands, metres above the camera.
+  std::vector<double> standing_heights(const PosteriorPoint& point, std::size_t foot) const;
+  bool is_ankle(std::size_t foot) const;
+
   Skeleton skeleton_;
   double units_per_m_;
   std::vector<int> feet_;        ///< joints of the skeleton, as clip.feet

@@ -279,8 +279,8 @@ void SlidingFit::set_camera(const PosteriorPoint& point, const Eigen::Vector3d& 
   camera_ = fitted_camera(point, assumed_);
   if (settled_ == 0) {
     first_root_ = first_root;
-    first_height_ =
-        units_per_m_ * modalities_.pose_features.root_features(rows_.mean).col(0).mean();
+    first_height_ = evidence_->first_height(point).value_or(
+        units_per_m_ * modalities_.pose_features.root_features(rows_.mean).col(0).mean());
   }
   camera_.translation = first_root_ - first_height_ * camera_.camera_from_world.col(1);
 }

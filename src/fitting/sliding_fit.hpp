@@ -105,7 +105,7 @@ class SlidingFit {
   Stance settled_stance_;
   long long settled_ = 0;
   Eigen::Vector3d first_root_{0, 0, 0};
-  double first_height_ = 0;  ///< of that root above the ground, as the prior has it
+  double first_height_ = 0;  ///< of that root above the ground
   Motion motion_;
   Track2d shown_;
 };

@@ -163,11 +163,14 @@ class ClipFit {
     return result;
   }
 
-  /// The camera moves along, so that it sees the same.
+  /// Begins above the origin, the ground under ankles that stand; where none does, as high as the
+  /// prior has the root. The camera moves along, so that it sees the same.
   void put_at_origin() {
-    const double wanted = file_units_per_metre(now_.skeleton) *
-                          modalities_.pose_features.root_features(now_.features).col(0).mean();
-    shift_ << -now_.root(0, 0), wanted - now_.root.col(1).mean(), -now_.root(0, 2);
+    const double by_prior = file_units_per_metre(now_.skeleton) *
+                            modalities_.pose_features.root_features(now_.features).col(0).mean();
+    const std::optional<double> first = evidence_ ? evidence_->first_height(point_) : std::nullopt;
+    const double rise = first ? *first - now_.root(0, 1) : by_prior - now_.root.col(1).mean();
+    shift_ << -now_.root(0, 0), rise, -now_.root(0, 2);
     motion_.reset();
   }
 

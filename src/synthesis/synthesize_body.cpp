@@ -1,6 +1,7 @@
 #include "synthesis/synthesize_body.hpp"
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
+#include <cmath>
 #include <string>
 
 #include "base/numbers.hpp"
@@ -8,8 +9,15 @@
 namespace mcdbn::synthesis {
 namespace {
 
-Eigen::Matrix3d rotation(double angle_deg, const Eigen::Vector3d& axis) {
-  return Eigen::AngleAxisd(angle_deg * kRadiansPerDegree, axis).toRotationMatrix();
+// About coordinate axis 0, 1 or 2.
+Eigen::Matrix3d rotation(double angle_deg, int axis) {
+  const double angle = angle_deg * kRadiansPerDegree;
+  const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn(next, next) = turn(last, last) = std::cos(angle);
+  turn(last, next) = std::sin(angle);
+  turn(next, last) = -turn(last, next);
+  return turn;
 }
 
 const std::vector<Channel> kZxy{Channel::z_rotation, Channel::x_rotation, Channel::y_rotation};
@@ -47,13 +55,13 @@ void add_leg(Skeleton& skeleton, const Body& body, Side side) {
 }  // namespace
 
 Eigen::Matrix3d rotation_x(double angle_deg) {
-  return rotation(angle_deg, Eigen::Vector3d::UnitX());
+  return rotation(angle_deg, 0);
 }
 Eigen::Matrix3d rotation_y(double angle_deg) {
-  return rotation(angle_deg, Eigen::Vector3d::UnitY());
+  return rotation(angle_deg, 1);
 }
 Eigen::Matrix3d rotation_z(double angle_deg) {
-  return rotation(angle_deg, Eigen::Vector3d::UnitZ());
+  return rotation(angle_deg, 2);
 }
 
 Body Body::draw(Random& random) {

@@ -47,8 +47,9 @@ TEST_CASE("random streams: no two are the same") {
     }
   };
   for (std::size_t cdbn = 0; cdbn < kMostModalities; ++cdbn) take(layers_of(cdbn), kCdbnLayers);
-  for (const auto& [name, stream] : streams) {
-    CAPTURE(name);
+  for (const auto& named : streams) {
+    CAPTURE(named.first);
+    const int stream = named.second;
     take(stream, stream == kPerceptron || stream == kAutoencoder ? kFurther : 1);
   }
 }

@@ -55,7 +55,9 @@ std::size_t files_in(const std::filesystem::path& folder) {
 void check_same(const Safetensors& got, const Safetensors& want) {
   CHECK(got.metadata == want.metadata);
   REQUIRE(got.tensors.size() == want.tensors.size());
-  for (const auto& [name, tensor] : want.tensors) {
+  for (const auto& named : want.tensors) {
+    const std::string& name = named.first;
+    const auto& tensor = named.second;
     CAPTURE(name);
     REQUIRE(got.tensors.count(name) == 1);
     CHECK(got.tensors.at(name).shape == tensor.shape);
@@ -108,7 +110,9 @@ TEST_CASE("the file is laid out as the format specifies") {
   const std::string data = bytes.substr(8 + length);
   CHECK(data.size() == 11 * sizeof(float));
   std::size_t end_of_last = 0;
-  for (const auto& [name, tensor] : content.tensors) {
+  for (const auto& named : content.tensors) {
+    const std::string& name = named.first;
+    const auto& tensor = named.second;
     CAPTURE(name);
     const json& entry = header.at(name);
     CHECK(entry.at("dtype") == "F32");

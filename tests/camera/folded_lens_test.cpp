@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/capture_bound.hpp"
 #include "mcdbn/camera/camera.hpp"
 
 namespace folded_lens_test {
@@ -55,7 +56,7 @@ TEST_CASE("folded lens: rays are seen to where the distortion turns back, and no
            Case{{0, 0, 0, 0, 0, 0, 0, 0.3}, std::cbrt(1 / 1.5)},
            Case{{0, 0, 0, 0, 0, -0.5, 0, 0}, 2},
        }) {
-    CAPTURE(square);
+    CAPTURE_BOUND(square);
     const double turn = std::sqrt(square);
     // It is the first place where the ray is longest.
     const auto bent = [&, &k = distortion](double ray) { return ray * factor(k, ray * ray); };

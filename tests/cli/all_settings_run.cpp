@@ -42,8 +42,8 @@ namespace {
 
 std::map<std::string, double> settings_of_toml(const std::string& text) {
   std::map<std::string, double> settings;
-  for (const auto& [name, value] : settings_in(text))
-    CHECK_MESSAGE(settings.emplace(name, value).second, name, " is recorded once");
+  for (const auto& setting : settings_in(text))
+    CHECK_MESSAGE(settings.emplace(setting).second, setting.first, " is recorded once");
   return settings;
 }
 

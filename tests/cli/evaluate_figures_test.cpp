@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/capture_bound.hpp"
 #include "comparison/comparison_run.hpp"
 #include "independent_scores.hpp"
 #include "library_calls.hpp"
@@ -22,7 +23,7 @@ void check_scores(const std::map<std::string, double>& wanted, const json& found
                   double tolerance) {
   CHECK(found.size() == wanted.size());
   for (const auto& [name, value] : wanted) {
-    CAPTURE(name);
+    CAPTURE_BOUND(name);
     REQUIRE(found.contains(name));
     const double off = std::abs(found.at(name).get<double>() - value);
     CHECK(off <= tolerance * std::max(1.0, std::abs(value)));
@@ -60,7 +61,7 @@ TEST_CASE("the scores of every method are those of its motion, by independent co
     CHECK(result.other_answers.size() == 6);
     for (const mcdbn::ScoredAnswer& sample : result.samples) check(sample);
     for (const auto& [name, other] : result.other_answers) {
-      CAPTURE(name);
+      CAPTURE_BOUND(name);
       check(other);
     }
   }

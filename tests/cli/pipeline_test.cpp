@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/capture_bound.hpp"
 #include "base/text_file.hpp"
 #include "mcdbn/camera/camera.hpp"
 #include "mcdbn/camera/track.hpp"
@@ -154,7 +155,7 @@ TEST_CASE("evaluate fits every method, or none, and damages tracks by the seed")
   CHECK(plain.at("fit") == "none");
   CHECK(mpjpe_mm(fitted.at("model")) < mpjpe_mm(plain.at("model")));
   for (const auto& [name, scores] : fitted.at("baselines").items()) {
-    CAPTURE(name);
+    CAPTURE_BOUND(name);
     CHECK(mpjpe_mm(scores) < mpjpe_mm(plain.at("baselines").at(name)));
   }
   const std::string damage =

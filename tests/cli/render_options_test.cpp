@@ -5,6 +5,7 @@
 #include <array>
 #include <opencv2/videoio.hpp>
 
+#include "base/capture_bound.hpp"
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
 #include "mcdbn/corpus/clip.hpp"
@@ -214,7 +215,7 @@ TEST_CASE("render: options that would be ignored are refused") {
   // Of the other kind of output.
   for (const auto& [output, option, other] :
        {std::array{"out.png", "--video-fps", ".mp4"}, {"out.mp4", "--columns", ".png"}}) {
-    CAPTURE(option);
+    CAPTURE_BOUND(option);
     const fs::path file = folder / output;
     const CliResult result =
         run_cli(fmt::format("render '{}' -o '{}' {} 10", clip.string(), file.string(), option));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/capture_bound.hpp"
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
@@ -46,7 +47,7 @@ TEST_CASE("project: a detector's track in every format that has room for it, rea
     for (const mcdbn::TrackFormat& format : mcdbn::track_formats()) {
       const auto& sets = format.joint_sets;
       if (!sets.empty() && std::ranges::find(sets, set) == sets.end()) continue;
-      CAPTURE(like);
+      CAPTURE_BOUND(like);
       CAPTURE(format.name);
       written.insert(format.name);
       const auto path =

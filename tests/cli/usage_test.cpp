@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "base/capture_bound.hpp"
 #include "fitting/blas_kernels.hpp"
 #include "option_table.hpp"
 #include "tiny_pipeline.hpp"
@@ -47,7 +48,7 @@ TEST_CASE("a CPU that OpenBLAS does not know gets the kernels of one that it doe
 TEST_CASE("every command's help shows an example, and every command takes --quiet") {
   const std::map<std::string, std::string> commands = commands_in_help();
   for (const auto& [command, description] : commands) {
-    CAPTURE(command);
+    CAPTURE_BOUND(command);
     CHECK(description.find_first_not_of(' ') != std::string::npos);
     const CliResult result = run_cli(command + " --help");
     CHECK(result.exit_code == 0);

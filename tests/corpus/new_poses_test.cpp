@@ -116,11 +116,12 @@ TEST_CASE("limbs turned: smoothly, within the limits, the pelvis as it was") {
     HumanoidPoses wild = before;
     RandomSequence random(i);
     for (int t = 0; t < wild.frames(); ++t)
-      for (const JointRole role : {chest, left_wrist})
-        wild.local(t, role) =
-            Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal())
-                .normalized()
-                .toRotationMatrix();
+      for (const JointRole role : {chest, left_wrist}) {
+        // One after the other: arguments would be drawn in an order of the compiler's own.
+        const double z = random.normal(), y = random.normal(), x = random.normal(),
+                     w = random.normal();
+        wild.local(t, role) = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
+      }
     free_clips.push_back({{}, wild.motion()});
   }
   const PosePool free_pool(free_clips, kFps);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/capture_bound.hpp"
 #include "evaluation/bone_length.hpp"
 #include "evaluation/foot_slide.hpp"
 #include "evaluation/orientation_error.hpp"
@@ -61,8 +62,8 @@ TEST_CASE("foot_slide: a low foot that is fast is not planted, nor a slow one up
     MatrixD edge = MatrixD::Zero(5, 3);
     edge.col(0) << 0, step, step, step, step;
     edge.col(1) << 0, 0, 0, height, height;
-    CAPTURE(height);
-    CAPTURE(step);
+    CAPTURE_BOUND(height);
+    CAPTURE_BOUND(step);
     CHECK(foot_slide(edge, edge, {0}, 10).planted == planted);
   }
   // Each foot has its own ground: an ankle is never as low as a toe.

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "base/capture_bound.hpp"
 #include "by_hand.hpp"
 #include "numbered_report.hpp"
 
@@ -19,7 +20,7 @@ void check_figures(const json& found, const std::vector<double>& numbers) {
   const auto wanted = numbered_figures(numbers);
   CHECK(found.size() == wanted.size());
   for (const auto& [name, value] : wanted) {
-    CAPTURE(name);
+    CAPTURE_BOUND(name);
     REQUIRE(found.contains(name));
     CHECK(std::abs(found.at(name).get<double>() - value) <= 1e-9 * std::abs(value));
   }

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "base/capture_bound.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/camera.hpp"
 #include "mcdbn/formats/bvh.hpp"
@@ -209,10 +210,12 @@ TEST_CASE("pose features: the axis along a joint's longest bone leads, the other
                                    {"Neck", 1},
                                    {"LArm", 0},
                                    {"RArm", 0},
-                                   {"LHand", 0}})
-    CHECK_MESSAGE(features.leading_axis(block_of(name)) == axis, name);
+                                   {"LHand", 0}}) {
+    CAPTURE_BOUND(name);
+    CHECK(features.leading_axis(block_of(name)) == axis);
+  }
   for (const auto& [name, end] : {std::pair{"LLeg", "LShin"}, {"RArm", "RHand"}}) {
-    CAPTURE(name);
+    CAPTURE_BOUND(name);
     const int block = 6 * block_of(name), leads = 3 * features.leading_axis(block_of(name));
     // Where the bone ends does not depend on the other axis, however far that is off.
     MatrixD askew = encoded;

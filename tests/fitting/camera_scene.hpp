@@ -36,6 +36,29 @@ struct CameraScene {
     pose = modalities.encode_pose(truth, camera.camera_from_world);
   }
 
+  /// The answer of a network that takes the person for so much further above the ground.
+  void raise_prior(double by_cm) {
+    Motion raised = truth;
+    raised.channels.col(1).array() += by_cm;
+    pose = modalities.encode_pose(raised, camera.camera_from_world);
+  }
+
+  /// How high ankles are on average in frames where the true ones stand, over how high those are.
+  double ankles_above_truth_cm(const Motion& motion) const {
+    const MatrixD positions = joint_positions(motion), real = joint_positions(truth);
+    double sum = 0;
+    int count = 0;
+    for (const char* name : {"LeftFoot", "RightFoot"}) {
+      const Eigen::Index y = 3 * truth.skeleton.find(name) + 1;
+      for (Eigen::Index t = 0; t < motion.frames(); ++t) {
+        if (real(t, y) > real.col(y).minCoeff() + 1) continue;
+        sum += positions(t, y) - real(t, y);
+        ++count;
+      }
+    }
+    return sum / count;
+  }
+
   FittedClip fit(const AssumedView& given, const TrackFitSettings& settings = {}) const {
     return fit_to_track(pose, modalities, track, {std::nullopt, truth.skeleton, given}, settings);
   }

@@ -53,6 +53,16 @@ TEST_CASE("a sliding fit: how an unknown camera stands is found, and the body st
   CHECK(std::abs(tilt_deg(motion, 30) - tilt_deg(scene.truth, 30)) < 6);
 }
 
+TEST_CASE("a sliding fit: an unknown camera's ground is that under the ankles") {
+  CameraScene scene(12, 0, SynthesisAction::walk, 1);
+  scene.raise_prior(25);
+  SlidingFit fit(scene.modalities, known_of(scene), scene.track, {});
+  const MatrixD channels =
+      settled_channels(fit, scene.pose, scene.track, kLag, [](Eigen::Index) {});
+  const Motion motion{fit.body(), scene.truth.frame_time_s, channels};
+  CHECK(std::abs(scene.ankles_above_truth_cm(motion)) < 4);
+}
+
 TEST_CASE("a sliding fit: the balance counts from the first frames on, by all frames' bent legs") {
   const CameraScene scene(10, 0, SynthesisAction::walk, 2);
   struct Pitches {

@@ -142,6 +142,17 @@ TEST_CASE("unknown camera: the answer is seen where the track shows it, through 
   CHECK((seen.y_px - clip.shown.y_px).cwiseAbs().maxCoeff() < 1e-6);
 }
 
+TEST_CASE(
+    "unknown camera: ankles stand as high as a person's do, wherever the prior has the root") {
+  for (const double raised_cm : {-25.0, 0.0, 25.0}) {
+    CAPTURE(raised_cm);
+    Scene scene(12, 0);
+    scene.raise_prior(raised_cm);
+    const Motion motion = scene.fit({{}, {}, scene.view.field_of_view_deg}).motion;
+    CHECK(std::abs(scene.ankles_above_truth_cm(motion)) < 2);
+  }
+}
+
 TEST_CASE("unknown camera: standing feet are on one level") {
   Scene scene(12, 0);
   add_pixel_noise(scene.track, 8, 3);

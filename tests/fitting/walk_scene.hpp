@@ -33,9 +33,13 @@ struct Scene {
 inline MatrixD disturbed(MatrixD features, const PoseFeatures& pose_features, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, kWrong_deg * M_PI / 180);
-  const Eigen::Vector3d common(normal(random), normal(random), normal(random));
+  const auto drawn = [&] {  // arguments would be drawn in an order of the compiler's own
+    const double z = normal(random), y = normal(random), x = normal(random);
+    return Eigen::Vector3d(x, y, z);
+  };
+  const Eigen::Vector3d common = drawn();
   for (std::size_t turn = 0; turn < pose_features.joints().size(); ++turn) {
-    const Eigen::Vector3d own(normal(random), normal(random), normal(random));
+    const Eigen::Vector3d own = drawn();
     const Eigen::Matrix3d rotation =
         rotation_of(std::sqrt(kAlike) * common + std::sqrt(1 - kAlike) * own);
     for (const int axis : {0, 3})

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/capture_bound.hpp"
 #include "base/scratch_folder.hpp"
 #include "formats/layout_samples.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -75,8 +76,10 @@ TEST_CASE("shares: a person at the edge of the image is in the image") {
   const Track2d figure = sample_figure("MEDIAPIPE_33");
   // Half of the joints are left of the image, or head and arms above it.
   for (const auto& [left_px, up_px] : {std::pair{305.0, 0.0}, {0.0, 200.0}}) {
-    CAPTURE(left_px);
-    const auto outside = [&](double x, double y, int) { return share(x - left_px, y - up_px); };
+    CAPTURE_BOUND(left_px);
+    const auto outside = [left = left_px, up = up_px](double x, double y, int) {
+      return share(x - left, y - up);
+    };
     const Track2d track =
         read_track(folder.write("edge.json", landmarks_of(figure, outside).dump()), of_image());
     CHECK((track.x_px.array() - (figure.x_px.array() - left_px)).abs().maxCoeff() < 1e-6);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/capture_bound.hpp"
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
 #include "formats/csv_table.hpp"
@@ -108,7 +109,7 @@ TEST_CASE("real tracks: points in space are refused") {
   for (const auto& [path, message] :
        {std::pair{"formats/blazepose_json/pose_squats_3d.full.json", "a body in space"},
         std::pair{"formats/freemocap_csv/freemocap_test_data_by_frame.csv", "points in space"}}) {
-    CAPTURE(path);
+    CAPTURE_BOUND(path);
     if (!have_shared_data(path, "real tracks")) continue;
     CHECK_THROWS_WITH_AS(read_track(shared_data() / path), doctest::Contains(message), InputError);
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/capture_bound.hpp"
 #include "base/scratch_folder.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
@@ -111,7 +112,7 @@ TEST_CASE("track details: a numbered person who is away for long comes back, in 
                                    {"rows.csv", rows},
                                    {"movenet.json", landmarks.dump()},
                                    {"mmpose.json", instances.dump()}}) {
-    CAPTURE(name);
+    CAPTURE_BOUND(name);
     const TrackReading reading = read_tracks(folder.write(name, text), {.fps = 30});
     CHECK(reading.people_seen == 1);
     CHECK((reading.people.front().confidence.rowwise().maxCoeff().array() > 0).count() == 90);

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "base/capture_bound.hpp"
 #include "base/interruption.hpp"
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
@@ -186,7 +187,7 @@ TEST_CASE("a greedy training that is killed ends with the same bits, whatever it
   }
   on_every_device([&](Device& device) {
     for (const auto& [name, settings] : all) {
-      CAPTURE(name);
+      CAPTURE_BOUND(name);
       check_killed(greedy(device, source, settings), 10);
     }
   });

@@ -179,7 +179,6 @@ TEST_CASE("greedy reports: health is that of the stage's own layer on its own in
 TEST_CASE("greedy reports: health at the first epoch is that after the first epoch") {
   GreedyScene scene = scene_of_many_epochs();
   scene.plan.gaussian.epochs = 2;
-  std::optional<LayerHealth> first;
   GreedyScene shorter = scene;
   shorter.plan.gaussian.epochs = 1;
   on_every_device([&](Device& device) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "base/capture_bound.hpp"
 #include "device/every_device.hpp"
 #include "learning/within_bounds.hpp"
 #include "mcdbn/learning/greedy_schedule.hpp"
@@ -217,7 +218,7 @@ inline void check_machine(const Mcdbn& got, const reference::GreedyMachine& want
   const auto want_tensors = tensors_of(want);
   CHECK(got_tensors.size() == want_tensors.size());
   for (const auto& [name, tensor] : want_tensors) {
-    INFO("tensor ", name);
+    CAPTURE_BOUND(name);
     REQUIRE(got_tensors.count(name) == 1);
     const MatrixD bound = MatrixD::Constant(tensor.rows(), tensor.cols(), kGreedyTolerance);
     CHECK(reference::misfit(got_tensors.at(name), tensor, bound) == "");

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "base/capture_bound.hpp"
 #include "learning/greedy_scene.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -168,7 +169,7 @@ TEST_CASE("every setting counts: another one moves parameters far beyond the tol
   for (const auto& [what, change] : plan_changes()) {
     GreedyScene other = scene;
     change(other.plan);
-    INFO(what);
+    CAPTURE_BOUND(what);
     CHECK(difference(right, train_on_host(other).machine) > 1000 * kGreedyTolerance);
   }
 }

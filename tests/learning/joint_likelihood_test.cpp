@@ -2,6 +2,7 @@
 // enumeration.
 #include "learning/joint_likelihood.hpp"
 
+#include "base/capture_bound.hpp"
 #include "device/every_device.hpp"
 #include "device/fitting_tiles.hpp"
 #include "device/training_state.hpp"
@@ -63,8 +64,8 @@ reference::BoundedMrbm no_moments(const Scene& scene) {
 TEST_CASE("small: the joint likelihood's gradient is contrastive divergence over all modalities") {
   for (const Scene* scene : {&two(), &three()})
     for (const auto& [k, sampled] : {std::pair{1U, false}, {3U, false}, {2U, true}}) {
-      CAPTURE(k);
-      CAPTURE(sampled);
+      CAPTURE_BOUND(k);
+      CAPTURE_BOUND(sampled);
       check_joint_likelihood(*scene, {.gibbs_steps = k, .sample_visible = sampled});
     }
 }

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "base/capture_bound.hpp"
 #include "learning/contrastive_divergence.hpp"
 #include "learning/history_noise.hpp"
 #include "learning/small_network.hpp"
@@ -189,7 +190,7 @@ TEST_CASE("small: the squared loss is the mean over what was seen of the frames 
        {std::pair{SequenceWindows{.count = 3, .frames = 7, .first = 1, .judged_from = 2}, 5},
         std::pair{SequenceWindows{.count = 1, .frames = 9, .first = 3, .judged_from = 4}, 17},
         std::pair{SequenceWindows{.count = 5, .frames = 3, .first = 0, .judged_from = 0}, 1}}) {
-    CAPTURE(dimension);
+    CAPTURE_BOUND(dimension);
     const auto columns = static_cast<std::size_t>(dimension);
     const MatrixF prediction = random_matrix(windows.rows(), columns, 1),
                   target = random_matrix(windows.rows(), columns, 2);
@@ -202,7 +203,7 @@ TEST_CASE("small: the squared loss is the mean over what was seen of the frames 
         counts.cwiseProduct(prediction.cast<double>() - target.cast<double>());
     const double weight = 1.75, loss = weight * difference.squaredNorm() / counts.sum();
     const MatrixD gradient = 2.0 * weight / counts.sum() * difference;
-    on_every_device([&](Device& device) {
+    on_every_device([&, &windows = windows](Device& device) {
       const Matrix shown = Matrix::from_host(device, seen);
       SquaredLoss masked(device, windows, weight, &shown);
       Matrix error(device, windows.rows(), columns);

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "base/capture_bound.hpp"
 #include "learning/window_sampler.hpp"
 #include "reference/fine_tuning_reference.hpp"
 
@@ -117,7 +118,7 @@ TEST_CASE("a tenth of the windows starts at its clip's first frame, the others a
   CHECK(count.size() == static_cast<std::size_t>(places));
   CHECK(near(count[0], 0.1 + 0.9 / places));
   for (const auto& [start, times] : count) {
-    CAPTURE(start);
+    CAPTURE_BOUND(start);
     if (start > 0) CHECK(near(times, 0.9 / places));
   }
   CHECK(count.rbegin()->first == 47 - kJudged);

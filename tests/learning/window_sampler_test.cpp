@@ -1,4 +1,5 @@
 #include "learning/window_sampler.hpp"
+#include "base/capture_bound.hpp"
 
 #include <doctest/doctest.h>
 
@@ -77,7 +78,7 @@ TEST_CASE("people of whom there is little are drawn as often as the power specif
   const auto bound = [](double share) { return 5 * std::sqrt(share * (1 - share) / 2000); };
   for (const auto& [power, want] :
        {std::pair{1.0, 20.0 / 120}, {0.0, 0.5}, {0.5, std::sqrt(20.0) / (std::sqrt(20.0) + 10)}}) {
-    CAPTURE(power);
+    CAPTURE_BOUND(power);
     CHECK(std::abs(share_of_second(power) - want) < bound(want));
   }
 }

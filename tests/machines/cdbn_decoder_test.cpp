@@ -138,7 +138,8 @@ TEST_CASE("decoder: every frame's means are the reference's, fused and frame by 
           Case{{5, 7, 4, kBinary, 2, 4}, 3}, Case{{9, 3, 3, kGaussian, 3, 0}, 2},
           Case{{33, 19, 2, kGaussian}, 11}})
       for (const bool fused : {true, false}) {
-        CAPTURE(shape.visible);
+        const std::size_t visible = shape.visible;
+        CAPTURE(visible);
         CAPTURE(fused);
         const CrbmParameters p = parameters_of(shape, 3);
         const MatrixF code = random_code(sequences * kFrames, shape.hidden);
@@ -176,7 +177,8 @@ TEST_CASE("decoder: sampled frames are the reference's with the same draws") {
          {Case{{1, 1, 1, kBinary}, 1}, Case{{7, 13, 5, kBinary}, 3},
           Case{{6, 9, 4, kBinary, 1, 4}, 3}, Case{{5, 11, 4, kBinary, 3, 2}, 2},
           Case{{19, 33, 2, kBinary}, 11}}) {
-      CAPTURE(shape.visible);
+      const std::size_t visible = shape.visible;
+      CAPTURE(visible);
       const CrbmParameters p = parameters_of(shape, 3);
       const MatrixF code = random_code(sequences * kFrames, shape.hidden);
       const MatrixF states = decoded(device, {p}, code, sequences, options);

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "base/capture_bound.hpp"
 #include "device/every_device.hpp"
 #include "machines/drawn_frames.hpp"
 #include "machines/free_run.hpp"
@@ -90,8 +91,9 @@ TEST_CASE("generation: every frame is Algorithm 4's with the same draws") {
       const auto seeds = seeds_for(stack, stack.size() == 1 ? 6 : 2);
       for (const auto& [steps, temperature] :
            {std::pair<std::size_t, double>{1, 1.0}, {3, 1.0}, {2, 0.4}, {0, 1.0}, {2, 0.0}}) {
-        INFO(stack.size(), " layers, ", stack[0].shape.visible, " visible, k = ", steps,
-             ", temperature ", temperature);
+        INFO(stack.size(), " layers, ", stack[0].shape.visible, " visible");
+        CAPTURE_BOUND(steps);
+        CAPTURE_BOUND(temperature);
         const GenerationOptions options = options_with(steps, temperature);
         CHECK(check_drawn(generate(on(device, stack), seeds, options),
                           reference::generated(stack, seeds, options)) > 0.9);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/capture_bound.hpp"
 #include "base/safetensors.hpp"
 #include "base/scratch_folder.hpp"
 #include "device/every_device.hpp"
@@ -223,7 +224,7 @@ TEST_CASE("a machine's file that is not whole is refused, and the message names 
     const Safetensors whole = read_safetensors(path);
     REQUIRE(whole.tensors.size() == 8);
     for (const auto& [name, tensor] : whole.tensors) {
-      CAPTURE(name);
+      CAPTURE_BOUND(name);
       Safetensors without = whole;
       without.tensors.erase(name);
       CHECK(contains(complaint(device, path, without), "no tensor " + name + " "));
@@ -255,7 +256,7 @@ TEST_CASE("a machine's file that is not whole is refused, and the message names 
                                                    {"order", 4000000000},
                                                    {"order_A", 3},
                                                    {"order_B", -1}}) {
-      CAPTURE(field);
+      CAPTURE_BOUND(field);
       json layer = {{"visible", 5}, {"hidden", 3}, {"order", 2}, {"kind", "gaussian"}};
       layer[field] = value;
       CHECK(contains(with("layers", json::array({layer})),
@@ -264,7 +265,7 @@ TEST_CASE("a machine's file that is not whole is refused, and the message names 
     CHECK(contains(with("format_version", 2), "model format 2, this program reads 1"));
     for (const auto& [name, tensor] : whole.tensors)
       for (const float odd : {std::nanf(""), std::numeric_limits<float>::infinity(), -1e38F}) {
-        CAPTURE(name);
+        CAPTURE_BOUND(name);
         // Data may be as large.
         if ((name == "scale.0.mean" || name == "visible_mean") && std::isfinite(odd)) continue;
         Safetensors content = whole;

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "base/capture_bound.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/motion_file.hpp"
 #include "motion/cmu_names.hpp"
@@ -238,7 +239,7 @@ TEST_CASE("rigs of recorded motion: there and back") {
         Recorded{"bvh_zoo/dab.bvh", 0.6, 0.7, 10, 1},
         Recorded{"bvh_zoo/test_freebvh.bvh", 0.1, 0.1, 0.5, 0.5},
         Recorded{"bvh_zoo/walk01.bvh", 1e-3, 1e-3, 1e-3, 1e-3}}) {
-    CAPTURE(file);
+    CAPTURE_BOUND(file);
     if (!test::have_shared_data(file, "rigs of recorded motion")) continue;
     Motion motion = read_motion(test::shared_data() / file);
     if (has_leading_calibration_pose(motion)) motion = without_first_frame(motion);

@@ -1,4 +1,5 @@
 #include "motion/joint_sides.hpp"
+#include "base/capture_bound.hpp"
 
 #include <doctest/doctest.h>
 
@@ -34,7 +35,7 @@ TEST_CASE("joint sides: letters that may mark a side begin or end a word") {
                                                  {"", {}},
                                                  {"balk", {}}};
   for (const auto& [name, others] : cases) {
-    CAPTURE(name);
+    CAPTURE_BOUND(name);
     CHECK(possible_other_sides(name) == others);
   }
 }
@@ -46,7 +47,7 @@ TEST_CASE("joint sides: the other side's name, in the same case") {
       {"arm.L", "arm.R"},         {"arm-l", "arm-r"},    {"L_Finger_1", "R_Finger_1"},
       {"LFoot_end", "RFoot_end"}};
   for (const auto& [left, right] : pairs) {
-    CAPTURE(left);
+    CAPTURE_BOUND(left);
     CHECK(other_side(left) == right);
     CHECK(other_side(right) == left);
   }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/capture_bound.hpp"
 #include "mcdbn/formats/motion_file.hpp"
 #include "shared_data.hpp"
 
@@ -94,7 +95,7 @@ TEST_CASE("mirrored joints whose bones all rest along x are reflected as suits t
   // reflection along y or z.
   for (const auto& [channel, bones] :
        {std::pair(0, Eigen::Vector3d(1, -1, 1)), std::pair(2, Eigen::Vector3d(1, 1, -1))}) {
-    CAPTURE(channel);
+    CAPTURE_BOUND(channel);
     Motion motion = two_armed(false);
     motion.channels.col(motion.skeleton.first_channel(3) + channel).array() += 180.0;
     const auto other = mirrored(motion);

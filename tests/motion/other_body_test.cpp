@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/capture_bound.hpp"
 #include "base/near.hpp"
 #include "motion/body_size.hpp"
 #include "motion/synthetic_motion.hpp"
@@ -84,7 +85,7 @@ TEST_CASE("other body: bones grow as asked, both sides alike, and turn as before
                                       {"LeftFoot", "LeftFoot"},
                                       {"RightFoot", "LeftFoot"},
                                       {"Spine", "Spine"}}) {
-      CAPTURE(name);
+      CAPTURE_BOUND(name);
       const int joint = skeleton.find(name);
       for (const int frame : {0, 19})
         CHECK(bone(others, skeleton, joint, frame) ==

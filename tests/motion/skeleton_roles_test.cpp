@@ -209,7 +209,8 @@ TEST_CASE("skeleton roles: names of programs beside bones of hair, and twisting 
     for (const Bone& bone : bones)
       body.joints.push_back(make_joint(bone.name, body.find(bone.parent), {1, 10, 0}, {}));
     for (const auto& [role, name] : wanted) {
-      CAPTURE(std::string(name_of(role)));
+      const std::string role_name(name_of(role));
+      CAPTURE(role_name);
       CHECK(joint_name(body, role) == name);
     }
   };

@@ -46,9 +46,9 @@ Skeleton arm() {
 
 Eigen::Matrix3d random_rotation(std::mt19937& random) {
   std::normal_distribution<double> normal;
-  return Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
-      .normalized()
-      .toRotationMatrix();
+  // One after the other: arguments would be drawn in an order of the compiler's own.
+  const double z = normal(random), y = normal(random), x = normal(random), w = normal(random);
+  return Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
 }
 
 const std::vector<std::vector<Channel>> kOrders = {

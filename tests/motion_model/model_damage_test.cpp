@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/capture_bound.hpp"
 #include "base/safetensors.hpp"
 #include "base/scratch_folder.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -90,7 +91,7 @@ TEST_CASE("every tensor of a model is needed, in its shape; a missing one is nam
     const File file(device);
     REQUIRE(file.whole().tensors.size() == 35);
     for (const auto& [name, tensor] : file.whole().tensors) {
-      CAPTURE(name);
+      CAPTURE_BOUND(name);
       Safetensors without = file.whole();
       without.tensors.erase(name);
       CHECK(contains(file.complaint(without), file.path() + ": no tensor " + name + " "));
@@ -235,7 +236,7 @@ TEST_CASE("a tensor with a number that is none is refused by its name") {
     const File file(device);
     for (const auto& [name, tensor] : file.whole().tensors)
       for (const float odd : {std::nanf(""), std::numeric_limits<float>::infinity(), -1e38F}) {
-        CAPTURE(name);
+        CAPTURE_BOUND(name);
         // What Gaussian units are on average is in the units of the data.
         const bool of_data = name == "track.0.visible_mean" || name == "pose.0.visible_mean";
         if (of_data && std::isfinite(odd)) continue;

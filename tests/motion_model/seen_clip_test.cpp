@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/capture_bound.hpp"
 #include "camera/keypoint_pairs.hpp"
 #include "camera/keypoint_track.hpp"
 #include "camera/track_columns.hpp"
@@ -247,7 +248,7 @@ TEST_CASE("seen clips: legs that come back with the other's sides get their own"
   CHECK(right.swaps.empty());
   CHECK(scene.asked == 2 + 2 * 3);  // each of three spells both ways
   for (const auto& [first, last] : {std::pair{0, 32}, std::pair{40, 51}, std::pair{59, 89}}) {
-    CAPTURE(first);
+    CAPTURE_BOUND(first);
     Track2d exchanged = track;
     for (int t = first; t <= last; ++t)
       for (const auto& [left, other] : legs.columns) exchange_columns(exchanged, t, left, other);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/capture_bound.hpp"
 #include "device/every_device.hpp"
 #include "features/pose_bones.hpp"
 #include "features/small_figure.hpp"
@@ -74,8 +75,8 @@ TEST_CASE(
   const MatrixF target = random_matrix(kWindows.rows(), figure.dimension(), 72, 0.8F);
   const auto bones = std::ssize(pose_bones(figure.modalities().pose_features));
   for (const auto& [x, y] : {std::pair{1.0, 1.0}, {0.3, 1.0}, {1.0, 0.3}, {0.3, 0.3}}) {
-    CAPTURE(x);
-    CAPTURE(y);
+    CAPTURE_BOUND(x);
+    CAPTURE_BOUND(y);
     const MatrixF predicted = features(figure, x, y);
     const auto loss = [&](const Eigen::VectorXd& flat) {
       const Eigen::Map<const MatrixD> all(flat.data(), predicted.rows(), predicted.cols());

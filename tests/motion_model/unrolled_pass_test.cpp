@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "base/capture_bound.hpp"
 #include "device/every_device.hpp"
 #include "device/pointwise.hpp"
 #include "features/small_figure.hpp"
@@ -209,7 +210,7 @@ TEST_CASE("the unrolled pass predicts what the reference does, frame by frame") 
     UnrolledNetwork network(device, small.on(device), kSteps);
     const IndexBuffer index(device, windows.rows);
     for (const auto& [present, kept, fused] : kVariants) {
-      CAPTURE(fused);
+      CAPTURE_BOUND(fused);
       const MatrixF& frames = present == modality::track ? windows.track : windows.pose;
       const Matrix values = Matrix::from_host(device, frames);
       UnrolledPass pass(network, other(present), kWindows, fused);
@@ -279,8 +280,8 @@ TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
           .count();
   REQUIRE((planted > 0 && planted + 1 < static_cast<int>(kWindows.frames - kWindows.judged_from)));
   for (const auto& [present, kept, fused] : kVariants) {
-    CAPTURE(kept);
-    CAPTURE(fused);
+    CAPTURE_BOUND(kept);
+    CAPTURE_BOUND(fused);
     const auto p = static_cast<int>(present);
     CAPTURE(p);
     const MatrixF& inputs = present == modality::track ? windows.track : windows.pose;
@@ -302,14 +303,14 @@ TEST_CASE("gradients of fine-tuning are the finite differences of its loss") {
       for (reference::Crbm& own : stack) move_to_center(own);
     move_to_center(want.mrbm);
 
-    on_every_device([&, is_fused = fused](Device& device) {
+    on_every_device([&, &present = present, &kept = kept, &fused = fused](Device& device) {
       UnrolledNetwork network(device, small.on(device), kSteps);
       const IndexBuffer index(device, windows.rows);
       const Matrix input = Matrix::from_host(device, inputs),
                    all = Matrix::from_host(device, targets);
       Matrix target(device, kWindows.rows(), all.columns());
       gather(Rows::indexed(all, index, 0, kWindows.rows()), target);
-      UnrolledPass pass(network, other(present), kWindows, is_fused);
+      UnrolledPass pass(network, other(present), kWindows, fused);
       PoseLoss pose_loss(device, figure.modalities(), kWindows, weights);
       SquaredLoss track_loss(device, kWindows, weights.features);
       for (int round = 0; round < 2; ++round) {  // the second shows that nothing is left behind
