@@ -307,6 +307,7 @@ RootPath root_trajectory(const MatrixD& relative_positions, const TrackRays& tra
                          double velocity_error_m_s2) {
   check_shapes(relative_positions, track, velocity);
   std::vector<std::vector<RootObservation>> seen;
+  seen.reserve(static_cast<std::size_t>(track.frames()));
   for (int frame = 0; frame < track.frames(); ++frame)
     seen.push_back(observations_of(relative_positions, track, camera, frame));
   const RootEstimates estimates = estimate_roots(seen);

@@ -82,7 +82,8 @@ std::optional<long long> whole_number(std::string_view digits) {
 struct Time {
   long long second;
   double fraction_s;
-  auto operator<=>(const Time&) const = default;
+  // clang-tidy 14 takes the comparison with 0 behind it for one of pointers.
+  auto operator<=>(const Time&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// The time whose fraction is this group; after `_` all fractions need the same count of digits.
@@ -140,6 +141,7 @@ std::vector<std::optional<long long>> order_of(const std::vector<std::optional<T
   long long next = 0;
   for (auto& [time, number] : order) number = next++;
   std::vector<std::optional<long long>> numbers;
+  numbers.reserve(times.size());
   for (const auto& time : times)
     numbers.push_back(time ? std::optional(order.at(*time)) : std::nullopt);
   return numbers;
@@ -157,6 +159,7 @@ std::vector<std::optional<long long>> frame_numbers(const std::vector<std::strin
   const std::size_t group = most_different_group(split);
   if (const auto times = times_in(split, group); !times.empty()) return order_of(times);
   std::vector<std::optional<long long>> numbers;
+  numbers.reserve(split.size());
   for (const SplitName& name : split)
     numbers.push_back(name.has(group) ? whole_number(name.digits(group)) : std::nullopt);
   return numbers;
