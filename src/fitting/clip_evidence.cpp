@@ -132,28 +132,27 @@ void ClipEvidence::find_planted(const Motion& motion) {
   }
 }
 
-std::vector<double> ClipEvidence::standing_heights(const PosteriorPoint& point,
-                                                   std::size_t foot) const {
+std::optional<double> ClipEvidence::standing_height(const PosteriorPoint& point,
+                                                    const std::vector<std::size_t>& feet) const {
   constexpr double kStands = 0.5;
   const Eigen::Vector3d up = rotation_of(point.lean) * clip.up;
   std::vector<double> heights;
-  for (Eigen::Index t = 0; t < clip.frames(); ++t)
-    if (clip.planted(t, static_cast<Eigen::Index>(foot)) > kStands)
-      heights.push_back(up.dot(place_of(clip, point, t, clip.feet[foot])));
-  return heights;
+  for (const std::size_t f : feet)
+    for (Eigen::Index t = 0; t < clip.frames(); ++t)
+      if (clip.planted(t, static_cast<Eigen::Index>(f)) > kStands)
+        heights.push_back(up.dot(place_of(clip, point, t, clip.feet[f])));
+  if (heights.empty()) return std::nullopt;
+  return upper_median(std::move(heights));
 }
 
 Eigen::VectorXd ClipEvidence::ground(const PosteriorPoint& point) const {
-  std::vector<std::vector<double>> heights(static_cast<std::size_t>(point.ground_m.size()));
-  for (std::size_t f = 0; f < clip.feet.size(); ++f) {
-    auto& of_kind = heights[static_cast<std::size_t>(clip.grounds[f])];
-    const std::vector<double> own = standing_heights(point, f);
-    of_kind.insert(of_kind.end(), own.begin(), own.end());
-  }
+  std::vector<std::vector<std::size_t>> feet(static_cast<std::size_t>(point.ground_m.size()));
+  for (std::size_t f = 0; f < clip.feet.size(); ++f)
+    feet[static_cast<std::size_t>(clip.grounds[f])].push_back(f);
   Eigen::VectorXd ground = point.ground_m;
-  for (std::size_t i = 0; i < heights.size(); ++i)
-    if (!heights[i].empty())
-      ground[static_cast<Eigen::Index>(i)] = upper_median(std::move(heights[i]));
+  for (std::size_t kind = 0; kind < feet.size(); ++kind)
+    if (const auto height = standing_height(point, feet[kind]))
+      ground[static_cast<Eigen::Index>(kind)] = *height;
   return ground;
 }
 
@@ -164,16 +163,14 @@ bool ClipEvidence::is_ankle(std::size_t foot) const {
 
 std::optional<double> ClipEvidence::first_height(const PosteriorPoint& point) const {
   constexpr double kAnkle_m = 0.039 * 1.7;
-  std::vector<double> ankles;
-  for (std::size_t f = 0; f < clip.feet.size(); ++f) {
-    if (!is_ankle(f)) continue;
-    const std::vector<double> own = standing_heights(point, f);
-    ankles.insert(ankles.end(), own.begin(), own.end());
-  }
-  if (ankles.empty()) return std::nullopt;
+  std::vector<std::size_t> ankles;
+  for (std::size_t f = 0; f < clip.feet.size(); ++f)
+    if (is_ankle(f)) ankles.push_back(f);
+  const std::optional<double> ankle_m = standing_height(point, ankles);
+  if (!ankle_m) return std::nullopt;
   const Eigen::Vector3d up = rotation_of(point.lean) * clip.up;
   const double root_m = up.dot((clip.root.row(0) + point.shift.row(0)).transpose());
-  return units_per_m_ * (body(point).scale * (root_m - upper_median(std::move(ankles))) + kAnkle_m);
+  return units_per_m_ * (body(point).scale * (root_m - *ankle_m) + kAnkle_m);
 }
 
 ExpectedLean ClipEvidence::balanced(const Stance& stance, const TrackFitSettings& settings) const {

@@ -67,8 +67,10 @@ class ClipEvidence {
   double usual_speed_m_s() const;
 
  private:
-  /// Of a foot joint in the frames where it stands, metres above the camera.
-  std::vector<double> standing_heights(const PosteriorPoint& point, std::size_t foot) const;
+  /// The middle height of those of some of clip.feet that stand, metres above the camera; unset
+  /// where none does.
+  std::optional<double> standing_height(const PosteriorPoint& point,
+                                        const std::vector<std::size_t>& feet) const;
   bool is_ankle(std::size_t foot) const;
 
   Skeleton skeleton_;

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "base/capture_bound.hpp"
 #include "base/text_file.hpp"
 
 namespace random_streams_test {
@@ -47,9 +48,8 @@ TEST_CASE("random streams: no two are the same") {
     }
   };
   for (std::size_t cdbn = 0; cdbn < kMostModalities; ++cdbn) take(layers_of(cdbn), kCdbnLayers);
-  for (const auto& named : streams) {
-    CAPTURE(named.first);
-    const int stream = named.second;
+  for (const auto& [name, stream] : streams) {
+    CAPTURE_BOUND(name);
     take(stream, stream == kPerceptron || stream == kAutoencoder ? kFurther : 1);
   }
 }

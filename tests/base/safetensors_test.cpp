@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/capture_bound.hpp"
 #include "base/random_matrix.hpp"
 #include "base/scratch_folder.hpp"
 #include "base/text_file.hpp"
@@ -55,10 +56,8 @@ std::size_t files_in(const std::filesystem::path& folder) {
 void check_same(const Safetensors& got, const Safetensors& want) {
   CHECK(got.metadata == want.metadata);
   REQUIRE(got.tensors.size() == want.tensors.size());
-  for (const auto& named : want.tensors) {
-    const std::string& name = named.first;
-    const auto& tensor = named.second;
-    CAPTURE(name);
+  for (const auto& [name, tensor] : want.tensors) {
+    CAPTURE_BOUND(name);
     REQUIRE(got.tensors.count(name) == 1);
     CHECK(got.tensors.at(name).shape == tensor.shape);
     CHECK(bytes_of(got.tensors.at(name).values) == bytes_of(tensor.values));
@@ -110,10 +109,8 @@ TEST_CASE("the file is laid out as the format specifies") {
   const std::string data = bytes.substr(8 + length);
   CHECK(data.size() == 11 * sizeof(float));
   std::size_t end_of_last = 0;
-  for (const auto& named : content.tensors) {
-    const std::string& name = named.first;
-    const auto& tensor = named.second;
-    CAPTURE(name);
+  for (const auto& [name, tensor] : content.tensors) {
+    CAPTURE_BOUND(name);
     const json& entry = header.at(name);
     CHECK(entry.at("dtype") == "F32");
     CHECK(entry.at("shape") == json(tensor.shape));

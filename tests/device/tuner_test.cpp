@@ -116,35 +116,10 @@ TEST_CASE("tuner: products choose the parameters of products, mini-batches all o
                        {.products_s = likes(false), .minibatches_s = likes(true)}) == usual);
 }
 
-TEST_CASE("tuner: what was found is set on the device and stored for the next time") {
-  const ScratchFolder folder;
-  const ScopedVariable cache("XDG_CACHE_HOME", (folder / "cache").string());
-  on_every_device([](Device& device) {
-    const Tuning usual = device.tuning();
-    // From where the measured units lead, not from the default.
-    const Tuning start = for_units_of_8_floats(default_tuning(device.info()));
-    const auto candidates = tuning_candidates(device.info(), start);
-    const Tuning& favourite = candidates.back();
-    const TunedWork work = all_by([&](const Tuning& tuning) {
-      CHECK(device.tuning() == tuning);  // the work is measured with it
-      return tuning == favourite ? 1.0 : 2.0;
-    });
-    CHECK(tune(device, start, work, 0.0));
-    Tuning found = device.tuning();
-    CHECK(load_tuning(device.info()) == found);
-    constexpr std::int64_t k256 = 256 * 256 * 256;
-    CHECK((found.clblast_from == 0 || found.clblast_from == k256 ||
-           found.clblast_from == 8 * k256 || found.clblast_from == 64 * k256));
-    found.clblast_from = favourite.clblast_from;
-    CHECK(found == favourite);
-    device.set_tuning(usual);
-  });
-}
-
 TEST_CASE("tuner: where the cache cannot be written it says so; the device is tuned all the same") {
-  const ScratchFolder folder;
-  const ScopedVariable cache("XDG_CACHE_HOME", folder.write("file", "").string());
   on_every_device([](Device& device) {
+    const ScratchFolder folder;
+    const ScopedVariable cache("XDG_CACHE_HOME", folder.write("file", "").string());
     const Tuning usual = device.tuning(), start = default_tuning(device.info());
     const Tuning favourite = tuning_candidates(device.info(), start).back();
     const TunedTime time_s = [&](const Tuning& tuning) { return tuning == favourite ? 1.0 : 2.0; };

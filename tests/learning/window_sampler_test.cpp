@@ -1,10 +1,11 @@
 #include "learning/window_sampler.hpp"
-#include "base/capture_bound.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <set>
+
+#include "base/capture_bound.hpp"
 
 namespace window_sampler_test {
 

@@ -1,7 +1,8 @@
 #include "motion/joint_sides.hpp"
-#include "base/capture_bound.hpp"
 
 #include <doctest/doctest.h>
+
+#include "base/capture_bound.hpp"
 
 using namespace mcdbn;
 
