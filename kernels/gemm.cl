@@ -57,7 +57,7 @@ INLINE void add_rows(floatN sum[TILE_ROWS][COLUMNS], const int first, const int 
   for (int i = 0; i < k; ++i) {
     floatN b_row[COLUMNS];
 #pragma unroll
-    for (int c = 0; c < count; ++c) b_row[c] = loadN(i * ldb + c * VEC, b);
+    for (int c = 0; c < count; ++c) b_row[c] = loadToTileN(i * ldb + c * VEC, b);
 #pragma unroll
     for (int r = 0; r < TILE_ROWS; ++r) {
       const floatN value = (floatN)(a[a_row[r] + i]);
@@ -76,7 +76,7 @@ INLINE void add_outer_rows(floatN sum[TILE_ROWS][COLUMNS], const int first, cons
   for (int i = 0; i < k; ++i) {
     floatN b_row[COLUMNS];
 #pragma unroll
-    for (int c = 0; c < count; ++c) b_row[c] = loadN(i * ldb + c * VEC, b);
+    for (int c = 0; c < count; ++c) b_row[c] = loadToTileN(i * ldb + c * VEC, b);
     const int at = A_ROW(i) + row0;
 #pragma unroll
     for (int r = 0; r < TILE_ROWS; ++r) {
