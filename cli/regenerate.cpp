@@ -128,11 +128,11 @@ std::string shows_angles(const Modalities& modalities, const ClipPlacement& plac
 }
 
 /// Warns what is assumed of a camera without calibration, and where the film may be stored turned.
-/// @param track with keypoints
-void report_unknown_camera(const std::string& name, const Track2d& track,
+/// @param track with keypoints  @param axes_are_unnamed as in TrackReading
+void report_unknown_camera(const std::string& name, const Track2d& track, bool axes_are_unnamed,
                            const Modalities& modalities, const ClipPlacement& placement,
                            const Camera& assumed) {
-  if (!placement.view.roll_deg) report_turned(name, track);
+  if (!placement.view.roll_deg) report_turned(name, track, axes_are_unnamed);
   report_assumed(assumed, shows_angles(modalities, placement, track));
 }
 
@@ -186,7 +186,8 @@ void regenerate_poses(const Model& model, const RegenerateOptions& options,
     report_findings(name, track, read.frame_numbers, findings);
     report_sliding_feet(name, track, motions.front());
     if (!placement.camera) {
-      report_unknown_camera(name, track, model.modalities, placement, findings.camera);
+      report_unknown_camera(name, track, read.axes_are_unnamed, model.modalities, placement,
+                            findings.camera);
       placement.camera = findings.camera;  // all others stand in the first one's world
     }
     write_person(options, person, people.size(), motions, findings);

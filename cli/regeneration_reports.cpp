@@ -35,15 +35,18 @@ void report_first_frame(const std::filesystem::path& file, const std::vector<lon
       file.string(), numbers.front(), numbers.front(), numbers.front() - 1);
 }
 
-void report_turned(const std::string& name, const Track2d& track) {
+void report_turned(const std::string& name, const Track2d& track, bool axes_are_unnamed) {
   const std::optional<int> roll_deg = quarter_roll_deg(track);
   if (!roll_deg) return;
   const bool upside_down = *roll_deg == 180;
   spdlog::warn(
-      "{}: in most frames the body {}: set --camera-roll {} if the film is stored turned, or "
+      "{}: in most frames the body {}: {}set --camera-roll {} if the film is stored turned, or "
       "--camera-roll 0 if the person {}",
-      name, upside_down ? "is upside down in the image" : "lies across the image", *roll_deg,
-      upside_down ? "stands on the hands" : "lies there");
+      name, upside_down ? "is upside down in the image" : "lies across the image",
+      axes_are_unnamed && !upside_down
+          ? "exchange x and y in the file if it has y first, as MoveNet's arrays do; "
+          : "",
+      *roll_deg, upside_down ? "stands on the hands" : "lies there");
 }
 
 void report_assumed(const Camera& camera, const std::string& found_from) {

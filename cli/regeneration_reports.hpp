@@ -17,7 +17,8 @@ void report_first_frame(const std::filesystem::path& file, const std::vector<lon
 
 /// Warns where the body lies across the image or is upside down: the film may be stored turned.
 /// @param name of the track, for messages  @param track with keypoints
-void report_turned(const std::string& name, const Track2d& track);
+/// @param axes_are_unnamed as in TrackReading: if so, y may come before x
+void report_turned(const std::string& name, const Track2d& track, bool axes_are_unnamed);
 
 /// Warns what is assumed of a camera without calibration.
 /// @param found_from what showed its pitch or roll; empty: neither was estimated from the clip

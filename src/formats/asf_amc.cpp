@@ -130,6 +130,10 @@ class AmcParser {
 
 }  // namespace
 
+Skeleton parse_asf_skeleton(std::string_view asf, const std::string& name) {
+  return skeleton_of(parse_asf(asf, name));
+}
+
 Motion parse_asf_amc(std::string_view asf, const std::string& asf_name, std::string_view amc,
                      const std::string& amc_name, std::vector<std::string>* warnings) {
   const AsfSkeleton skeleton = parse_asf(asf, asf_name);

@@ -20,4 +20,7 @@ namespace mcdbn {
 Motion parse_asf_amc(std::string_view asf, const std::string& asf_name, std::string_view amc,
                      const std::string& amc_name, std::vector<std::string>* warnings);
 
+/// The joints that parse_asf_amc() makes of an ASF. @throws InputError `name:line: what`
+Skeleton parse_asf_skeleton(std::string_view asf, const std::string& name);
+
 }  // namespace mcdbn

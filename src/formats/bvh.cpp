@@ -8,6 +8,7 @@
 
 #include "base/interruption.hpp"
 #include "base/text_file.hpp"
+#include "formats/bvh_header.hpp"
 #include "formats/bvh_parser.hpp"
 #include "mcdbn/motion/frame_rate.hpp"
 
@@ -108,6 +109,12 @@ Motion parse_bvh(std::string_view text, const std::string& name,
   motion.frame_time_s = header.frame_time_s;
   motion.channels = FrameReader(cursor, header.frames, channels).read();
   return motion;
+}
+
+Skeleton read_bvh_skeleton(const std::filesystem::path& path) {
+  const std::string text = read_text_file(path);
+  Cursor cursor(text, path.string(), nullptr);
+  return bvh::parse_hierarchy(cursor, true);
 }
 
 Motion read_bvh(const std::filesystem::path& path, std::vector<std::string>* warnings) {

@@ -21,9 +21,10 @@ std::string without_ending(const std::string& name) {
   return ending ? name.substr(0, dot) : name;
 }
 
-std::vector<std::string> names_under(const JsonPlace& list, const std::string& key) {
+std::vector<std::string> names_under(const std::vector<JsonPlace>& entries,
+                                     const std::string& key) {
   std::set<std::string> names;
-  for (const JsonPlace& entry : list.list())
+  for (const JsonPlace& entry : entries)
     if (entry.has(key.c_str()) && entry[key].value().is_string()) names.insert(entry[key].text());
   return {names.begin(), names.end()};
 }
@@ -38,8 +39,8 @@ ImageNumbers::ImageNumbers(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size(); ++i) numbers_[names[i]] = numbers[i];
 }
 
-ImageNumbers::ImageNumbers(const JsonPlace& list, const std::string& key)
-    : ImageNumbers(names_under(list, key)) {}
+ImageNumbers::ImageNumbers(const std::vector<JsonPlace>& entries, const std::string& key)
+    : ImageNumbers(names_under(entries, key)) {}
 
 long long ImageNumbers::of(const JsonPlace& place, const std::string& name) const {
   const auto number = numbers_.find(name);

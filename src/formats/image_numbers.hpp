@@ -14,8 +14,8 @@ namespace mcdbn {
 class ImageNumbers {
  public:
   explicit ImageNumbers(const std::vector<std::string>& names);
-  /// The names under a key of the entries of a list; entries with numbers there need none.
-  ImageNumbers(const JsonPlace& list, const std::string& key);
+  /// The names under a key of entries; entries with numbers there need none.
+  ImageNumbers(const std::vector<JsonPlace>& entries, const std::string& key);
 
   /// @param place for messages  @throws InputError if the name has no number
   long long of(const JsonPlace& place, const std::string& name) const;

@@ -9,7 +9,8 @@
 
 namespace mcdbn {
 
-bool are_shares(const std::vector<std::vector<SeenPerson>>& frames, const std::string& file) {
+bool are_shares(const std::vector<std::vector<SeenPerson>>& frames, bool depths,
+                const std::string& file) {
   // World landmarks have the hips at the origin and y down: the head is half a metre above it, and
   // one hip is always left of it, also of a body seen from its side. No picture of use shows a body
   // that much above the image, and some of it left of it as well.
@@ -27,6 +28,8 @@ bool are_shares(const std::vector<std::vector<SeenPerson>>& frames, const std::s
         fmt::format("{}: its coordinates lie about 0: a body in space (world landmarks, metres), "
                     "not places in an image",
                     file));
+  // The second of three coordinates may be a depth: what lies above 0 is then no head.
+  if (depths) require_image_places(frames, depths, file);
   return true;
 }
 

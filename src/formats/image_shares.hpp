@@ -12,14 +12,15 @@ inline constexpr double kLargestShare = 3.0;
 
 /// Whether coordinates are shares of the image's width and height, not pixels: those of more than
 /// half of all joints are at most kLargestShare. Single joints may be guessed anywhere outside.
-/// @param frames people of each frame  @param file for messages
+/// @param frames people of each frame  @param depths as below  @param file for messages
 /// @throws InputError if they are neither, but those of a body in space about the origin
-bool are_shares(const std::vector<std::vector<SeenPerson>>& frames, const std::string& file);
+bool are_shares(const std::vector<std::vector<SeenPerson>>& frames, bool depths,
+                const std::string& file);
 
-/// Refuses points in space whose unit is small, as FreeMoCap's millimetres: more of them lie left
-/// of or above the image than a detector guesses there of people who are partly in the picture.
-/// @param frames whose coordinates are no shares  @param depths whether joints have a third
-///        coordinate and no confidence, as points in space have
+/// Refuses points in space, as FreeMoCap's millimetres and the metres of MMPose's bodies: more of
+/// them lie left of or above the image than a detector guesses there of people who are partly in
+/// the picture.
+/// @param depths whether joints have a third coordinate (SeenPeople::has_depths_only)
 /// @throws InputError
 void require_image_places(const std::vector<std::vector<SeenPerson>>& frames, bool depths,
                           const std::string& file);

@@ -27,6 +27,7 @@ const std::vector<CountedSets>& counted_sets() {
       {26, {"HALPE_26"}},
       {33, {"MEDIAPIPE_33"}},
       {133, {"COCO_23"}, "COCO-WholeBody"},
+      {134, {"COCO_18"}, "COCO-WholeBody in OpenPose's order"},
       {135, {"BODY_25B"}, "OpenPose's BODY_135"},
       {136, {"HALPE_26"}, "Halpe-136"},
   };
@@ -159,15 +160,18 @@ SeenPerson person_in_json(const JsonPlace& keypoints) {
 
 SeenPerson person_in_json(const JsonPlace& keypoints, const JsonPlace& scores) {
   SeenPerson person;
-  const std::vector<double> confidence = scores.numbers();
-  for (const JsonPlace& joint : keypoints.list()) {
-    const std::vector<double> numbers = point_of(joint);
+  person.confidence = scores.numbers();
+  const std::vector<JsonPlace> joints = keypoints.list();
+  if (person.confidence.size() != joints.size())
+    scores.fail(fmt::format("{} scores of {} joints", person.confidence.size(), joints.size()));
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const std::vector<double> numbers = point_of(joints[i]);
     person.x_px.push_back(numbers[0]);
     person.y_px.push_back(numbers[1]);
+    // Some write the score, or another share, behind x and y, too.
+    if (numbers.size() > 2 && numbers[2] != person.confidence[i])
+      person.has_depths = person.has_depths || numbers[2] < 0 || numbers[2] > 1;
   }
-  if (confidence.size() != person.x_px.size())
-    scores.fail(fmt::format("{} scores of {} joints", confidence.size(), person.x_px.size()));
-  person.confidence = confidence;
   mark_missing(person);
   return person;
 }

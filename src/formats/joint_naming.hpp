@@ -23,7 +23,7 @@ bool is_joint_count(std::size_t joints);
 
 /// Names the joints. Where the file gives as many names as joints, those; else the joint
 /// set of that count, of several the usual one, with all of them as SeenPeople::possible_sets
-/// (BODY_25 and BODY_25B have the same count). Faces and hands behind a body's joints (133, 135,
+/// (BODY_25 and BODY_25B have the same count). Faces and hands behind a body's joints (133 to
 /// 136) are left out, with a notice, also where the file names them. Other counts become joint_0,
 /// joint_1 … without roles, with a notice.
 /// @throws InputError if the counts differ or are above kMostJoints; NoPersonSeen

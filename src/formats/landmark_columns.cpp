@@ -4,10 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
+#include "base/numbers.hpp"
 #include "base/shown.hpp"
 #include "formats/csv_table.hpp"
+#include "formats/csv_text.hpp"
+#include "formats/field_names.hpp"
+#include "formats/frame_times.hpp"
 #include "formats/landmarks.hpp"
+#include "formats/rate_and_size.hpp"
 
 namespace mcdbn {
 namespace {
@@ -19,10 +25,7 @@ std::optional<Quantity> quantity_of(std::string_view word) {
   if (name == "x") return Quantity::x;
   if (name == "y") return Quantity::y;
   if (name == "z") return Quantity::depth;
-  for (const char* known : {"visibility", "vis", "v", "confidence", "conf", "c", "score", "s",
-                            "likelihood", "presence", "p"})
-    if (name == known) return Quantity::confidence;
-  return {};
+  return is_confidence_name(name) ? std::optional(Quantity::confidence) : std::nullopt;
 }
 
 struct Column {
@@ -53,14 +56,6 @@ std::optional<Column> column_of(std::string_view name) {
   return {};
 }
 
-bool is_frame_column(std::string_view name) {
-  const std::string known = lower(name);
-  for (const char* frame :
-       {"frame", "frame_idx", "frame_id", "frame_number", "frame_no", "frame_index", "frames"})
-    if (known == frame) return true;
-  return false;
-}
-
 struct JointColumns {
   std::optional<std::size_t> x, y, depth, confidence;
 
@@ -84,7 +79,9 @@ class ColumnsReader {
 
   SeenPeople read() {
     read_header();
-    for (std::size_t i = 1; i < table_.lines().size(); ++i) read_frame(table_.lines()[i]);
+    take_rate_and_size(table_, people_);
+    const std::vector<long long> numbers = numbers_of_rows();
+    for (std::size_t i = 0; i < numbers.size(); ++i) read_frame(table_.lines()[i + 1], numbers[i]);
     name_landmarks(people_, file_, names_);
     return std::move(people_);
   }
@@ -93,7 +90,8 @@ class ColumnsReader {
   void read_header() {
     const CsvTable::Line& header = table_.header();
     for (std::size_t k = 0; k < header.cells.size(); ++k) {
-      if (is_frame_column(header.cells[k])) frame_ = k;
+      if (is_frame_name(header.cells[k])) frame_ = k;
+      if (!time_ && time_name(header.cells[k])) time_ = k;
       if (!person_ && is_person_column(header.cells[k])) person_ = k;
       const auto column = column_of(header.cells[k]);
       if (!column) continue;
@@ -102,6 +100,7 @@ class ColumnsReader {
       if (!place) place = k;
     }
     drop_incomplete();
+    drop_world();
     if (joints_.empty()) table_.fail(header, "no landmarks: columns NAME_x and NAME_y");
     people_.has_depths_only = std::ranges::all_of(
         joints_, [](const JointColumns& joint) { return joint.depth && !joint.confidence; });
@@ -123,15 +122,55 @@ class ColumnsReader {
 
   /// Columns that only look like a landmark's: a score of the whole body.
   void drop_incomplete() {
-    for (std::size_t i = joints_.size(); i-- > 0;) {
-      if (joints_[i].x && joints_[i].y) continue;
-      joints_.erase(joints_.begin() + static_cast<std::ptrdiff_t>(i));
-      names_.erase(names_.begin() + static_cast<std::ptrdiff_t>(i));
-    }
+    for (std::size_t i = joints_.size(); i-- > 0;)
+      if (!joints_[i].x || !joints_[i].y) drop(i);
   }
 
-  void read_frame(const CsvTable::Line& line) {
-    table_.require_cells(line, table_.header().cells.size());
+  /// MediaPipe gives places in space beside those in the image.
+  void drop_world() {
+    const auto is_of_world = [](const std::string& name) {
+      return lower(name).find("world") != std::string::npos;
+    };
+    if (std::ranges::all_of(names_, is_of_world)) return;
+    for (std::size_t i = joints_.size(); i-- > 0;)
+      if (is_of_world(names_[i])) drop(i);
+  }
+
+  void drop(std::size_t joint) {
+    joints_.erase(joints_.begin() + static_cast<std::ptrdiff_t>(joint));
+    names_.erase(names_.begin() + static_cast<std::ptrdiff_t>(joint));
+  }
+
+  long long frame_in(const CsvTable::Line& line) const {
+    const double given = table_.number_in(line, *frame_);
+    if (!(std::abs(given) < 1e15) || given != std::floor(given))
+      table_.fail(line, fmt::format("{} is no number of a frame", shown(line.cells[*frame_])));
+    return static_cast<long long>(given);
+  }
+
+  /// The frames' numbers as the table gives them, else by their times, else one after the other.
+  /// The times become the people's. [rows]
+  std::vector<long long> numbers_of_rows() {
+    std::vector<long long> numbers;
+    std::vector<double> times;
+    std::vector<std::string> people;
+    for (std::size_t i = 1; i < table_.lines().size(); ++i) {
+      const CsvTable::Line& line = table_.lines()[i];
+      table_.require_cells(line, table_.header().cells.size());
+      if (frame_) numbers.push_back(frame_in(line));
+      if (time_) times.push_back(number(line.cells[*time_]).value_or(kNan));
+      people.emplace_back(person_ ? line.cells[*person_] : "");
+    }
+    if (numbers.empty() && do_rise(times, people)) numbers = frames_by_times(times);
+    if (numbers.empty()) {
+      numbers.resize(people.size());
+      std::iota(numbers.begin(), numbers.end(), 0LL);
+    }
+    if (time_) take_times(people_, table_.header().cells[*time_], numbers, times);
+    return numbers;
+  }
+
+  void read_frame(const CsvTable::Line& line, long long number) {
     SeenPerson person;
     for (const JointColumns& joint : joints_) {
       person.x_px.push_back(table_.number_in(line, *joint.x));
@@ -140,23 +179,15 @@ class ColumnsReader {
     }
     mark_missing(person);
     if (person_ && !line.cells[*person_].empty())
-      person.id = tracks_.emplace(line.cells[*person_], tracks_.size()).first->second;
-    auto number = static_cast<long long>(people_.frames.size());
-    if (frame_) {
-      const double given = table_.number_in(line, *frame_);
-      if (!(std::abs(given) < 1e15) || given != std::floor(given))
-        table_.fail(line, fmt::format("{} is no number of a frame", shown(line.cells[*frame_])));
-      number = static_cast<long long>(given);
-    }
+      person.id = people_.id_of_track(line.cells[*person_]);
     people_.frames[number].push_back(std::move(person));
   }
 
   CsvTable table_;
   std::string file_;
-  std::optional<std::size_t> frame_, person_;
+  std::optional<std::size_t> frame_, time_, person_;
   std::vector<std::string> names_;
   std::vector<JointColumns> joints_;
-  std::map<std::string_view, long long> tracks_;  ///< the people's numbers, by how they are called
   SeenPeople people_;
 };
 

@@ -6,24 +6,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
+#include "base/numbers.hpp"
+#include "formats/csv_text.hpp"
+#include "formats/field_names.hpp"
 #include "formats/frame_numbers.hpp"
+#include "formats/frame_times.hpp"
 #include "formats/landmarks.hpp"
-#include "mcdbn/camera/camera.hpp"
-#include "mcdbn/motion/frame_rate.hpp"
+#include "formats/rate_and_size.hpp"
 
 namespace mcdbn {
 namespace {
 
 constexpr std::array kBodyKeys{"landmarks", "pose_landmarks", "poseLandmarks", "landmark",
                                "keypoints", "joints",         "pose",          "poses",
-                               "bodies",    "people",         "detections"};
+                               "bodies",    "people",         "persons",       "detections"};
 constexpr int kDepth = 6;  // lists in lists down to a body
-constexpr std::array kFrameKeys{"frame", "frame_id", "frame_idx", "frame_number", "frameNumber"};
-constexpr std::array kConfidenceKeys{"visibility", "score", "confidence", "presence", "v"};
+constexpr std::array kWorldKeys{"pose_world_landmarks", "poseWorldLandmarks", "world_landmarks",
+                                "worldLandmarks"};
 constexpr std::array kScoresKeys{"keypoint_scores", "scores"};  // of all landmarks of a body
 constexpr std::array kNameKeys{"name", "part"};
 constexpr std::array kPersonKeys{"track_id", "trackId", "person_id", "personId"};
@@ -73,6 +75,23 @@ std::optional<long long> person_number(const JsonPlace& place, bool of_frame) {
   return id->whole_number();
 }
 
+/// Whether a list has a number for each landmark of a body, or of each of a list of bodies.
+bool are_confidences_of(const JsonPlace& list, const JsonPlace& bodies) {
+  if (!list.is_list() || list.size() != bodies.size()) return false;
+  if (is_body(bodies)) return list.at(0).value().is_number() || list.at(0).value().is_null();
+  for (std::size_t i = 0; bodies.is_list() && i < bodies.size(); ++i)
+    if (bodies.at(i).size() > 0) return are_confidences_of(list.at(i), bodies.at(i));
+  return false;
+}
+
+/// The confidences of bodies that stand beside them, nested as they are.
+std::optional<JsonPlace> confidences_beside(const JsonPlace& place, const JsonPlace& bodies) {
+  for (const std::string& key : place.keys())
+    if (is_confidence_list_name(key) && are_confidences_of(place[key], bodies)) return place[key];
+  // Scores of another count are the file's fault; other lists may be of something else.
+  return any_of_keys(place, kScoresKeys);
+}
+
 struct LandmarkBody {
   SeenPerson person;
   /// [landmarks] The number behind x and y, a confidence or a depth, 1 where it is null; -1: no
@@ -85,7 +104,7 @@ class LandmarkReader {
   explicit LandmarkReader(std::string file) : file_(std::move(file)) {}
 
   SeenPeople read(const JsonPlace& content) {
-    read_film(content);
+    take_rate_and_size(content, people_);
     add_all(content);
     take_bodies();
     name_landmarks(people_, file_, names_);
@@ -93,22 +112,6 @@ class LandmarkReader {
   }
 
  private:
-  /// An object's values beside its frames.
-  void read_film(const JsonPlace& content) {
-    const auto number = [&](const auto& keys, const Range& range) -> std::optional<double> {
-      const auto found = any_of_keys(content, keys);
-      if (!found || !found->value().is_number()) return {};
-      if (!range.contains(found->number())) found->fail("must be " + range.text());
-      return found->number();
-    };
-    people_.fps = number(std::array{"fps", "frame_rate", "frameRate"}, kFrameRate_hz);
-    const auto width = number(std::array{"width", "image_width", "imageWidth"}, Camera::kImage_px);
-    const auto height =
-        number(std::array{"height", "image_height", "imageHeight"}, Camera::kImage_px);
-    if (width && height)
-      people_.image_size = ImageSize{static_cast<int>(*width), static_cast<int>(*height)};
-  }
-
   void add_all(const JsonPlace& content) {
     if (content.is_object() && content.has("frames")) return add_list_or_keys(content["frames"]);
     add_list_or_keys(content);
@@ -117,20 +120,41 @@ class LandmarkReader {
   void add_list_or_keys(const JsonPlace& content) {
     if (is_body(content)) return add_frame(content, 0);
     if (content.is_list()) {
-      long long next = 0;
-      for (const JsonPlace& frame : content.list()) {
-        const auto found = any_of_keys(frame, kFrameKeys);
-        const long long number = found && found->value().is_number() ? found->whole_number() : next;
-        add_frame(frame, number);
-        next = number + 1;
-      }
+      const std::vector<long long> numbers = numbers_of_frames(content, people_);
+      for (std::size_t i = 0; i < numbers.size(); ++i) add_frame(content.at(i), numbers[i]);
       return;
     }
-    if (any_of_keys(content, kBodyKeys)) return add_frame(content, 0);
-    const std::vector<std::string> keys = content.keys();  // with the numbers of frames
-    const auto numbers = frame_numbers(keys);
+    if (any_of_keys(content, kBodyKeys) || any_of_keys(content, kWorldKeys))
+      return add_frame(content, 0);
+    const std::vector<std::string> keys = content.keys();
+    const auto numbers = numbers_of_keys(keys);
     for (std::size_t i = 0; i < keys.size(); ++i)
       if (numbers[i]) add_frame(content[keys[i]], *numbers[i]);
+  }
+
+  /// The frames whose numbers or times the keys are.
+  /// @return [keys]; none where a key is of no frame
+  std::vector<std::optional<long long>> numbers_of_keys(const std::vector<std::string>& keys) {
+    auto numbers = frame_numbers(keys);
+    if (!are_times(keys)) return numbers;
+    std::vector<double> times(keys.size(), kNan);  // in their order, as the numbers are
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      if (!numbers[i]) continue;
+      times[static_cast<std::size_t>(*numbers[i])] = number(keys[i]).value_or(kNan);
+      ++count;
+    }
+    times.resize(count);
+    const std::vector<long long> frames = frames_by_times(times);
+    if (frames.empty()) {
+      people_.notices.emplace_back(
+          "its frames are named by time: they are taken one after the other");
+      return numbers;
+    }
+    take_times(people_, "time", frames, times);
+    for (auto& place : numbers)
+      if (place) place = frames[static_cast<std::size_t>(*place)];
+    return numbers;
   }
 
   void add_frame(const JsonPlace& frame, long long number) {
@@ -142,7 +166,8 @@ class LandmarkReader {
   /// A body, or a list of them, or an object around either. Nothing: no person was found.
   /// @param scores confidences beside them, nested as they are
   void add_bodies(const JsonPlace& place, std::vector<LandmarkBody>& bodies, int depth = 0,
-                  const std::optional<JsonPlace>& scores = {}) {
+                  std::optional<JsonPlace> scores = {}) {
+    if (scores && !scores->is_list()) scores.reset();  // of a body as a whole
     if (depth > kDepth) place.fail("no landmarks down to here");
     if (place.value().is_null() || place.size() == 0) return;
     if (is_body(place)) {
@@ -156,10 +181,13 @@ class LandmarkReader {
       if (place.has("channels") && place.has("joints"))
         place.fail("points in space, as regenerate --follow writes them, not a 2D track");
       const auto inside = any_of_keys(place, kBodyKeys);
-      auto beside = any_of_keys(place, kScoresKeys);
-      if (beside && !beside->is_list()) beside.reset();  // of the body as a whole
       const std::size_t before = bodies.size();
-      if (inside) add_bodies(*inside, bodies, depth + 1, beside);
+      if (inside)
+        add_bodies(*inside, bodies, depth + 1, confidences_beside(place, *inside));
+      else if (const auto world = any_of_keys(place, kWorldKeys); world && world->size() > 0)
+        world->fail(
+            "points in space (world landmarks, metres), not places in an image: save the image's "
+            "landmarks, 'landmarks' or 'pose_landmarks'");
       if (const auto person = person_number(place, depth == 0);
           person && bodies.size() == before + 1)
         bodies.back().person.id = person;
@@ -169,6 +197,7 @@ class LandmarkReader {
   }
 
   LandmarkBody body_of(const JsonPlace& place) {
+    if (place.is_list() && place.at(0).is_list()) people_.axes_are_unnamed = true;
     LandmarkBody body;
     std::vector<std::string> names;
     if (place.is_list()) {
@@ -200,6 +229,11 @@ class LandmarkReader {
   /// The confidence of a landmark of which it is not known.
   static double one_if_null(double confidence) { return std::isnan(confidence) ? 1.0 : confidence; }
 
+  /// `visible` may be true or false.
+  static double confidence_of(const JsonPlace& place) {
+    return place.value().is_boolean() ? (place.truth() ? 1.0 : 0.0) : place.number();
+  }
+
   static void add_landmark(const JsonPlace& place, LandmarkBody& body) {
     SeenPerson& person = body.person;
     if (place.is_list()) {
@@ -214,8 +248,8 @@ class LandmarkReader {
     const JsonPlace at = place.has("position") ? place["position"] : place;
     person.x_px.push_back(at["x"].number());
     person.y_px.push_back(at["y"].number());
-    const auto confidence = any_of_keys(place, kConfidenceKeys);
-    person.confidence.push_back(confidence ? confidence->number() : 1.0);
+    const auto confidence = any_of_keys(place, kConfidenceNames);
+    person.confidence.push_back(confidence ? confidence_of(*confidence) : 1.0);
     body.thirds.push_back(-1);
   }
 
@@ -260,6 +294,7 @@ bool holds_body(const JsonPlace& place, int depth = 0) {
   if (!place.is_object()) return false;
   if (place.has("frames")) return holds_body(place["frames"], depth + 1);
   if (const auto inside = any_of_keys(place, kBodyKeys)) return holds_body(*inside, depth + 1);
+  if (const auto world = any_of_keys(place, kWorldKeys)) return holds_body(*world, depth + 1);
   return depth == 0 && std::ranges::any_of(place.keys(), [&](const std::string& key) {
            return frame_numbers({key}).front() && holds_body(place[key], depth + 1);
          });

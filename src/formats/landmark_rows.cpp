@@ -12,14 +12,20 @@
 #include "base/shown.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/csv_text.hpp"
+#include "formats/field_names.hpp"
+#include "formats/frame_times.hpp"
 #include "formats/joint_naming.hpp"
 #include "formats/landmarks.hpp"
+#include "formats/rate_and_size.hpp"
 
 namespace mcdbn {
 namespace {
 
 struct Header {
-  std::optional<std::size_t> frame, landmark, x, y, z, confidence, person, model, id;
+  std::optional<std::size_t> frame, time, landmark, x, y, z, confidence, person, model, id;
+
+  /// The column that tells frames apart.
+  const std::optional<std::size_t>& frame_or_time() const { return frame ? frame : time; }
 };
 
 Header header_of(const CsvTable::Line& line) {
@@ -32,16 +38,15 @@ Header header_of(const CsvTable::Line& line) {
     const auto take = [&](std::optional<std::size_t>& place) {
       if (!place) place = k;
     };
-    if (is({"frame", "frameidx", "frameid", "framenumber", "frameno", "frameindex"}))
-      take(header.frame);
+    if (is_frame_name(line.cells[k])) take(header.frame);
+    if (time_name(line.cells[k])) take(header.time);
     if (is({"landmarkid", "landmark", "landmarkidx", "landmarkindex", "landmarkname", "keypoint",
             "keypointid", "keypointname", "joint", "jointid", "jointname", "bodypart", "name"}))
       take(header.landmark);
     if (is({"x", "xpx"})) take(header.x);
     if (is({"y", "ypx"})) take(header.y);
     if (is({"z"})) take(header.z);
-    if (is({"visibility", "confidence", "score", "likelihood", "presence"}))
-      take(header.confidence);
+    if (is_confidence_name(line.cells[k])) take(header.confidence);
     if (is_person_column(line.cells[k])) take(header.person);
     if (is({"model"})) take(header.model);
     if (is({"id"})) take(header.id);
@@ -54,8 +59,8 @@ class RowsReader {
  public:
   RowsReader(std::string_view text, const std::string& file) : table_(text, file), file_(file) {
     header_ = header_of(table_.header());
-    if (!header_.frame || !header_.landmark || !header_.x || !header_.y)
-      table_.fail(table_.header(), "columns frame, landmark, x and y are needed");
+    if (!header_.frame_or_time() || !header_.landmark || !header_.x || !header_.y)
+      table_.fail(table_.header(), "columns frame or timestamp, landmark, x and y are needed");
     if (header_.model && header_.z)
       table_.fail(table_.header(),
                   "points in space (FreeMoCap), not a 2D track; give the track of one camera");
@@ -68,8 +73,10 @@ class RowsReader {
     require_joints(joints_, file_);
     if (!header_.person && header_.id && header_.id != header_.landmark && landmarks_come_again())
       header_.person = header_.id;
-    for (std::size_t i = 1; i < table_.lines().size(); ++i) read_row(table_.lines()[i]);
     SeenPeople people;
+    take_rate_and_size(table_, people);
+    const std::vector<long long> numbers = frames_of_rows(people);
+    for (std::size_t i = 0; i < numbers.size(); ++i) read_row(table_.lines()[i + 1], numbers[i]);
     for (auto& [frame, bodies] : frames_) {
       auto& list = people.frames[frame];
       for (auto& [person, body] : bodies) {
@@ -116,7 +123,8 @@ class RowsReader {
     std::set<std::pair<std::string_view, std::string_view>> known;
     for (std::size_t i = 1; i < table_.lines().size(); ++i) {
       const auto& cells = table_.lines()[i].cells;
-      if (!known.emplace(cells[*header_.frame], cells[*header_.landmark]).second) return true;
+      if (!known.emplace(cells[*header_.frame_or_time()], cells[*header_.landmark]).second)
+        return true;
     }
     return false;
   }
@@ -128,9 +136,26 @@ class RowsReader {
     return static_cast<long long>(value);
   }
 
-  void read_row(const CsvTable::Line& line) {
+  /// The frames' numbers as the table gives them, else by their times, which become the people's.
+  /// [rows]
+  std::vector<long long> frames_of_rows(SeenPeople& people) const {
+    std::vector<long long> numbers;
+    std::vector<double> times;
+    for (std::size_t i = 1; i < table_.lines().size(); ++i) {
+      const CsvTable::Line& line = table_.lines()[i];
+      if (header_.frame) numbers.push_back(whole(line, *header_.frame));
+      if (header_.time) times.push_back(number(line.cells[*header_.time]).value_or(kNan));
+    }
+    if (!header_.frame) numbers = frames_by_times(times);
+    if (numbers.size() < times.size())
+      table_.fail(table_.header(), "a row without a time; add a column frame, a number");
+    if (header_.time) take_times(people, table_.header().cells[*header_.time], numbers, times);
+    return numbers;
+  }
+
+  void read_row(const CsvTable::Line& line, long long frame) {
     const long long person = header_.person ? whole(line, *header_.person) : 0;
-    SeenPerson& body = frames_[whole(line, *header_.frame)][person];
+    SeenPerson& body = frames_[frame][person];
     constexpr double kNoRow = -1;  // a confidence that comes to be missing
     if (body.x_px.empty()) {
       body.x_px.assign(joints_, kNan);
@@ -142,7 +167,7 @@ class RowsReader {
     if (body.confidence[joint] != kNoRow)
       table_.fail(line,
                   fmt::format("landmark {} comes twice in frame {}; {}", shown(landmark),
-                              shown(line.cells[*header_.frame]),
+                              shown(line.cells[*header_.frame_or_time()]),
                               header_.person ? "remove one row" : "add a column person, a number"));
     body.x_px[joint] = table_.number_in(line, *header_.x);
     body.y_px[joint] = table_.number_in(line, *header_.y);
@@ -165,7 +190,7 @@ bool are_landmark_rows(std::string_view text) {
   const CsvTable table(text, {}, 1);
   if (table.lines().empty()) return false;
   const Header header = header_of(table.lines().front());
-  return header.frame && header.landmark && header.x && header.y;
+  return header.frame_or_time() && header.landmark && header.x && header.y;
 }
 
 SeenPeople read_landmark_rows(std::string_view text, const std::string& file) {

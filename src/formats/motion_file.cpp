@@ -5,6 +5,7 @@
 #include "base/lower_extension.hpp"
 #include "base/text_file.hpp"
 #include "formats/asf_amc.hpp"
+#include "formats/bvh_header.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/bvh.hpp"
 
@@ -62,6 +63,12 @@ Motion parse_motion(std::string_view text, const fs::path& path,
   const fs::path skeleton = skeleton_file_of(path);
   if (skeleton.empty()) return parse_bvh(text, path.string(), warnings);
   return parse_asf_amc(read_text_file(skeleton), skeleton.string(), text, path.string(), warnings);
+}
+
+Skeleton read_skeleton(const fs::path& path) {
+  const fs::path asf = skeleton_file_of(path);
+  return asf.empty() ? read_bvh_skeleton(path)
+                     : parse_asf_skeleton(read_text_file(asf), asf.string());
 }
 
 Motion read_motion(const fs::path& path, std::vector<std::string>* warnings) {

@@ -27,6 +27,26 @@ constexpr double kOverlapWeight = 0.5, kJointWeight = 0.5;
 /// A body that was found in parts is the one known before, not the new part.
 constexpr double kYouth = 0.3;
 constexpr std::size_t kFewFrames = 5;
+/// Of numbers, another pair fits as well if its cost is greater by less than this.
+constexpr double kClearly = 0.2;
+
+/// Whether the file's own numbers distinguish people.
+bool numbered(const Frames& frames) {
+  bool any = false;
+  std::size_t most = 0;
+  std::set<long long> all;
+  for (const auto& people : frames) {
+    std::set<long long> here;
+    most = std::max(most, people.size());
+    for (const SeenPerson& person : people) {
+      if (!person.id || *person.id < 0 || !here.insert(*person.id).second) return false;
+      all.insert(*person.id);
+      any = true;
+    }
+  }
+  // One number for all may stand for "no number" in the tool: harmless where there is one person.
+  return any && all.size() >= most;
+}
 
 double overlap(const PersonBox& a, const PersonBox& b) {
   const Point extent =
@@ -37,7 +57,13 @@ double overlap(const PersonBox& a, const PersonBox& b) {
 
 class Follower {
  public:
-  Follower(const Frames& frames, int patience) : frames_(frames), patience_(patience) {}
+  Follower(const Frames& frames, int patience)
+      : frames_(frames), patience_(patience), numbered_(numbered(frames)) {
+    if (!numbered_) return;
+    for (std::size_t frame = 0; frame < frames.size(); ++frame)
+      for (const SeenPerson& person : frames[frame])
+        last_frame_of_[*person.id] = static_cast<int>(frame);
+  }
 
   std::vector<Followed> run() {
     for (std::size_t frame = 0; frame < frames_.size(); ++frame) {
@@ -59,32 +85,72 @@ class Follower {
   };
 
   void add_frame(int frame) {
-    const auto& people = frames_[frame];
-    std::vector<std::size_t> awaited;
-    for (std::size_t i = 0; i < paths_.size(); ++i)
-      if (frame - paths_[i].last_frame <= patience_) awaited.push_back(i);
-    std::vector<bool> known(people.size(), false);
-    if (!awaited.empty() && !people.empty()) {
-      MatrixD costs(static_cast<Eigen::Index>(awaited.size()),
-                    static_cast<Eigen::Index>(people.size()));
-      for (Eigen::Index i = 0; i < costs.rows(); ++i) {
-        check_interruption();
-        for (Eigen::Index k = 0; k < costs.cols(); ++k)
-          costs(i, k) = cost(paths_[awaited[i]], people[k], frame);
-      }
-      const std::vector<int> person_of = cheapest_assignment(costs);
-      for (std::size_t i = 0; i < awaited.size(); ++i) {
-        const int person = person_of[i];
-        if (person < 0 || costs(static_cast<Eigen::Index>(i), person) >= kForbidden) continue;
-        extend(paths_[awaited[i]], frame, person);
-        known[person] = true;
-      }
+    const std::vector<int> unknown = extend_by_number(frame);
+    if (unknown.empty()) return;
+    const std::vector<std::size_t> awaited = awaited_in(frame);
+    MatrixD costs(static_cast<Eigen::Index>(awaited.size()),
+                  static_cast<Eigen::Index>(unknown.size()));
+    for (Eigen::Index i = 0; i < costs.rows(); ++i) {
+      check_interruption();
+      for (Eigen::Index k = 0; k < costs.cols(); ++k)
+        costs(i, k) = cost(paths_[awaited[i]], frames_[frame][unknown[k]], frame);
     }
-    for (std::size_t person = 0; person < people.size(); ++person) {
-      if (known[person]) continue;
-      paths_.push_back({{{frame, static_cast<int>(person)}}, frame, people[person]});
+    const std::vector<int> unknown_of = cheapest_assignment(costs);
+    std::vector<bool> found(unknown.size(), false);
+    for (std::size_t i = 0; i < awaited.size(); ++i) {
+      const int k = unknown_of[i];
+      if (k < 0 || !fits(costs, static_cast<Eigen::Index>(i), k)) continue;
+      extend(paths_[awaited[i]], frame, unknown[k]);
+      found[k] = true;
+      set_path(frame, unknown[k], awaited[i]);
+    }
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      if (found[k]) continue;
+      set_path(frame, unknown[k], paths_.size());
+      paths_.push_back({{{frame, unknown[k]}}, frame, frames_[frame][unknown[k]]});
     }
   }
+
+  /// @return those of the frame whom no number makes known
+  std::vector<int> extend_by_number(int frame) {
+    std::vector<int> unknown;
+    for (int person = 0; person < std::ssize(frames_[frame]); ++person) {
+      const auto path = numbered_ ? path_of_.find(number_of(frame, person)) : path_of_.end();
+      if (path == path_of_.end())
+        unknown.push_back(person);
+      else
+        extend(paths_[path->second], frame, person);
+    }
+    return unknown;
+  }
+
+  /// Paths that may go on in a frame: of numbers, those whose number is seen no more.
+  std::vector<std::size_t> awaited_in(int frame) const {
+    std::vector<std::size_t> awaited;
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      const auto [last_frame, person] = paths_[i].seen.back();
+      if (frame - last_frame > patience_) continue;
+      if (numbered_ && last_frame_of_.at(number_of(last_frame, person)) >= frame) continue;
+      awaited.push_back(i);
+    }
+    return awaited;
+  }
+
+  /// Whether a pair is near enough to be one person. A tracker may have had a reason for a new
+  /// number: then neither of the two may fit another one as well.
+  bool fits(const MatrixD& costs, Eigen::Index path, Eigen::Index person) const {
+    const double cost = costs(path, person);
+    if (cost >= kForbidden) return false;
+    const double as_well = cost + kClearly;
+    return !numbered_ || ((costs.row(path).array() < as_well).count() == 1 &&
+                          (costs.col(person).array() < as_well).count() == 1);
+  }
+
+  void set_path(int frame, int person, std::size_t path) {
+    if (numbered_) path_of_[number_of(frame, person)] = path;
+  }
+
+  long long number_of(int frame, int person) const { return *frames_[frame][person].id; }
 
   void extend(Path& path, int frame, int person) const {
     const SeenPerson& seen = frames_[frame][person];
@@ -143,38 +209,11 @@ class Follower {
 
   const Frames& frames_;
   int patience_;
+  bool numbered_;
+  std::map<long long, int> last_frame_of_;    ///< by the file's number
+  std::map<long long, std::size_t> path_of_;  ///< by the file's number, of those seen so far
   std::vector<Path> paths_;
 };
-
-/// Whether the file's own numbers distinguish people.
-bool numbered(const Frames& frames) {
-  bool any = false;
-  std::size_t most = 0;
-  std::set<long long> all;
-  for (const auto& people : frames) {
-    std::set<long long> here;
-    most = std::max(most, people.size());
-    for (const SeenPerson& person : people) {
-      if (!person.id || *person.id < 0 || !here.insert(*person.id).second) return false;
-      all.insert(*person.id);
-      any = true;
-    }
-  }
-  // One number for all may stand for "no number" in the tool: harmless where there is one person.
-  return any && all.size() >= most;
-}
-
-std::vector<Followed> by_number(const Frames& frames) {
-  std::map<long long, Followed> people;
-  for (std::size_t frame = 0; frame < frames.size(); ++frame)
-    for (std::size_t person = 0; person < frames[frame].size(); ++person)
-      people[*frames[frame][person].id].push_back(
-          {static_cast<int>(frame), static_cast<int>(person)});
-  std::vector<Followed> result;
-  result.reserve(people.size());
-  for (auto& [id, followed] : people) result.push_back(std::move(followed));
-  return result;
-}
 
 double size_of(const Followed& followed, const Frames& frames) {
   double sum = 0;
@@ -185,8 +224,7 @@ double size_of(const Followed& followed, const Frames& frames) {
 }  // namespace
 
 std::vector<Followed> follow_people(const Frames& frames, int patience) {
-  std::vector<Followed> people =
-      numbered(frames) ? by_number(frames) : Follower(frames, patience).run();
+  std::vector<Followed> people = Follower(frames, patience).run();
   std::vector<double> sizes;
   sizes.reserve(people.size());
   for (const Followed& followed : people) sizes.push_back(size_of(followed, frames));
@@ -197,6 +235,21 @@ std::vector<Followed> follow_people(const Frames& frames, int patience) {
   sorted.reserve(order.size());
   for (const std::size_t i : order) sorted.push_back(std::move(people[i]));
   return sorted;
+}
+
+std::vector<NumberChange> number_changes(const Frames& frames,
+                                         const std::vector<Followed>& people) {
+  std::vector<NumberChange> changes;
+  if (!numbered(frames)) return changes;
+  for (const Followed& followed : people)
+    for (std::size_t i = 1; i < followed.size(); ++i) {
+      const auto [frame_before, person_before] = followed[i - 1];
+      const auto [frame, person] = followed[i];
+      const long long before = *frames[frame_before][person_before].id;
+      const long long after = *frames[frame][person].id;
+      if (before != after) changes.push_back({before, after, frame});
+    }
+  return changes;
 }
 
 }  // namespace mcdbn

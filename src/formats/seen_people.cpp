@@ -15,6 +15,16 @@
 
 namespace mcdbn {
 
+long long SeenPeople::id_of_track(std::string_view name) {
+  return track_ids.emplace(name, track_ids.size()).first->second;
+}
+
+std::string SeenPeople::name_of_track(long long id) const {
+  for (const auto& [name, its_id] : track_ids)
+    if (its_id == id) return name;
+  return std::to_string(id);
+}
+
 std::optional<ImageSize> SeenPeople::size_of_image(const TrackReadOptions& options) const {
   if (options.image_size) return options.image_size;
   if (image_size && image_size_is_given) return image_size;

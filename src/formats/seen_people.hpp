@@ -23,6 +23,7 @@ inline constexpr long long kSparse = 10;
 struct SeenPerson {
   std::vector<double> x_px, y_px, confidence;
   std::optional<long long> id;  ///< the file's own number of the person
+  bool has_depths = false;      ///< joints have a third coordinate, beside a confidence
 };
 
 /// Calls visit(x, y, confidence) for each joint that was seen of each person of each frame.
@@ -45,14 +46,23 @@ struct SeenPeople {
   std::vector<std::string> possible_sets;
   /// By the file's own numbers of frames.
   std::map<long long, std::vector<SeenPerson>> frames;
+  std::map<std::string, long long> track_ids;  ///< by name, where the file names its tracks
+  /// Of frames, by their numbers, where the file gives times; they rise.
+  std::map<long long, double> times_s;
   std::optional<double> fps;
   std::optional<ImageSize> image_size;
   bool image_size_is_given = true;  ///< else image_size is the format's default
   bool in_pixels = false;           ///< else coordinates that are all small are shares of the image
-  /// Joints have a third coordinate and no confidence: a guess of their depth, or points in space.
+  /// Joints have a third coordinate where others have a confidence: a guess of their depth, or
+  /// points in space.
   bool has_depths_only = false;
+  bool axes_are_unnamed = false;  ///< as in TrackReading
   std::vector<std::string> notices;
 
+  /// The id of a track that the file names; they count from 0.
+  long long id_of_track(std::string_view name);
+  /// What the file calls the person of that id: a name, or the number.
+  std::string name_of_track(long long id) const;
   /// The image's size: that of the options, else the file's, else the camera's, else the format's
   /// default.
   std::optional<ImageSize> size_of_image(const TrackReadOptions& options) const;

@@ -1,11 +1,12 @@
-// AlphaPose: one list with an entry for each person of each image; `--format cmu` and `open` make
-// an object with an entry for each image. Facts: AlphaPose's docs/output.md and
-// alphapose/utils/pPose_nms.py.
+// AlphaPose: one list with an entry for each person of each image, or with such a list of each
+// image; `--format cmu` and `open` make an object with an entry for each image.
+// Facts: AlphaPose's docs/output.md and alphapose/utils/pPose_nms.py.
 #include <fmt/format.h>
 
 #include "base/text_file.hpp"
 #include "formats/image_numbers.hpp"
 #include "formats/joint_naming.hpp"
+#include "formats/result_entries.hpp"
 #include "formats/track_formats.hpp"
 #include "mcdbn/base/errors.hpp"
 
@@ -29,7 +30,7 @@ bool is_image(const JsonPlace& image) {
 bool recognises(const TrackSource& source) {
   const auto content = source.json_if_any();
   if (!content || content->size() == 0) return false;
-  if (content->is_list()) return is_entry(content->at(0));
+  if (const auto entry = first_result_entry(*content)) return is_entry(*entry);
   return content->is_object() && is_image((*content)[content->keys().front()]);
 }
 
@@ -41,9 +42,10 @@ std::optional<long long> track_number(JsonPlace idx) {
 }
 
 SeenPeople read_list(const JsonPlace& content) {
-  const ImageNumbers images(content, "image_id");
+  const std::vector<JsonPlace> entries = result_entries(content);
+  const ImageNumbers images(entries, "image_id");
   SeenPeople people;
-  for (const JsonPlace& entry : content.list()) {
+  for (const JsonPlace& entry : entries) {
     SeenPerson person = person_in_json(entry["keypoints"]);
     if (entry.has("idx")) person.id = track_number(entry["idx"]);
     people.frames[images.of(entry["image_id"])].push_back(std::move(person));

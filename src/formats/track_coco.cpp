@@ -1,5 +1,5 @@
 // COCO keypoints: annotations (an object with images and annotations) and results (a list with an
-// entry for each person of each image).
+// entry for each person of each image, or with such a list of each image).
 // Facts: cocodataset.org, "Data format" and "Results format".
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include "base/text_file.hpp"
 #include "formats/image_numbers.hpp"
 #include "formats/joint_naming.hpp"
+#include "formats/result_entries.hpp"
 #include "formats/track_formats.hpp"
 
 namespace mcdbn {
@@ -28,7 +29,7 @@ bool is_result(const JsonPlace& entry) {
 bool recognises(const TrackSource& source) {
   const auto content = source.json_if_any();
   if (!content) return false;
-  if (content->is_list()) return content->size() > 0 && is_result(content->at(0));
+  if (const auto entry = first_result_entry(*content)) return is_result(*entry);
   return content->has("annotations") && content->has("images");
 }
 
@@ -83,7 +84,7 @@ void add_images(SeenPeople& people, const ImageNumbers& numbers, const JsonPlace
 }
 
 SeenPeople read_annotations(const JsonPlace& content) {
-  const ImageNumbers images(content["images"], "id");
+  const ImageNumbers images(content["images"].list(), "id");
   SeenPeople people;
   add_images(people, images, content["images"]);
   for (const JsonPlace& annotation : content["annotations"].list())
@@ -106,8 +107,9 @@ SeenPeople read(const TrackSource& source) {
   const JsonPlace content = source.json();
   SeenPeople people;
   if (content.is_list()) {
-    const ImageNumbers images(content, "image_id");
-    for (const JsonPlace& entry : content.list()) add_person(people, images, entry);
+    const std::vector<JsonPlace> entries = result_entries(content);
+    const ImageNumbers images(entries, "image_id");
+    for (const JsonPlace& entry : entries) add_person(people, images, entry);
   } else {
     people = read_annotations(content);
   }

@@ -29,8 +29,11 @@ const TrackFormat* format_of(const TrackSource& source) {
 const TrackFormat& format_to_read(const TrackSource& source, const std::string& asked) {
   if (!asked.empty()) return track_format(asked);
   if (const TrackFormat* recognised = format_of(source)) return *recognised;
-  if (source.is_folder() && source.json_files().empty())
-    throw InputError(fmt::format("{}: no .json files in this folder", source.name()));
+  if (source.is_folder() && source.json_files().empty()) {
+    const std::string what = what_else_it_is(source);
+    throw InputError(fmt::format("{}: {}", source.name(),
+                                 what.empty() ? "no .json files in this folder" : what));
+  }
   if (const auto content = source.first_json_if_any(); content && shows_nobody(content->value()))
     throw NoPersonSeen(source.name());
   // For JSON that cannot be parsed the error names the line.

@@ -78,8 +78,8 @@ class TrackLines::Reader {
     return found == track_formats().end() ? nullptr : &*found;
   }
 
-  /// A JSON line is an entry of a list of frames, as in a file of such lines; or, as COCO's list of
-  /// a frame's people, a file's whole content.
+  /// A JSON line is an entry of a list of frames, as in a file of such lines; or a file's whole
+  /// content, as MMPose writes it of an image.
   SeenPeople people_of_json(std::string_view line) {
     const std::string place = fmt::format("{}:{}", name_, line_);
     TrackSource source(fmt::format("[{}]", line), place);
@@ -97,10 +97,22 @@ class TrackLines::Reader {
     try {
       SeenPeople people = format_->read(source);
       if (people.frames.size() > 1) fail("more than one frame in a line");
+      if (!people.frames.empty()) compare_image(people.frames.begin()->first);
       return people;
     } catch (const NoPersonSeen&) {
       return {};
     }
+  }
+
+  /// Who writes a line for each person gets a motion that is longer than the film.
+  /// @param number of the image, the file's own, or 0 where lines have none
+  void compare_image(long long number) {
+    if (number != 0 && number == image_ && !std::exchange(warned_of_image_, true))
+      notices_.push_back(fmt::format(
+          "line {} is of the same image, {}, as the one before: each line is taken as a "
+          "frame; write all people of an image in one line",
+          line_, number));
+    image_ = number;
   }
 
   SeenPeople people_of_row(std::string_view line) {
@@ -144,7 +156,8 @@ class TrackLines::Reader {
     if (!size) fail("a frame does not give the image's size: set it with `image-size`");
     like_.width_px = size->width_px;
     like_.height_px = size->height_px;
-    shares_ = !seen.in_pixels && are_shares({people}, fmt::format("{}:{}", name_, line_));
+    shares_ = !seen.in_pixels &&
+              are_shares({people}, seen.has_depths_only, fmt::format("{}:{}", name_, line_));
   }
 
   /// @param people in pixels
@@ -175,7 +188,9 @@ class TrackLines::Reader {
   TrackReadOptions options_;
   PersonChoice choice_;
   int line_ = 0;
-  bool has_begun_ = false, json_ = false, has_header_ = false, is_known_ = false, shares_ = false;
+  long long image_ = 0;  ///< of the line before
+  bool has_begun_ = false, json_ = false, has_header_ = false, is_known_ = false, shares_ = false,
+       warned_of_image_ = false;
   std::string header_;  ///< of a CSV, with the comments and empty lines around it
   const TrackFormat* format_ = nullptr;
   Track2d like_;

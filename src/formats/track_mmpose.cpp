@@ -10,8 +10,10 @@
 
 #include "base/text_file.hpp"
 #include "formats/frame_numbers.hpp"
+#include "formats/frame_times.hpp"
 #include "formats/image_numbers.hpp"
 #include "formats/joint_naming.hpp"
+#include "formats/rate_and_size.hpp"
 #include "formats/track_formats.hpp"
 
 namespace mcdbn {
@@ -97,17 +99,22 @@ bool recognises(const TrackSource& source) {
          holds_instances(*content) || is_by_image(*content);
 }
 
+/// @param scores of the joints, or one of the person, which is none of its joints'
+SeenPerson person_with(const JsonPlace& keypoints, const JsonPlace& scores) {
+  return scores.is_list() ? person_in_json(keypoints, scores) : person_in_json(keypoints);
+}
+
 std::vector<SeenPerson> people_at_once(const JsonPlace& keypoints, const JsonPlace& scores) {
   std::vector<SeenPerson> people;
   for (std::size_t i = 0; i < keypoints.size(); ++i)
-    people.push_back(person_in_json(keypoints.at(i), scores.at(i)));
+    people.push_back(person_with(keypoints.at(i), scores.at(i)));
   return people;
 }
 
 SeenPerson person_of_instance(const JsonPlace& instance) {
   const char* scores = scores_key(instance);
   SeenPerson person = scores == nullptr ? person_in_json(instance["keypoints"])
-                                        : person_in_json(instance["keypoints"], instance[scores]);
+                                        : person_with(instance["keypoints"], instance[scores]);
   for (const char* key : {"track_id", "instance_id"})
     if (instance.has(key) && instance[key].value().is_number())
       person.id = instance[key].whole_number();
@@ -131,12 +138,6 @@ std::vector<SeenPerson> people_of(const JsonPlace& instances) {
   return people;
 }
 
-const char* frame_key(const JsonPlace& entry) {
-  for (const char* key : {"frame_id", "frame", "frame_idx", "frame_index"})
-    if (entry.has(key) && entry[key].value().is_number()) return key;
-  return nullptr;
-}
-
 std::vector<SeenPerson> people_of_frame(const JsonPlace& frame) {
   if (frame.value().is_null()) return {};
   const char* key = people_key(frame);
@@ -145,11 +146,10 @@ std::vector<SeenPerson> people_of_frame(const JsonPlace& frame) {
 
 /// Frames with instances, lists of instances, or an instance of each frame.
 void add_frames(SeenPeople& people, const JsonPlace& list) {
-  long long next = 0;
-  for (const JsonPlace& frame : list.list()) {
-    const char* key = frame_key(frame);
-    const long long number = key == nullptr ? next : frame[key].whole_number();
-    next = number + 1;
+  const std::vector<long long> numbers = numbers_of_frames(list, people);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const JsonPlace frame = list.at(i);
+    const long long number = numbers[i];
     if (is_instance(frame)) {
       auto& seen = people.frames[number];
       for (SeenPerson& person : people_of_instance(frame)) seen.push_back(std::move(person));
@@ -164,7 +164,7 @@ void add_frames(SeenPeople& people, const JsonPlace& list) {
 void add_list(SeenPeople& people, const JsonPlace& list) {
   bool one_image = true;
   for (const JsonPlace& entry : list.list())
-    one_image = one_image && is_instance(entry) && !holds_people(entry) && !frame_key(entry);
+    one_image = one_image && is_instance(entry) && !holds_people(entry) && !gives_frame(entry);
   if (one_image)
     people.frames.emplace(0, people_of(list));
   else
@@ -189,7 +189,7 @@ void add_film(SeenPeople& people, const JsonPlace& keypoints, const JsonPlace& s
     people.frames.emplace(static_cast<long long>(i),
                           several || frame.size() == 0
                               ? people_at_once(frame, scores.at(i))
-                              : std::vector{person_in_json(frame, scores.at(i))});
+                              : std::vector{person_with(frame, scores.at(i))});
   }
 }
 
@@ -220,6 +220,13 @@ void add_content(SeenPeople& people, const JsonPlace& content) {
     add_list(people, content);
 }
 
+/// Of bodies in space, which have scores as well.
+bool any_depths(const SeenPeople& people) {
+  return std::ranges::any_of(people.frames, [](const auto& frame) {
+    return std::ranges::any_of(frame.second, &SeenPerson::has_depths);
+  });
+}
+
 /// A file of a folder.
 std::vector<SeenPerson> people_of_image(const JsonPlace& content) {
   // In a file of a whole film the same lists would be its frames.
@@ -234,7 +241,9 @@ std::vector<SeenPerson> people_of_image(const JsonPlace& content) {
 SeenPeople read(const TrackSource& source) {
   if (source.is_folder()) {
     SeenPeople people = people_of_folder(source, people_of_image);
+    people.has_depths_only = any_depths(people);
     const auto first = source.first_json_if_any();
+    if (first) take_rate_and_size(*first, people);
     name_joints_by_count(people, source.name(),
                          first ? names_in(*first) : std::vector<std::string>{});
     return people;
@@ -245,6 +254,8 @@ SeenPeople read(const TrackSource& source) {
     add_frames(people, content);
   else
     add_content(people, content);
+  people.has_depths_only = any_depths(people);
+  take_rate_and_size(content, people);
   name_joints_by_count(people, source.name(), names_in(content));
   return people;
 }

@@ -1,6 +1,6 @@
 // NumPy arrays: [frames x joints x 2 to 4], [people x frames x joints x 2 to 4] as MMAction2 keeps
-// them, the same with the frames first, or flat [frames x joints·2 or 3]; the joints by their
-// count.
+// them, the same with the frames first, also with axes of length 1 between (MoveNet's answers, one
+// behind the other), or flat [frames x joints·2 or 3]; the joints by their count.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -30,9 +30,21 @@ bool is_known_count(std::size_t joints) {
                              [&](const JointSet& set) { return set.keypoints.size() == joints; });
 }
 
+/// Without the axes of length 1 that are too many, as models put them before the joints.
+std::vector<std::size_t> at_most_four(std::vector<std::size_t> shape) {
+  while (shape.size() > 4) {
+    const auto joints = shape.end() - 2;
+    const auto one = std::find(shape.begin(), joints, std::size_t{1});
+    if (one == joints) break;
+    shape.erase(one);
+  }
+  return shape;
+}
+
 /// The shape with all four dimensions: [people, frames, joints, numbers a joint].
-std::vector<std::size_t> full_shape(const std::vector<std::size_t>& shape,
+std::vector<std::size_t> full_shape(const std::vector<std::size_t>& given,
                                     const std::string& file) {
+  const std::vector<std::size_t> shape = at_most_four(given);
   if (shape.size() == 2) {
     for (const std::size_t numbers : {std::size_t{3}, std::size_t{2}, std::size_t{4}})
       if (shape[1] % numbers == 0 && is_known_count(shape[1] / numbers))
@@ -44,7 +56,7 @@ std::vector<std::size_t> full_shape(const std::vector<std::size_t>& shape,
   throw InputError(fmt::format(
       "{}: an array of {}; frames x joints x 2 (x, y) or 3 (with confidence) is read, also with "
       "people before them",
-      file, fmt::join(shape, " x ")));
+      file, fmt::join(given, " x ")));
 }
 
 /// Where the confidence stands among a joint's numbers: the last, if those are not depths.
@@ -70,15 +82,18 @@ SeenPeople read(const TrackSource& source) {
   const std::size_t joints = shape[2], numbers = shape[3];
   const std::size_t confidence = stride_to_confidence(array, numbers);
   SeenPeople people;
+  people.axes_are_unnamed = true;
   if (numbers > 2 && confidence == 0)
     people.notices.emplace_back(
         "the numbers behind x and y are not all positive: depths, left out");
   // More frames than people.
   const bool frames_first = shape[0] > shape[1];
+  // A place among several is no number: detectors list each frame's people in an order of its own.
+  const bool one_person = std::min(shape[0], shape[1]) == 1;
   auto value = array.values.begin();
   for (std::size_t outer = 0; outer < shape[0]; ++outer)
     for (std::size_t inner = 0; inner < shape[1]; ++inner) {
-      const std::size_t frame = frames_first ? outer : inner, person = frames_first ? inner : outer;
+      const std::size_t frame = frames_first ? outer : inner;
       SeenPerson seen;
       for (std::size_t joint = 0; joint < joints;
            ++joint, value += static_cast<std::ptrdiff_t>(numbers)) {
@@ -88,7 +103,7 @@ SeenPeople read(const TrackSource& source) {
                                                   : value[static_cast<std::ptrdiff_t>(confidence)]);
       }
       mark_missing(seen);
-      seen.id = static_cast<long long>(person);
+      if (one_person) seen.id = 0;
       people.frames[static_cast<long long>(frame)].push_back(std::move(seen));
     }
   name_joints_by_count(people, source.name());

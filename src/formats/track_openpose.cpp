@@ -6,7 +6,9 @@
 #include "base/interruption.hpp"
 #include "base/text_file.hpp"
 #include "formats/frame_numbers.hpp"
+#include "formats/frame_times.hpp"
 #include "formats/joint_naming.hpp"
+#include "formats/rate_and_size.hpp"
 #include "formats/track_formats.hpp"
 
 namespace mcdbn {
@@ -19,11 +21,34 @@ const char* const kName = "openpose";
 const std::vector<std::string> kSets{"BODY_25", "BODY_25B", "COCO_18", "HALPE_26",
                                      "COCO_17", "COCO_23",  "H36M_17"};
 
+bool is_frame(const JsonPlace& place) {
+  return place.has("people") && place["people"].is_list();
+}
+
+/// Version 1.0 wrote `pose_keypoints`.
+const char* body_key(const JsonPlace& person) {
+  const bool old = !person.has("pose_keypoints_2d") && person.has("pose_keypoints");
+  return old ? "pose_keypoints" : "pose_keypoints_2d";
+}
+
+/// Whether the first person whom a frame shows has such a key; none: it shows nobody.
+std::optional<bool> has_body_key(const JsonPlace& frame) {
+  if (!is_frame(frame)) return {};
+  for (const JsonPlace& person : frame["people"].list())
+    if (!shows_nobody(person.value())) return person.has(body_key(person));
+  return {};
+}
+
 bool recognises(const TrackSource& source) {
   const auto first = source.first_json_if_any();
   if (!first) return false;
-  if (first->is_list()) return first->size() > 0 && first->at(0).has("people");
-  return first->has("people") && (*first)["people"].is_list();
+  // No other format has people in the files of a folder.
+  if (first->is_object())
+    return is_frame(*first) && (source.is_folder() || has_body_key(*first).value_or(true));
+  if (!first->is_list() || first->size() == 0 || !is_frame(first->at(0))) return false;
+  for (std::size_t i = 0; i < first->size(); ++i)
+    if (const auto has_key = has_body_key(first->at(i))) return *has_key;
+  return true;
 }
 
 /// None for -1, [-1] and no value.
@@ -41,9 +66,7 @@ std::optional<long long> person_id(const JsonPlace& person) {
 std::vector<SeenPerson> people_of(const JsonPlace& frame) {
   std::vector<SeenPerson> people;
   for (const JsonPlace& person : frame["people"].list()) {
-    // Version 1.0 wrote `pose_keypoints`.
-    const bool old = !person.has("pose_keypoints_2d") && person.has("pose_keypoints");
-    const JsonPlace keypoints = person[old ? "pose_keypoints" : "pose_keypoints_2d"];
+    const JsonPlace keypoints = person[body_key(person)];
     if (keypoints.is_list() && keypoints.size() == 0) continue;  // a face or a hand alone
     people.push_back(person_in_json(keypoints));
     people.back().id = person_id(person);
@@ -56,12 +79,15 @@ SeenPeople read(const TrackSource& source) {
   if (source.is_folder()) {
     people = people_of_folder(source, people_of);
   } else if (const JsonPlace content = source.json(); content.is_list()) {
-    for (const JsonPlace& frame : content.list())
-      people.frames.emplace(static_cast<long long>(people.frames.size()), people_of(frame));
+    const std::vector<long long> numbers = numbers_of_frames(content, people);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      if (!people.frames.emplace(numbers[i], people_of(content.at(i))).second)
+        content.at(i).fail(fmt::format("a second frame {}", numbers[i]));
   } else {
     const auto number = frame_numbers({source.path().stem().string()}).front();
     people.frames.emplace(number.value_or(0), people_of(content));
   }
+  if (const auto first = source.first_json_if_any()) take_rate_and_size(*first, people);
   name_joints_by_count(people, source.name());
   return people;
 }

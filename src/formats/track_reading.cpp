@@ -1,6 +1,7 @@
 #include "formats/track_reading.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "formats/image_shares.hpp"
 #include "formats/likely_image.hpp"
@@ -119,7 +121,7 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
     notices.push_back(fmt::format(
         "the file does not give the image's size: {} x {} px are taken; set it with `image-size`",
         known->width_px, known->height_px));
-  const bool shares = !seen.in_pixels && are_shares(frames, file);
+  const bool shares = !seen.in_pixels && are_shares(frames, seen.has_depths_only, file);
   const std::optional<ImageSize> likely =
       shares && !known ? likely_image(seen.keypoints, frames) : std::nullopt;
   const ImageSize size = known ? *known : likely.value_or(kLyingImage);
@@ -143,6 +145,39 @@ ImageSize put_in_pixels(Frames& frames, const SeenPeople& seen, const TrackReadO
   }
   notices.push_back(shares_notice(size, known.has_value(), likely.has_value()));
   return size;
+}
+
+/// Frames a second by the times of the first and the last frame that have one; none: no two have.
+/// Times are rounded, so a rate that is nearly whole is whole.
+std::optional<double> rate_of_times(const SeenPeople& seen, const std::vector<long long>& numbers) {
+  constexpr double kNearly = 4e-4;  // 29.97 Hz and 30 Hz differ by 1e-3
+  if (seen.times_s.size() < 2) return {};
+  const auto frame_of = [&](long long number) {
+    return static_cast<double>(std::ranges::lower_bound(numbers, number) - numbers.begin());
+  };
+  const auto &first = *seen.times_s.begin(), &last = *seen.times_s.rbegin();
+  const double rate_hz =
+      (frame_of(last.first) - frame_of(first.first)) / (last.second - first.second);
+  const double whole_hz = std::round(rate_hz);
+  return std::abs(rate_hz - whole_hz) < kNearly * rate_hz ? whole_hz : rate_hz;
+}
+
+/// The film's rate by its frames' times, else as the file gives it; none: it has neither.
+std::optional<double> rate_of_file(const SeenPeople& seen, TrackReading& reading) {
+  const auto by_times = rate_of_times(seen, reading.frame_numbers);
+  if (!by_times) return seen.fps;
+  if (!kFrameRate_hz.contains(*by_times)) {
+    reading.notices.push_back(fmt::format(
+        "its times make {:.4g} frames a second, which is no film's: they are not used", *by_times));
+    return seen.fps;
+  }
+  constexpr double kOther = 0.05;
+  if (seen.fps && std::abs(*seen.fps - *by_times) > kOther * *by_times)
+    reading.notices.push_back(fmt::format(
+        "the file gives {:.4g} frames a second, its times make {:.4g}, which are taken; set "
+        "another rate with `fps` if that is wrong",
+        *seen.fps, *by_times));
+  return by_times;
 }
 
 /// Heat maps overshoot 1 a little; other scales end where nearly all of the file's values do.
@@ -206,6 +241,24 @@ void drop_fleeting(std::vector<Followed>& people, double frames, double fps,
                                   dropped == 1 ? "body was" : "bodies were", least));
 }
 
+/// Which of the file's numbers were taken for one person.
+void note_number_changes(const SeenPeople& seen, const Frames& frames,
+                         const std::vector<Followed>& people, TrackReading& reading) {
+  constexpr std::size_t kMostListed = 5;
+  const std::vector<NumberChange> changes = number_changes(frames, people);
+  if (changes.empty()) return;
+  std::vector<std::string> listed;
+  for (const auto& [before, after, frame] :
+       std::span(changes).first(std::min(changes.size(), kMostListed)))
+    listed.push_back(fmt::format("{} after {} from frame {}", seen.name_of_track(after),
+                                 seen.name_of_track(before), reading.frame_numbers[frame]));
+  if (changes.size() > kMostListed)
+    listed.push_back(fmt::format("and {} more", changes.size() - kMostListed));
+  reading.notices.push_back(
+      fmt::format("track numbers that begin where others end are taken for the same person: {}",
+                  fmt::join(listed, ", ")));
+}
+
 /// Which of the people are wanted.
 std::vector<std::size_t> chosen(const std::string& person, std::size_t people,
                                 const std::string& file, std::vector<std::string>& notices) {
@@ -237,6 +290,7 @@ TrackReading tracks_of(SeenPeople seen, const TrackReadOptions& options, const s
   if (seen.frames.empty()) throw InputError(fmt::format("{}: no frames", file));
   TrackReading reading;
   reading.notices = std::move(seen.notices);
+  reading.axes_are_unnamed = seen.axes_are_unnamed;
   require_joints(seen.joint_names.size(), file);
   Frames frames = frames_by_number(seen, reading);
   for (auto& people : frames)
@@ -248,19 +302,21 @@ TrackReading tracks_of(SeenPeople seen, const TrackReadOptions& options, const s
   name_likeliest_set(seen, frames);
   if (const JointSet* set = joint_set_of(seen.joint_names)) reading.joint_set = set->name;
   limit_confidences(frames, reading.notices);
-  if (!options.fps && !seen.fps)
+  const std::optional<double> given = options.fps ? options.fps : rate_of_file(seen, reading);
+  if (!given)
     reading.notices.push_back(fmt::format(
         "the file does not give its rate: {} frames a second are taken; set it with `fps`",
         kUsualFps));
   if (options.fps) check_range("`fps`", kFrameRate_hz, *options.fps);
-  if (!options.fps && seen.fps && !kUsualFrameRate_hz.contains(*seen.fps))
+  if (!options.fps && given && !kUsualFrameRate_hz.contains(*given))
     reading.notices.push_back(fmt::format(
         "the file gives {:.4g} frames a second; set another rate with `fps` if that is wrong",
-        *seen.fps));
-  const double fps = options.fps ? *options.fps : seen.fps.value_or(kUsualFps);
+        *given));
+  const double fps = given.value_or(kUsualFps);
   std::vector<Followed> people =
       follow_people(frames, static_cast<int>(std::clamp(kPatience_s * fps, 1.0, 1000.0)));
   drop_fleeting(people, static_cast<double>(frames.size()), fps, reading.notices);
+  note_number_changes(seen, frames, people, reading);
   reading.people_seen = static_cast<int>(people.size());
   // Without any person there is one track, of missing joints.
   if (people.empty()) people.emplace_back();

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "base/shown.hpp"
 #include "base/text_file.hpp"
@@ -88,7 +87,7 @@ class SleapReader {
     }
     mark_missing(person);
     if (track_ && !line.cells[*track_].empty())
-      person.id = tracks_.emplace(line.cells[*track_], tracks_.size()).first->second;
+      person.id = people_.id_of_track(line.cells[*track_]);
     people_.frames[static_cast<long long>(frame)].push_back(std::move(person));
   }
 
@@ -96,7 +95,6 @@ class SleapReader {
   std::optional<std::size_t> frame_, track_;
   std::vector<std::string> names_;
   std::vector<Node> nodes_;
-  std::map<std::string_view, long long> tracks_;
   SeenPeople people_;
 };
 

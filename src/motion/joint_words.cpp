@@ -22,7 +22,8 @@ constexpr std::array kMiddle{
     WordSpelling{"neck", neck},      WordSpelling{"lowerneck", neck},
     WordSpelling{"neckbase", neck},  WordSpelling{"upperneck", neck},
     WordSpelling{"necklower", neck}, WordSpelling{"neckupper", neck},
-    WordSpelling{"head", head},      WordSpelling{"skull", head},
+    WordSpelling{"necktwist", neck}, WordSpelling{"head", head},
+    WordSpelling{"skull", head},
 };
 
 /// Joints of the sides, likewise, without the side.
@@ -34,6 +35,7 @@ constexpr std::array kSided{
     WordSpelling{"shoulder", shoulder},
     WordSpelling{"upperarm", upper_arm},
     WordSpelling{"uparm", upper_arm},
+    WordSpelling{"uarm", upper_arm},
     WordSpelling{"humerus", upper_arm},
     WordSpelling{"shldr", upper_arm},
     WordSpelling{"shldrbend", upper_arm},
@@ -44,6 +46,7 @@ constexpr std::array kSided{
     WordSpelling{"forearmstretch", forearm},
     WordSpelling{"lowerarm", forearm},
     WordSpelling{"lowarm", forearm},
+    WordSpelling{"farm", forearm},
     WordSpelling{"elbow", forearm},
     WordSpelling{"radius", forearm},
     WordSpelling{"wrist", wrist},

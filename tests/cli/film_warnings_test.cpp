@@ -5,9 +5,11 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/text_file.hpp"
 #include "mcdbn/formats/track_csv.hpp"
+#include "mcdbn/formats/track_file.hpp"
 #include "tiny_pipeline.hpp"
 
 using namespace mcdbn::test;
@@ -63,6 +65,26 @@ TEST_CASE("regenerate: where a list of results begins in the film is reported, f
   // Numbers in steps are those of pictures taken out of a film.
   CHECK(numbered([](int frame) { return 5 * frame + 45; }).find("first frame") ==
         std::string::npos);
+}
+
+TEST_CASE("regenerate: of an array that has y before x it is said why the body lies in it") {
+  if (!have_device()) return;
+  const ScratchFolder folder;
+  mcdbn::Track2d track = mcdbn::read_track(walker(folder, "npy", "coco"),
+                                           {.fps = 30, .image_size = mcdbn::ImageSize{1920, 1080}});
+  std::swap(track.x_px, track.y_px);
+  std::swap(track.width_px, track.height_px);
+  mcdbn::track_format("npy").write(folder / "movenet.npy", track);
+  write_track_csv(folder / "named.csv", track);
+  const std::string array =
+      reported(folder, folder / "movenet.npy", "--fit none --fps 30 --image-size 1080 1920");
+  CAPTURE(array);
+  CHECK(array.find("in most frames the body lies across the image: exchange x and y in the file if "
+                   "it has y first, as MoveNet's arrays do; set --camera-roll 90 if ") !=
+        std::string::npos);
+  // Columns say which of them is x.
+  CHECK(reported(folder, folder / "named.csv", "--fit none")
+            .find("lies across the image: set --camera-roll 90 if ") != std::string::npos);
 }
 
 TEST_CASE(

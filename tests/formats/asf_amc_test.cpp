@@ -171,6 +171,21 @@ TEST_CASE("motion files: an AMC finds its skeleton beside it") {
   CHECK((joint_positions(back) - joint_positions(of_person)).cwiseAbs().maxCoeff() < 1e-3);
 }
 
+TEST_CASE("motion files: the skeleton alone is that of the motion, whatever the frames are") {
+  const test::ScratchFolder folder;
+  folder.write("07.asf", kAsf);
+  const auto amc = folder.write("07_01.amc", kAmc);
+  const Motion motion = read_motion(amc);
+  const std::string wanted = bvh_header_text(motion.skeleton);
+  CHECK(bvh_header_text(read_skeleton(amc)) == wanted);
+  const std::string text = bvh_text(motion);
+  const auto cut = folder.write("cut.bvh", text.substr(0, text.find("MOTION") + 6));
+  CHECK_THROWS_AS(read_motion(cut), InputError);
+  CHECK(bvh_header_text(read_skeleton(cut)) == wanted);
+  CHECK_THROWS_AS(read_skeleton(folder.write("no.bvh", "no skeleton")), InputError);
+  CHECK_THROWS_AS(read_skeleton(folder / "absent.bvh"), InputError);
+}
+
 TEST_CASE("ASF and AMC: real takes are where the BVH of the same take has them") {
   const std::string folder = "formats/cmu_asf_amc";
   if (!test::have_shared_data(folder, "ASF and AMC")) return;

@@ -121,6 +121,48 @@ TEST_CASE("first frames: without a person they are frames, and scores are confid
   }
 }
 
+TEST_CASE("first frames: lists of people are OpenPose's by the keys of the first person") {
+  const ScratchFolder folder;
+  const auto film = [](const char* people, const char* body, bool flat, int first) {
+    json frames = json::array();
+    for (int frame = first; frame < 3; ++frame) {
+      json joints = json::array(), persons = json::array();
+      for (int joint = 0; joint < kJoints; ++joint) {
+        const json numbers{x_of(frame, joint), y_of(joint), score_of(joint)};
+        if (flat)
+          joints.insert(joints.end(), numbers.begin(), numbers.end());
+        else
+          joints.push_back(numbers);
+      }
+      if (frame > 0) persons.push_back({{"track_id", 3}, {body, joints}});
+      frames.push_back({{"frame", frame}, {people, persons}});
+    }
+    return frames;
+  };
+  const auto read = [&](const json& content) {
+    return read_tracks(folder.write("people.json", content.dump()));
+  };
+  for (const char* people : {"people", "persons"}) {
+    CAPTURE(std::string(people));
+    const json frames = film(people, "keypoints", false, 0);
+    for (const json& content : {frames, json{{"frames", frames}}}) {
+      const TrackReading reading = read(content);
+      CHECK(reading.format == "mediapipe");
+      check_track(reading);
+    }
+    const TrackReading at_once = read(film(people, "keypoints", false, 1));
+    CHECK(at_once.format == "mediapipe");
+    REQUIRE(at_once.people.front().frames() == 2);
+    CHECK(at_once.people.front().x_px(0, 0) == x_of(1, 0));
+  }
+  for (const char* body : {"pose_keypoints_2d", "pose_keypoints"}) {
+    CAPTURE(std::string(body));
+    const TrackReading reading = read(film("people", body, true, 0));
+    CHECK(reading.format == "openpose");
+    check_track(reading);
+  }
+}
+
 TEST_CASE("first frames: instances under the numbers of frames") {
   const ScratchFolder folder;
   json frames = json::object();

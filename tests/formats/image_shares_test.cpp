@@ -111,6 +111,47 @@ TEST_CASE("shares: world landmarks, metres about the hips, are refused, also as 
   }
 }
 
+TEST_CASE("shares: MMPose's bodies in space have scores, and are refused, also as they come") {
+  const ScratchFolder folder;
+  const Track2d figure = sample_figure("COCO_17");
+  const auto frames_of = [&](const auto& numbers_of) {
+    json frames = json::array();
+    for (int frame = 0; frame < figure.frames(); ++frame) {
+      json keypoints = json::array(), instances = json::array();
+      for (int joint = 0; joint < figure.joint_count(); ++joint)
+        keypoints.push_back(
+            numbers_of(figure.x_px(frame, joint), figure.y_px(frame, joint), joint));
+      const std::vector<double> scores(17, 4.5);  // as some networks overshoot
+      instances.push_back({{"keypoints", keypoints}, {"keypoint_scores", scores}});
+      frames.push_back({{"frame_id", frame}, {"instances", instances}});
+    }
+    return frames;
+  };
+  // x to the side, then the depth, both about the body, and the height, in metres.
+  constexpr double kMetresOfPixel = 1.7 / 400;
+  const double middle_px = figure.x_px.row(0).mean();
+  const json space = frames_of([&](double x, double y, int joint) {
+    const double depth = joint / 2 % 2 == 0 ? -0.1 : 0.1;
+    return json{kMetresOfPixel * (x - middle_px), depth, kMetresOfPixel * (450 - y)};
+  });
+  CHECK_THROWS_WITH_AS(read_track(folder.write("space.json", space.dump()), of_image()),
+                       doctest::Contains("points in space, not places in an image"), InputError);
+  TrackLines lines("pipe", of_image());
+  CHECK_THROWS_WITH_AS(lines.read(space[0].dump()), doctest::Contains("points in space"),
+                       InputError);
+  // A third number that is the score, or a share, makes no points in space of a person of whom the
+  // picture shows the feet alone.
+  for (const double third : {4.5, 0.5, -1.0}) {
+    CAPTURE_BOUND(third);
+    const json seen = frames_of([&](double x, double y, int) {
+      return third < 0 ? json{x, y - 360} : json{x, y - 360, third};
+    });
+    const Track2d track = read_track(folder.write("seen.json", seen.dump()), of_image());
+    CHECK((track.x_px.array() - figure.x_px.array()).abs().maxCoeff() < 1e-6);
+    CHECK((track.y_px.array() - (figure.y_px.array() - 360)).abs().maxCoeff() < 1e-6);
+  }
+}
+
 namespace {
 
 /// A table with columns for each joint, with a depth and no confidence, or the other way round.
@@ -181,7 +222,7 @@ TEST_CASE("shares: most of the joints that are seen decide") {
       person.y_px.push_back(0.1);
       person.confidence.push_back(0);
     }
-    return are_shares({{person}}, "a.json");
+    return are_shares({{person}}, false, "a.json");
   };
   CHECK(of(3, 2));
   CHECK(!of(2, 2));

@@ -1,10 +1,12 @@
 // Which names of a file's columns are a detector's, and which a skeleton's.
 #include <doctest/doctest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "base/scratch_folder.hpp"
+#include "mcdbn/camera/joint_sets.hpp"
 #include "mcdbn/formats/track_file.hpp"
 
 using namespace mcdbn;
@@ -63,6 +65,22 @@ TEST_CASE("joint names: a detector's in other spellings keep their places, an an
     REQUIRE(none.size() == mouse.size());
     for (const Keypoint& keypoint : none) CHECK(!keypoint.role);
   }
+}
+
+TEST_CASE("joint names: a whole body in OpenPose's order begins with COCO's 18") {
+  const test::ScratchFolder folder;
+  nlohmann::json points = nlohmann::json::array();
+  for (int joint = 0; joint < 134; ++joint) points.push_back({100 + joint, 200});
+  const std::vector<double> scores(134, 0.5);
+  const nlohmann::json person{{"keypoints", points}, {"keypoint_scores", scores}};
+  const TrackReading reading =
+      read_tracks(folder.write("rtmlib.json", nlohmann::json::array({person}).dump()));
+  CHECK(reading.joint_set == "COCO_18");
+  const Track2d& track = reading.people.front();
+  REQUIRE(track.joint_count() == 18);
+  REQUIRE(track.keypoints.size() == 18);
+  CHECK(track.keypoints[1].role == joint_set("COCO_18").keypoints[1].role);
+  CHECK(track.x_px(0, 17) == 117);
 }
 
 }  // namespace joint_naming_test

@@ -29,6 +29,12 @@ SeenPerson person_at(double x, double height_px = 200) {
   return person;
 }
 
+SeenPerson numbered_at(double x, long long number) {
+  SeenPerson person = person_at(x);
+  person.id = number;
+  return person;
+}
+
 void hide(SeenPerson& person, int first, int last) {
   for (int joint = first; joint <= last; ++joint) person.confidence[joint] = 0;
   mark_missing(person);
@@ -144,11 +150,107 @@ TEST_CASE("people: the file's own numbers hold where each is there once") {
   CHECK(x_of(frames, people[0], 0) == x_of(frames, people[0], 5));
 }
 
+TEST_CASE("people: where one number ends and another begins it is the same person") {
+  Frames frames;
+  for (int frame = 0; frame < 60; ++frame) {
+    frames.push_back({numbered_at(900, 3)});
+    if (frame >= 40 && frame < 45) continue;  // while the tracker has lost them
+    frames.back().push_back(numbered_at(100 + 4 * frame, frame < 20 ? 1 : frame < 40 ? 7 : 2));
+  }
+  const auto people = follow_people(frames, 30);
+  REQUIRE(people.size() == 2);
+  CHECK(people[0].size() == 60);
+  CHECK(people[1].size() == 55);
+  CHECK(x_of(frames, people[1], 0) == doctest::Approx(100));
+  CHECK(x_of(frames, people[1], 59) == doctest::Approx(336));
+  const auto changes = number_changes(frames, people);
+  REQUIRE(changes.size() == 2);
+  CHECK(changes[0].before == 1);
+  CHECK(changes[0].after == 7);
+  CHECK(changes[0].frame == 20);
+  CHECK(changes[1].before == 7);
+  CHECK(changes[1].after == 2);
+  CHECK(changes[1].frame == 45);
+}
+
+TEST_CASE("people: who is hidden while they cross is the same with a new number, too") {
+  Frames frames;
+  for (int frame = 0; frame < 40; ++frame) {
+    frames.push_back({numbered_at(100 + 10 * frame, 1)});
+    if (frame < 15 || frame > 25)
+      frames.back().push_back(numbered_at(500 - 10 * frame, frame < 15 ? 2 : 9));
+  }
+  const auto people = follow_people(frames, 30);
+  REQUIRE(people.size() == 2);
+  for (std::size_t frame = 0; frame < 40; ++frame)
+    CHECK(x_of(frames, people[0], frame) == doctest::Approx(100.0 + 10 * frame));
+  CHECK(x_of(frames, people[1], 14) == doctest::Approx(360));
+  CHECK(x_of(frames, people[1], 26) == doctest::Approx(240));
+}
+
+TEST_CASE("people: numbers of two who cross are two people, also if one ends in the middle") {
+  for (const int end : {40, 20}) {
+    CAPTURE(end);
+    Frames frames;
+    for (int frame = 0; frame < 40; ++frame) {
+      frames.push_back({numbered_at(500 - 10 * frame, 2)});
+      if (frame < end) frames.back().push_back(numbered_at(100 + 10 * frame, 1));
+    }
+    const auto people = follow_people(frames, 30);
+    REQUIRE(people.size() == 2);
+    CHECK(people[0].size() == 40);
+    CHECK(people[1].size() == static_cast<std::size_t>(end));
+    CHECK(number_changes(frames, people).empty());
+  }
+}
+
+TEST_CASE("people: a number that begins elsewhere, or after a long time, is another person") {
+  const auto people_of = [](double from_x, int first) {
+    Frames frames;
+    for (int frame = 0; frame < 80; ++frame) {
+      frames.emplace_back();
+      if (frame < 20) frames.back().push_back(numbered_at(100, 1));
+      if (frame >= first) frames.back().push_back(numbered_at(from_x, 2));
+    }
+    return follow_people(frames, 30).size();
+  };
+  CHECK(people_of(100, 49) == 1);
+  CHECK(people_of(100, 50) == 2);  // after 31 frames
+  CHECK(people_of(400, 25) == 2);
+  // While the other number is still seen.
+  CHECK(people_of(100, 19) == 2);
+}
+
+TEST_CASE("people: a number that fits two who were lost as well is neither") {
+  // One ends at 100, another at 160.
+  const auto changes_at = [](double x) {
+    Frames frames(20, {numbered_at(100, 1), numbered_at(160, 2)});
+    frames.resize(40, {numbered_at(x, 3)});
+    return number_changes(frames, follow_people(frames, 30));
+  };
+  CHECK(changes_at(128).empty());
+  REQUIRE(changes_at(100).size() == 1);
+  CHECK(changes_at(100).front().before == 1);
+  // Two that begin where one ended.
+  Frames frames(20, {numbered_at(100, 1)});
+  frames.resize(40, {numbered_at(98, 2), numbered_at(104, 3)});
+  CHECK(follow_people(frames, 30).size() == 3);
+}
+
+TEST_CASE("people: numbers that do not count do not change") {
+  Frames frames;
+  for (int frame = 0; frame < 10; ++frame)
+    frames.push_back({numbered_at(100, frame), numbered_at(600, frame)});
+  const auto people = follow_people(frames, 30);
+  CHECK(people.size() == 2);
+  CHECK(number_changes(frames, people).empty());
+}
+
 TEST_CASE("people: who is in few frames of a long film takes little room") {
-  // A tracker that gives everybody a new number in every frame.
+  // Somebody else in every frame, each with a number and a place of their own.
   Frames frames;
   for (int frame = 0; frame < 5000; ++frame) {
-    frames.push_back({person_at(100)});
+    frames.push_back({person_at(1000.0 * frame)});
     frames.back().front().id = frame;
   }
   const auto people = follow_people(frames, 30);

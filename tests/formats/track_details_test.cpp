@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/capture_bound.hpp"
+#include "base/npy.hpp"
 #include "base/scratch_folder.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
@@ -311,6 +312,49 @@ TEST_CASE("track details: labelled images are frames by the numbers in their nam
   CHECK(read_tracks(folder.write("labels.csv", header + "a7.png,5,6\nb7.png,7,8\nc9.png,7,9\n"))
             .people.front()
             .frames() == 3);
+}
+
+TEST_CASE("track details: axes of length 1 before the joints of an array are left out") {
+  const ScratchFolder folder;
+  constexpr std::size_t kFrames = 4, kJoints = 17;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < kFrames * kJoints; ++i) {
+    const auto at = static_cast<double>(i);
+    values.insert(values.end(), {200 + at, 300 - at, 0.5});
+  }
+  const auto read = [&](const std::vector<std::size_t>& shape) {
+    return read_track(folder.write("a.npy", npy_bytes(NpyArray{shape, values})));
+  };
+  const Track2d plain = read({kFrames, kJoints, 3});
+  REQUIRE(plain.frames() == 4);
+  // The first is what MoveNet's answers are, one behind the other.
+  for (const std::vector<std::size_t>& shape : {std::vector<std::size_t>{kFrames, 1, 1, kJoints, 3},
+                                                {1, kFrames, 1, kJoints, 3},
+                                                {kFrames, 1, 1, 1, kJoints, 3}}) {
+    const Track2d track = read(shape);
+    CHECK(track.x_px == plain.x_px);
+    CHECK(track.y_px == plain.y_px);
+  }
+  CHECK_THROWS_WITH_AS(read({2, 2, 1, kJoints, 3, 1}),
+                       doctest::Contains("an array of 2 x 2 x 1 x 17 x 3 x 1"), InputError);
+}
+
+TEST_CASE("track details: lists of numbers do not say which of them is x, objects do") {
+  const ScratchFolder folder;
+  json lists = json::array(), objects = json::array();
+  for (const json& point : detail_points(200)) {
+    lists.push_back({point[0], point[1], 0.5});
+    objects.push_back({{"x", point[0]}, {"y", point[1]}, {"score", 0.5}});
+  }
+  const auto are_unnamed = [&](const std::string& name, const std::string& text) {
+    return read_tracks(folder.write(name, text)).axes_are_unnamed;
+  };
+  CHECK(are_unnamed("lists.json", json::array({lists}).dump()));
+  CHECK(are_unnamed("array.npy",
+                    npy_bytes(NpyArray{{1, 17, 3}, body(200).get<std::vector<double>>()})));
+  CHECK(!are_unnamed("objects.json", json::array({objects}).dump()));
+  const json coco{{"image_id", 1}, {"keypoints", body(200)}};
+  CHECK(!are_unnamed("coco.json", json::array({coco}).dump()));
 }
 
 TEST_CASE("track details: a rate in the file holds, and --fps before it") {

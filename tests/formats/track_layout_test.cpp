@@ -215,12 +215,36 @@ TEST_CASE("layouts: files of other kinds are refused by their kind") {
            Case{"a.trc", "PathFileType\t4\t(X/Y/Z)\ta.trc\n", "a.trc: TRC"},
            Case{"a.mot", "Coordinates\nnRows=1\nendheader\n", "a.mot: a table of OpenSim"},
            Case{"a.bvh", "HIERARCHY\nROOT a\n", "a.bvh: BVH"},
+           Case{"table.csv", "name,class,confidence,box,keypoints\nperson,0,0.9,{},{}\n",
+                "table.csv: YOLO's labels or table"},
+           Case{"pandas.csv", ",name,class,confidence,box,keypoints\n0,person,0,0.9,{},{}\n",
+                "pandas.csv: YOLO's labels or table"},
            Case{"a.txt", "words", "a.txt: not a 2D track of a known format"},
        }) {
     CAPTURE(other.name);
     CHECK_THROWS_WITH_AS(read_track(folder.write(other.name, other.text)),
                          doctest::Contains(other.message.c_str()), InputError);
   }
+}
+
+TEST_CASE("layouts: YOLO's labels are refused by their kind, with what to write instead") {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "labels");
+  std::string label = "0 0.5 0.5 0.2 0.8";
+  for (int joint = 0; joint < 17; ++joint) label += " 0.25 0.375 0.875";
+  for (const std::string more : {"", " 0.9", " 0.9 3"}) {
+    const auto file = folder.write("labels/film_1.txt", label + more + "\n" + label + more + "\n");
+    for (const auto& path : {file, folder / "labels"}) {
+      CAPTURE(path.string());
+      CHECK_THROWS_WITH_AS(read_track(path), doctest::Contains(": YOLO's labels or table"),
+                           InputError);
+      CHECK_THROWS_WITH_AS(read_track(path), doctest::Contains("to_json()"), InputError);
+    }
+  }
+  // Other texts are not.
+  folder.write("labels/film_1.txt", label + " 0.9 3 4\n");
+  CHECK_THROWS_WITH_AS(read_track(folder / "labels"), doctest::Contains("no .json files"),
+                       InputError);
 }
 
 TEST_CASE("layouts: a body in space is no track") {

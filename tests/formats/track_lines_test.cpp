@@ -278,7 +278,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("track lines: COCO's and AlphaPose's lists of a frame's people") {
+TEST_CASE("track lines: COCO's and AlphaPose's lists of a frame's people, also as a file") {
+  const ScratchFolder folder;
   const auto entry = [](const nlohmann::json& image, double at_px, double size) {
     nlohmann::json numbers = nlohmann::json::array();
     for (int joint = 0; joint < 17; ++joint)
@@ -293,6 +294,8 @@ TEST_CASE("track lines: COCO's and AlphaPose's lists of a frame's people") {
       TrackReadOptions options = of_image();
       if (named) options.format = alphapose ? "alphapose" : "coco";
       TrackLines lines("pipe", options);
+      std::string text;
+      nlohmann::json film = nlohmann::json::array({nlohmann::json::array()});
       const auto image_id = [&](int frame) -> nlohmann::json {
         if (alphapose) return fmt::format("{}.jpg", frame);
         return frame;
@@ -310,12 +313,49 @@ TEST_CASE("track lines: COCO's and AlphaPose's lists of a frame's people") {
         CHECK(seen->y_px[16] == 100 + 12 * 16);
         CHECK(seen->confidence[0] == 0.5);
         CHECK(lines.read("[]")->confidence.sum() == 0);
+        text += people.dump() + "\n[]\n";
+        film.push_back(people);
+      }
+      for (const std::string& content : {text, "[]\n" + text, film.dump()}) {
+        const TrackReading whole = read_tracks(folder.write("log.json", content), options);
+        CHECK(whole.format == (alphapose ? "alphapose" : "coco"));
+        CHECK(whole.people_seen == 2);
+        const Track2d& track = whole.people.front();
+        REQUIRE(track.frames() == 4);
+        for (int frame = 0; frame < 4; ++frame) CHECK(track.x_px(frame, 0) == 300 + frame);
       }
       nlohmann::json two = nlohmann::json::array();
       for (const int frame : {8, 9}) two.push_back(entry(image_id(frame), 300, 12));
       CHECK(message_of(lines, two.dump()).find("more than one frame in a line") !=
             std::string::npos);
     }
+}
+
+TEST_CASE("track lines: a line for each person is reported once, by the image's number") {
+  const auto line = [](const nlohmann::json& image, double at_px) {
+    std::vector<double> numbers;
+    for (int joint = 0; joint < 17; ++joint)
+      numbers.insert(numbers.end(), {at_px + 10 * (joint % 3), 100.0 + 12 * joint, 0.9});
+    return nlohmann::json{{"image_id", image}, {"keypoints", numbers}}.dump();
+  };
+  const auto reported = [&](const std::vector<std::string>& all) {
+    TrackLines lines("pipe", of_image());
+    std::vector<std::string> notices;
+    for (const std::string& text : all) {
+      CHECK(lines.read(text));
+      for (const std::string& notice : lines.take_notices())
+        if (notice.find("of the same image") != std::string::npos) notices.push_back(notice);
+    }
+    return notices;
+  };
+  const std::vector<std::string> twice =
+      reported({line(7, 300), line(8, 300), line(8, 700), line(9, 300), line(9, 700)});
+  REQUIRE(twice.size() == 1);
+  CHECK(twice.front().starts_with("line 3 is of the same image, 8, as the one before"));
+  CHECK(reported({line("7.jpg", 300), line("7.jpg", 700)}).size() == 1);
+  CHECK(reported({line(7, 300), "[]", line(8, 300), line(9, 300)}).empty());
+  // Lines that do not number their frames.
+  CHECK(reported({people_line({300}), people_line({310}), people_line({320})}).empty());
 }
 
 TEST_CASE("track lines: a line may be all that MMPose writes of an image") {

@@ -24,6 +24,10 @@ std::filesystem::path skeleton_file_of(const std::filesystem::path& path);
 /// @throws InputError `file:line: what`
 Motion read_motion(const std::filesystem::path& path, std::vector<std::string>* warnings = nullptr);
 
+/// The skeleton that read_motion() reads; the frames are not looked at.
+/// @throws InputError `file:line: what`
+Skeleton read_skeleton(const std::filesystem::path& path);
+
 /// As read_motion(), of a file that was read before. @param text all that it holds
 Motion parse_motion(std::string_view text, const std::filesystem::path& path,
                     std::vector<std::string>* warnings = nullptr);

@@ -59,7 +59,10 @@ struct TrackReading {
   std::vector<long long> frame_numbers;  ///< [frames] the file's own
   int people_seen = 0;                   ///< those who were followed, chosen or not
   std::vector<Track2d> people;           ///< those chosen, the largest first
-  std::vector<std::string> notices;      ///< what was assumed, guessed, left out or scaled
+  /// A joint's coordinates are a list of numbers in a layout that does not say which of them is x;
+  /// x is taken to come first.
+  bool axes_are_unnamed = false;
+  std::vector<std::string> notices;  ///< what was assumed, guessed, left out or scaled
 };
 
 /// Reads a file, or a folder with a file for each frame. Joints that were not seen are NaN with
