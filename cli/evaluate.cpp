@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -123,10 +124,13 @@ void print_table(const EvaluationReport& report) {
   fmt::print("{}, {}\n{:<22}{:>10}{:>12}{:>11}{:>14}{:>10}\n", counted(report.clips.size(), "clip"),
              counted(frames, "frame"), "", "PCC flat", "PCC channel", "MPJPE mm", "PA-MPJPE mm",
              "root mm");
-  for (const MethodReport& method : overall_methods(report))
-    fmt::print("{:<22}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10.0f}\n", method.name,
+  for (const MethodReport& method : overall_methods(report)) {
+    const double root_mm = method.mean.root_mm;
+    fmt::print("{:<22}{:>10.4f}{:>12.3f}{:>11.1f}{:>14.1f}{:>10}\n", method.name,
                method.mean.pcc_flat, method.mean.pcc_channel, method.mean.error.mpjpe_mm,
-               method.mean.error.pa_mpjpe_mm, method.mean.root_mm);
+               method.mean.error.pa_mpjpe_mm,
+               std::isfinite(root_mm) ? fmt::format("{:.0f}", root_mm) : "-");
+  }
   if (report.tracks != kExact) print_limbs(report);
   print_coverage(report);
   const TrackError track = overall_track_error(report);

@@ -5,6 +5,7 @@
 
 #include "render.hpp"
 #include "run_program.hpp"
+#include "setting_flags.hpp"
 
 namespace mcdbn::cli {
 
@@ -18,7 +19,7 @@ void run_render(const RenderCommandOptions& options, const CommandContext&) {
   if (!options.camera.file.empty()) look.camera = options.camera.camera_for(clips.front().motion);
   std::vector<std::string> notices;
   render(clips, options.output, look, &notices);
-  for (const std::string& notice : notices) spdlog::warn("{}", notice);
+  for (const std::string& notice : notices) spdlog::warn("{}", with_flags(notice));
   spdlog::info("{}: {} {}", options.output.string(), clips.size(),
                clips.size() == 1 ? "clip" : "clips");
 }

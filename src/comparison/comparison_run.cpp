@@ -5,9 +5,10 @@
 #include <algorithm>
 
 #include "base/named_errors.hpp"
+#include "base/numbers.hpp"
 #include "comparison/fitted_baseline.hpp"
+#include "comparison/known_people.hpp"
 #include "corpus/clip_notices.hpp"
-#include "corpus/people.hpp"
 #include "evaluation/report_clip.hpp"
 #include "fitting/track_smoothing.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -23,15 +24,6 @@ namespace {
 
 bool was_trained_on(const Model& model, const std::filesystem::path& file) {
   return is_among(model.training_clips, identify_clip(file));
-}
-
-/// The person of a clip if a training clip shows the same one; else empty.
-std::string known_person(const Model& model, const std::filesystem::path& file) {
-  const std::string person = person_of(file);
-  const bool known =
-      std::any_of(model.training_clips.begin(), model.training_clips.end(),
-                  [&](const TrainingClip& clip) { return person_of(clip.path) == person; });
-  return known ? person : "";
 }
 
 /// A test clip as everyone sees it.
@@ -92,6 +84,14 @@ SeenClip seen_by(const Model& model, const TestRunOptions& options, const Encode
   });
 }
 
+/// Where the camera is not known the answer is in the axes of another one with the same view.
+void turn_into_axes_of(const Camera& camera, FittedClip& answer) {
+  const Eigen::Matrix3d turn =
+      camera.camera_from_world.transpose() * answer.camera.camera_from_world;
+  answer.motion = turned_motion(std::move(answer.motion), turn);
+  for (Motion& draw : answer.draws) draw = turned_motion(std::move(draw), turn);
+}
+
 /// @param draws from which `deviation_mm` is computed
 ScoredAnswer answer(const Model& model, const TestRunOptions& options, const EncodedClip& truth,
                     const SeenClip& seen, const PosePrior& prior,
@@ -99,20 +99,17 @@ ScoredAnswer answer(const Model& model, const TestRunOptions& options, const Enc
   ClipPlacement placement = placement_of(truth, options);
   placement.found = seen.view;
   FittedClip fitted = with_name(truth.file.string(), [&] {
-    return fit_to_track(prior, model.modalities, seen.joints, placement, options.fit, draws);
+    FittedClip found =
+        fit_to_track(prior, model.modalities, seen.joints, placement, options.fit, draws);
+    if (!placement.camera) turn_into_axes_of(truth.camera, found);
+    return found;
   });
-  // Where the camera is not known the answer is in the axes of another one with the same view.
-  const auto in_truths_axes = [&](Motion& motion) {
-    if (placement.camera) return;
-    motion = turned_motion(std::move(motion), truth.camera.camera_from_world.transpose() *
-                                                  fitted.camera.camera_from_world);
-  };
-  in_truths_axes(fitted.motion);
-  for (Motion& draw : fitted.draws) in_truths_axes(draw);
   ScoredAnswer result;
   result.motion = std::move(fitted.motion);
   const std::string& root = model.modalities.root_name();
   result.score = score_clip(truth, result.motion, root);
+  // An answer without a camera begins at an origin of its own.
+  if (!placement.camera) result.score.root_mm = kNan;
   if (!fitted.draws.empty()) {
     const Skeleton& skeleton = result.motion.skeleton;
     result.deviation_mm = 1000 / file_units_per_metre(skeleton) *
@@ -241,6 +238,7 @@ std::vector<ClipResult> run_test(const Model& model,
   const Progress progress(options);
   std::vector<ClipResult> results;
   ClipNotices found;
+  KnownPeople people(model.training_clips);
   for (const auto& file : files) {
     progress.show("reading clips", kReading, results.size(), files.size());
     const bool trained_on = was_trained_on(model, file);
@@ -253,7 +251,7 @@ std::vector<ClipResult> run_test(const Model& model,
     result.truth =
         test_clip(file, model, options, options.regeneration.seed + results.size(), found);
     result.trained_on = trained_on;
-    result.known_person = known_person(model, file);
+    result.known_person = people.find(file);
     results.push_back(std::move(result));
   }
   if (options.notices)

@@ -55,7 +55,7 @@ struct ClipResult {
   EncodedClip truth;
   SeenClip seen;  ///< what the model sees of its track
   bool trained_on = false;
-  std::string known_person;  ///< from person_of, if a training clip shows the same one
+  std::optional<std::string> known_person = "";  ///< as KnownPeople finds it
   std::vector<ScoredAnswer> samples;
   /// The baselines by name, and kMeanField, the model's single answer, if samples were drawn.
   std::map<std::string, ScoredAnswer> other_answers;

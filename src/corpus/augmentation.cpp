@@ -12,7 +12,6 @@
 #include "camera/track_noise.hpp"
 #include "corpus/new_poses.hpp"
 #include "mcdbn/camera/joint_sets.hpp"
-#include "motion/joint_matching.hpp"
 #include "motion/mirror.hpp"
 #include "motion/other_body.hpp"
 #include "motion/resample.hpp"
@@ -131,14 +130,10 @@ void misjudge_gravity(AugmentedView& view, double deviation_deg, const RandomKey
   const Eigen::Matrix3d error =
       Eigen::AngleAxisd(angle, Eigen::Vector3d(std::cos(about), 0, std::sin(about)))
           .toRotationMatrix();
-  const auto height = [&] {
-    const int root = moving_root({&view.motion});
-    return joint_positions(view.motion).col(3 * root + 1).eval();
-  };
-  const Eigen::VectorXd was = height();
-  view.motion = turned_motion(std::move(view.motion), error);
-  const int up = find_channel(view.motion.skeleton.joints[0], Channel::y_position);
-  if (up >= 0) view.motion.channels.col(up) += was - height();
+  const int root = moving_root({&view.motion});
+  const MatrixD path = joint_positions(view.motion).middleCols(3 * root, 3);
+  const Eigen::VectorXd was = path.col(1), turned = path * error.row(1).transpose();
+  view.motion = turned_motion(std::move(view.motion), error, was - turned);
   view.camera.camera_from_world = view.camera.camera_from_world * error.transpose();
 }
 

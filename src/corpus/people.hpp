@@ -9,8 +9,8 @@
 
 namespace mcdbn {
 
-// The person in a clip: by its bones where the clip itself is at hand; by the file's name of clips
-// that a model was trained on, as only the names of those are known.
+// The person in a clip: by its bones where the clip itself is at hand; else, as of a training clip
+// that is gone, by the file's name.
 
 /// Numbers people in the order in which they come, distinguished by the person given or else by the
 /// bones of their skeletons: files of one capture session share them. Where the body stands in the

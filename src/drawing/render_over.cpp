@@ -58,8 +58,9 @@ void draw_figures(cv::Mat& image, const std::vector<Figure>& figures, FilmCamera
     draw_figure(image, own, figure, figure.frame_at(t_s), Palette::second);
 }
 
-void write_film(FilmReader& film, int frames, const std::vector<Figure>& figures,
-                FilmCamera& camera, const std::filesystem::path& path) {
+/// @return number of the film's frames, `frames` or fewer if it ends before
+int write_film(FilmReader& film, int frames, const std::vector<Figure>& figures, FilmCamera& camera,
+               const std::filesystem::path& path) {
   FilmWriter writer(path, film.fps());
   for (int i = 0; i < frames; ++i) {
     check_interruption();
@@ -71,16 +72,18 @@ void write_film(FilmReader& film, int frames, const std::vector<Figure>& figures
   if (writer.frames() == 0)
     throw InputError(fmt::format("{}: has no frame to draw over", film.path().string()));
   writer.finish();
+  return writer.frames();
 }
 
-/// Two rows of frames at even times.
-void write_sheet(FilmReader& film, int frames, const std::vector<Figure>& figures,
-                 FilmCamera& camera, const std::filesystem::path& path, int columns) {
+/// Two rows of frames at even times, the last of which is the last one.
+/// @return as write_film
+int write_sheet(FilmReader& film, int frames, const std::vector<Figure>& figures,
+                FilmCamera& camera, const std::filesystem::path& path, int columns) {
   constexpr int kWidth_px = 640;
   std::vector<cv::Mat> strips(2);
   const int times = 2 * columns;
-  int shown = 0;
-  for (int i = 0; i < frames && shown < times; ++i) {
+  int shown = 0, i = 0;
+  for (; i < frames && shown < times; ++i) {
     check_interruption();
     cv::Mat image = film.next();
     if (image.empty()) break;
@@ -106,6 +109,28 @@ void write_sheet(FilmReader& film, int frames, const std::vector<Figure>& figure
   std::vector<unsigned char> png;
   cv::imencode(".png", sheet, png);
   write_text_file(path, {reinterpret_cast<const char*>(png.data()), png.size()});
+  return i;
+}
+
+/// Frames are matched by time: of other rates they drift apart if they were the same.
+void note_other_rate(const FilmReader& film, const std::vector<Figure>& figures,
+                     std::vector<std::string>& notices) {
+  constexpr double kSameRate = 0.001;  // 29.97 and 30 frames a second differ by more
+  const auto other = std::ranges::find_if(figures, [&](const Figure& figure) {
+    return std::abs(figure.fps / film.fps() - 1) > kSameRate;
+  });
+  if (other == figures.end()) return;
+  notices.push_back(fmt::format(
+      "{}: it has {:.5g} frames a second, the motion {:.5g}, and they are drawn by time; if the "
+      "motion's frames are the film's, regenerate it with `fps` {:.5g}",
+      film.path().string(), film.fps(), other->fps, film.fps()));
+}
+
+void note_early_end(const FilmReader& film, int missing_frames, std::vector<std::string>& notices) {
+  if (missing_frames == 0) return;
+  notices.push_back(
+      fmt::format("{}: it ends {:.2f} s before the motion does, the rest of which is not drawn",
+                  film.path().string(), missing_frames / film.fps()));
 }
 
 }  // namespace
@@ -119,10 +144,12 @@ void render_over(const std::vector<Figure>& figures, const std::filesystem::path
   FilmReader film(options.over, options.over_from);
   FilmCamera camera(*options.camera, film, notices);
   const int frames = frames_shown(figures, film.fps());
-  if (path.extension() == ".png")
-    write_sheet(film, frames, figures, camera, path, options.sheet_columns);
-  else
-    write_film(film, frames, figures, camera, path);
+  const int drawn = path.extension() == ".png"
+                        ? write_sheet(film, frames, figures, camera, path, options.sheet_columns)
+                        : write_film(film, frames, figures, camera, path);
+  if (notices == nullptr) return;
+  note_other_rate(film, figures, *notices);
+  note_early_end(film, frames - drawn, *notices);
 }
 
 }  // namespace mcdbn::rendering

@@ -17,7 +17,9 @@ struct ClipScore {
   JointError error;
   LimbError limbs;
   double mpjae_deg = 0;  ///< mean angle of joints' orientations in the world: orientation_error.hpp
-  double root_mm = 0;    ///< mean distance of the regenerated root from the true one, in the world
+  /// Mean distance of the regenerated root from the true one, in the world; NaN where the camera is
+  /// not known, and with it not where in the world the answer stands.
+  double root_mm = 0;
   FootSlide foot_slide;
   double bone_length_spread_mm = 0;
   /// Share of 90 % intervals that hold the truth (share_within_90), each joint but the root along

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,7 +26,9 @@ struct ReportClip {
   std::string name;    ///< unique in the report
   std::string action;  ///< what it is counted under
   bool trained_on = false;
-  std::string known_person;  ///< if another clip of the same person was trained on: who it is
+  /// Who it is, if another clip of the same person was trained on, else empty; nothing where that
+  /// is not known.
+  std::optional<std::string> known_person = "";
   double fps = 30.0;
   std::vector<std::string> point_names;
   std::vector<int> parents;  ///< of each point, −1 for the root

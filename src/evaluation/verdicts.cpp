@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -174,17 +175,39 @@ void add_training_warning(std::vector<Verdict>& list, const EvaluationReport& re
 /// The subject protocol is about people that the model has never seen.
 void add_known_people(std::vector<Verdict>& list, const EvaluationReport& report) {
   std::set<std::string> people;
-  int clips = 0;
+  int known = 0, unclear = 0;
   for (const ReportClip& clip : report.clips) {
-    if (clip.trained_on || clip.known_person.empty()) continue;
-    people.insert(clip.known_person);
-    ++clips;
+    if (clip.trained_on) continue;
+    if (!clip.known_person) {
+      ++unclear;
+    } else if (!clip.known_person->empty()) {
+      people.insert(*clip.known_person);
+      ++known;
+    }
   }
-  if (clips == 0) return;
-  list.push_back({Kind::note, fmt::format("{} of {} clips show a person whom the model was trained "
-                                          "on in other clips ({}): for people that it has never "
-                                          "seen expect less.",
-                                          clips, report.clips.size(), fmt::join(people, ", "))});
+  if (known > 0)
+    list.push_back(
+        {Kind::note, fmt::format("{} of {} clips show a person whom the model was trained "
+                                 "on in other clips ({}): for people that it has never "
+                                 "seen expect less.",
+                                 known, report.clips.size(), fmt::join(people, ", "))});
+  if (unclear > 0)
+    list.push_back(
+        {Kind::note, fmt::format("Whether the model was trained on the people in {} of {} clips is "
+                                 "not known: its training clips are not here to compare, and the "
+                                 "names of these do not tell.",
+                                 unclear, report.clips.size())});
+}
+
+/// The simpler method that learns from the model's views where there are any; no other one does.
+constexpr const char* kLearnsFromViews = "mlp_window";
+
+bool some_learnt_from_clips(const EvaluationReport& report) {
+  return std::ranges::any_of(report.clips, [](const ReportClip& clip) {
+    return std::ranges::any_of(clip.others, [](const auto& other) {
+      return other.first != kMeanField && other.first != kLearnsFromViews;
+    });
+  });
 }
 
 /// What was done to the tracks and to the answers, for all methods alike.
@@ -196,6 +219,15 @@ void add_treatment(std::vector<Verdict>& list, const EvaluationReport& report) {
                                  "the same, {}.",
                                  report.tracks,
                                  report.camera_known ? "and knew the camera" : "no camera known")});
+  else if (!report.camera_known)
+    list.push_back(
+        {Kind::note, fmt::format("No method knew the camera: its place and lens were hidden.")});
+  if (report.tracks != "exact" && some_learnt_from_clips(report))
+    list.push_back(
+        {Kind::note,
+         fmt::format("Of the simpler methods {} alone can learn from the model's views: the others "
+                     "learnt from the training clips' exact joints, as one camera sees them.",
+                     method_name(kLearnsFromViews).spoken)});
   std::vector<std::string> damage;
   if (report.damage.noise_px > 0)
     damage.push_back(fmt::format("{:g} px of noise", report.damage.noise_px));

@@ -3,15 +3,11 @@
 #include <algorithm>
 
 namespace mcdbn {
-namespace {
 
-/// Whether the joint has a position channel, that is, moves against its parent.
 bool has_position(const Joint& joint) {
   return std::any_of(joint.channels.begin(), joint.channels.end(),
                      [](Channel channel) { return !is_rotation(channel); });
 }
-
-}  // namespace
 
 int only_child(const Skeleton& skeleton, int joint) {
   int child = -1;

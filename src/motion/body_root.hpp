@@ -4,6 +4,9 @@
 
 namespace mcdbn {
 
+/// Whether the joint has a position channel, that is, moves against its parent.
+bool has_position(const Joint& joint);
+
 /// The only child of `joint`, or -1.
 int only_child(const Skeleton& skeleton, int joint);
 

@@ -342,6 +342,22 @@ TEST_CASE("evaluate: what holds where an option is not given, and the text for p
   for (const auto& [name, scores] : wanted.at("baselines").items()) check_row(name, scores);
 }
 
+TEST_CASE("evaluate --camera-unknown: the text has no root error, and names what was hidden") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const CliResult text = run_cli(fmt::format(
+      "evaluate --model '{}' --test '{}' --platform '{}' --camera-unknown --baselines none "
+      "--uncertainty-draws 0 --quiet",
+      pipeline.model().string(), (pipeline.motion() / "walk_s02_01.bvh").string(),
+      mcdbn::list_devices().at(0).platform_name));
+  REQUIRE(text.exit_code == 0);
+  const std::string& output = text.standard_output;
+  const auto row = output.find("\nmodel ");
+  REQUIRE(row != std::string::npos);
+  CHECK(output.substr(row, output.find('\n', row + 1) - row).ends_with("  -"));
+  CHECK(output.find("No method knew the camera") != std::string::npos);
+}
+
 TEST_CASE("evaluate: what makes a detector's tracks is refused where tracks are exact") {
   for (const char* option : {"--like mediapipe", "--person-height 0.2", "--person-proportions 0.2",
                              "--detector-roll 1", "--detector-distance-to 30"}) {

@@ -198,6 +198,8 @@ TEST_CASE("render --over: what it needs is named, and a camera that is scaled is
   CHECK(drawn.standard_error.find(fmt::format(
             "mcdbn-cl: warning: {}: its images are 96 x 96 px, those of the camera 192 x 192 px",
             film.string())) != std::string::npos);
+  // The clip has 120 frames a second, a film of it 60.
+  CHECK(drawn.standard_error.find("regenerate it with --fps 60\n") != std::string::npos);
 }
 
 TEST_CASE("render: options that would be ignored are refused") {

@@ -330,11 +330,6 @@ TEST_CASE("a clip that was trained on is refused, by its bytes, unless it is wan
     CHECK_FALSE(results[0].trained_on);
     CHECK(results[1].trained_on);
     CHECK(results[2].trained_on);
-    CHECK(results[0].known_person == "08");
-    CHECK(results[1].known_person.empty());
-    const auto others = run_test(model, {scene.tests[1], scene.tests[2]}, options);
-    CHECK(others[0].known_person.empty());
-    CHECK(others[1].known_person == "s02");
   });
 }
 

@@ -190,4 +190,51 @@ TEST_CASE("a test run whose camera is unknown answers in the assumed camera's ax
   });
 }
 
+TEST_CASE("a test run whose camera is unknown: where the clip stands changes no figure") {
+  const Scene scene;
+  Motion moved = walk(3, 1);
+  moved.channels.col(0).array() += 900;  // more than nine metres
+  const auto elsewhere = scene.write("elsewhere.bvh", moved);
+  on_every_device([&](Device& device) {
+    TestRunOptions options = scene.options();
+    options.detector.reset();
+    const Model model = scene.model(device);
+    CHECK(std::isfinite(run_test(model, {scene.tests[0]}, options)[0].samples.at(0).score.root_mm));
+    options.camera_known = false;
+    options.baselines = {"mean_pose"};
+    const auto results = run_test(model, {scene.tests[0], elsewhere}, options);
+    const auto scores = [&](std::size_t clip) {
+      return std::vector{results[clip].samples.at(0).score,
+                         results[clip].other_answers.at("mean_pose").score};
+    };
+    for (std::size_t method = 0; method < 2; ++method) {
+      const ClipScore here = scores(0)[method], there = scores(1)[method];
+      CHECK(std::isnan(here.root_mm));
+      CHECK(std::isnan(there.root_mm));
+      CHECK(there.error.mpjpe_mm == doctest::Approx(here.error.mpjpe_mm).epsilon(0.02));
+    }
+  });
+}
+
+TEST_CASE("a test run whose camera is unknown: a still node above the hips changes no figure") {
+  const Scene scene;
+  Motion below = walk(3, 1);
+  for (Joint& joint : below.skeleton.joints) ++joint.parent;
+  Joint node;
+  node.name = "Node";
+  below.skeleton.joints.insert(below.skeleton.joints.begin(), node);
+  const auto with_node = scene.write("below.bvh", below);
+  on_every_device([&](Device& device) {
+    TestRunOptions options = scene.options();
+    options.detector.reset();
+    options.camera_known = false;
+    const Model model = scene.model(device);
+    const auto results = run_test(model, {scene.tests[0], with_node}, options);
+    const LimbError &plain = results[0].samples.at(0).score.limbs,
+                    &below_node = results[1].samples.at(0).score.limbs;
+    CHECK(below_node.mpjpe_mm == doctest::Approx(plain.mpjpe_mm).epsilon(0.02));
+    CHECK(below_node.turned_mpjpe_mm == doctest::Approx(plain.turned_mpjpe_mm).epsilon(0.02));
+  });
+}
+
 }  // namespace detector_run_test

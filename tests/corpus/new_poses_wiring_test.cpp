@@ -112,4 +112,26 @@ TEST_CASE("gravity's error: the image and the heights stay, what is taken for le
   CHECK(std::sqrt(sum) == doctest::Approx(1.5).epsilon(0.15));
 }
 
+TEST_CASE("gravity's error: the heights stay where a node that never turns is above the hips") {
+  Motion motion = humanoid_clip(10, 20, 30).motion;
+  for (Joint& joint : motion.skeleton.joints) ++joint.parent;
+  Joint scene;
+  scene.name = "Scene";
+  motion.skeleton.joints.insert(motion.skeleton.joints.begin(), scene);
+  AugmentationSettings settings = nothing();
+  const RandomKey key{9, 1, 0, 0};
+  const AugmentedView truth = augmented_view(motion, kFps, {}, settings, key);
+  settings.gravity_deg = 60;
+  const AugmentedView view = augmented_view(motion, kFps, {}, settings, key);
+  const MatrixD was = joint_positions(truth.motion), is = joint_positions(view.motion);
+  CHECK((was.col(3 + 1) - is.col(3 + 1)).cwiseAbs().maxCoeff() < 1e-6);
+  CHECK((was - is).cwiseAbs().maxCoeff() > 1);
+  const auto seen = [](const AugmentedView& of) {
+    return (of.camera.camera_from_world *
+            forward_kinematics(of.motion.skeleton, of.motion.channels.row(40)).world_from_joint[1])
+        .eval();
+  };
+  CHECK((seen(truth) - seen(view)).cwiseAbs().maxCoeff() < 1e-6);
+}
+
 }  // namespace new_poses_wiring_test

@@ -20,9 +20,9 @@ namespace {
 constexpr int kWidth_px = 320, kHeight_px = 240;
 
 /// Each frame of one grey, 12 brighter than the frame before.
-std::filesystem::path write_film(const ScratchFolder& folder, int frames) {
+std::filesystem::path write_film(const ScratchFolder& folder, int frames, double fps = 30) {
   const auto path = folder / "film.mp4";
-  cv::VideoWriter writer(path.string(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 30,
+  cv::VideoWriter writer(path.string(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), fps,
                          {kWidth_px, kHeight_px});
   for (int i = 0; i < frames; ++i)
     writer.write(cv::Mat(kHeight_px, kWidth_px, CV_8UC3, cv::Scalar::all(10 + 12 * i)));
@@ -100,6 +100,36 @@ TEST_CASE("a film of another size than the camera's gives one notice, of its own
   CHECK(notices(options, "drawn.png") == scaled);
   options.camera = mcdbn::scaled(*options.camera, kWidth_px, kHeight_px);
   CHECK(notices(options, "drawn.mp4").empty());
+}
+
+TEST_CASE("a film of another rate than the motion's gives a notice, and so does one that ends") {
+  using Notices = std::vector<std::string>;
+  const ScratchFolder folder;
+  const auto notices = [&](double film_fps, double motion_fps, int film_frames) {
+    const auto film = write_film(folder, film_frames, film_fps);
+    const Motion motion = test::swinging(test::small_body(), 6, motion_fps);
+    RenderOptions options = over(film, motion, 0);
+    options.camera = mcdbn::scaled(*options.camera, kWidth_px, kHeight_px);
+    Notices of_film, of_sheet;
+    render({{motion, "clip"}}, folder / "drawn.mp4", options, &of_film);
+    render({{motion, "clip"}}, folder / "drawn.png", options, &of_sheet);
+    CHECK(of_film == of_sheet);
+    for (std::string& notice : of_film) {
+      REQUIRE(notice.starts_with(film.string() + ": it "));
+      notice.erase(0, film.string().size() + 5);
+    }
+    return of_film;
+  };
+  CHECK(notices(30, 30, 6).empty());
+  CHECK(notices(30, 29.9997, 6).empty());
+  CHECK(
+      notices(25, 30, 6) ==
+      Notices{"has 25 frames a second, the motion 30, and they are drawn by time; if the motion's "
+              "frames are the film's, regenerate it with `fps` 25"});
+  CHECK(notices(30, 29.97, 6).size() == 1);
+  CHECK(notices(30, 30, 3) ==
+        Notices{"ends 0.10 s before the motion does, the rest of which is not drawn"});
+  CHECK(notices(60, 30, 6).size() == 2);  // half of the motion is drawn
 }
 
 TEST_CASE("a sheet over a film shows frames at even times") {

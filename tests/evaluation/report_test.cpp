@@ -185,6 +185,20 @@ TEST_CASE("summary: the agreed fields, the single answer apart, null for NaN") {
   CHECK(ordered_json::parse(summary.dump()) == summary);
 }
 
+TEST_CASE("a root error that no clip has is null, and an empty cell") {
+  EvaluationReport report = small_report();
+  for (ReportClip& clip : report.clips) {
+    for (ReportMotion& sample : clip.samples) sample.score.root_mm = NAN;
+    for (auto& [name, other] : clip.others) other.score.root_mm = NAN;
+  }
+  report = report_of(report.clips);
+  const ordered_json summary = summary_json(report);
+  CHECK(summary.at("model").at("root_mm").is_null());
+  CHECK(summary.at("baselines").at("ridge_window").at("root_mm").is_null());
+  for (const char* file : {"methods.csv", "clips.csv"})
+    CHECK(cell(table_of(report_tables(report), file), 0, "root_mm").is_null());
+}
+
 TEST_CASE("tables: corrected columns, one row an action, training clips marked") {
   EvaluationReport report = small_report();
   report.clips[1].trained_on = true;

@@ -2,7 +2,10 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "numbered_report.hpp"
 
@@ -191,6 +194,57 @@ TEST_CASE("verdicts: where nothing moves no correlation is given") {
       "for nothing moves; nearer on 0 of 2 clips."));
   for (const Verdict& verdict : verdicts(duel({20, none, 0.9}, {25, none, 0.9}, "mean_pose")))
     CHECK(verdict.text.find("nan") == std::string::npos);
+}
+
+namespace {
+
+const std::string kOnClips =
+    "Of the simpler methods the MLP alone can learn from the model's views: the others learnt from "
+    "the training clips' exact joints, as one camera sees them.";
+
+bool mentions(const EvaluationReport& report, const std::string& words) {
+  const std::vector<Verdict> list = verdicts(report);
+  return std::ranges::any_of(
+      list, [&](const Verdict& verdict) { return verdict.text.find(words) != std::string::npos; });
+}
+
+}  // namespace
+
+TEST_CASE("verdicts: what the simpler methods learnt from, where tracks are as a detector's") {
+  EvaluationReport report = duel({20, 0.9}, {25, 0.8}, "nearest_neighbour");
+  CHECK_FALSE(mentions(report, "exact joints"));
+  report.tracks = "openpose";
+  CHECK(has_verdict(report, Kind::note, kOnClips));
+  report = duel({20, 0.9}, {25, 0.8}, "mlp_window");
+  report.tracks = "openpose";
+  for (ReportClip& clip : report.clips) clip.others[kMeanField] = clip.samples[0];
+  CHECK_FALSE(mentions(report, "exact joints"));
+}
+
+TEST_CASE("verdicts: whether the camera was known, whatever the tracks are") {
+  EvaluationReport report = duel({20, 0.9}, {25, 0.8}, "ridge_window");
+  CHECK_FALSE(mentions(report, "camera"));
+  report.camera_known = false;
+  CHECK(has_verdict(report, Kind::note,
+                    "No method knew the camera: its place and lens were hidden."));
+  report.tracks = "openpose";
+  CHECK_FALSE(mentions(report, "No method knew the camera"));  // it is in the note on the tracks
+  CHECK(mentions(report, "no camera known"));
+}
+
+TEST_CASE("verdicts: people who were trained on, and those of whom nothing tells") {
+  EvaluationReport report = duel({20, 0.9}, {25, 0.8}, "ridge_window");
+  CHECK_FALSE(mentions(report, "trained on"));
+  report.clips[0].known_person = "08";
+  CHECK(has_verdict(report, Kind::note,
+                    "1 of 2 clips show a person whom the model was trained on in other clips (08): "
+                    "for people that it has never seen expect less."));
+  report.clips[1].known_person.reset();
+  CHECK(has_verdict(report, Kind::note,
+                    "Whether the model was trained on the people in 1 of 2 clips is not known: its "
+                    "training clips are not here to compare, and the names of these do not tell."));
+  report.clips[1].trained_on = true;
+  CHECK_FALSE(mentions(report, "is not known"));
 }
 
 }  // namespace mcdbn

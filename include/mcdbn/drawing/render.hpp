@@ -39,7 +39,8 @@ struct RenderOptions {
 /// A `.mp4` shows the clips side by side. A `.png` is a contact sheet of frames at even times: two
 /// rows of one clip, or one row a clip (the first, e.g. the truth, on top). Written atomically.
 /// Over a film nothing else is drawn, and of a sheet both rows show the film.
-/// @param notices if given, collects what was adapted to a film
+/// @param notices if given, collects what was adapted to a film, and whether it has another rate or
+/// ends before the clips
 /// @throws InputError if there is no frame, the film cannot be read, or the file cannot be written;
 ///         ConfigError if the ending is another one, an option is out of range, or a film is to be
 ///         drawn over without a camera
