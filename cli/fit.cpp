@@ -110,7 +110,8 @@ void check_settings_used(const FitOptions& options, const MachineParts& machine)
     const std::string flag = flag_of(setting.name);
     if (!options.is_given(flag)) return;
     std::string why = why_unused(machine, setting.name);
-    if (why.empty()) why = why_unused(settings.gaussian, settings.binary, setting.name);
+    if (why.empty())
+      why = why_unused(settings.gaussian, settings.binary, settings.mrbm, setting.name);
     if (!why.empty())
       throw ConfigError(
           fmt::format("--machine {}: {} {}; leave it out", options.machine, flag, why));

@@ -70,6 +70,37 @@ void add_settings(const json& record, const std::string& prefix, const Used& is_
   }
 }
 
+/// Why a setting of this group has no effect beside its others.
+/// @param name without that of the group
+std::string why_unused(const CdSettings& settings, const std::string& group,
+                       const std::string& name) {
+  if (name == "fast-rate" && !settings.persistent)
+    return fmt::format("is of persistent chains, and --{}-persistent is off", group);
+  if (name == "cosine" && settings.cosine && settings.final_rate == 1)
+    return fmt::format("is of rates that fall, and --{}-final-rate is 1", group);
+  if (name == "sparsity-target" && settings.sparsity_strength == 0)
+    return fmt::format("is of the pull to that target, and --{}-sparsity-strength is 0", group);
+  return {};
+}
+
+/// Likewise of `mrbm`. The joint likelihood comes before the perceptron's loss (make_mrbm_rule).
+std::string why_unused(const MrbmSettings& settings, const std::string& name) {
+  constexpr const char* kJoint = "--mrbm-joint-likelihood";
+  constexpr const char* kPerceptron = "--mrbm-perceptron-loss";
+  const bool has_chains = settings.joint_likelihood || settings.perceptron_loss;
+  if (name == "perceptron-loss" && settings.perceptron_loss && settings.joint_likelihood)
+    return fmt::format("is another rule than {}, which is on", kJoint);
+  if (name == "persistent" && settings.persistent && !settings.joint_likelihood)
+    return fmt::format("is of the joint likelihood's chains, and {} is off", kJoint);
+  if ((name == "gibbs-steps" || (name == "sample-visible" && settings.sample_visible)) &&
+      !has_chains)
+    return fmt::format("is of Gibbs chains, and {} and {} are off", kJoint, kPerceptron);
+  if (name == "mean-field-steps" && has_chains)
+    return fmt::format("is of multi-prediction, and {} is on",
+                       settings.joint_likelihood ? kJoint : kPerceptron);
+  return {};
+}
+
 }  // namespace
 
 std::string why_unused(const MachineParts& machine, const std::string& setting) {
@@ -97,11 +128,12 @@ std::string why_unused(const MachineParts& machine, const std::string& setting) 
 }
 
 std::string why_unused(const CdSettings& gaussian, const CdSettings& binary,
-                       const std::string& setting) {
-  for (const auto& [group, settings] :
-       {std::pair{"gaussian", &gaussian}, std::pair{"binary", &binary}})
-    if (setting == fmt::format("{}.fast-rate", group) && !settings->persistent)
-      return fmt::format("is of persistent chains, and --{}-persistent is off", group);
+                       const MrbmSettings& mrbm, const std::string& setting) {
+  const auto dot = setting.find('.');
+  const std::string group = setting.substr(0, dot);
+  if (group == "mrbm") return why_unused(mrbm, setting.substr(dot + 1));
+  if (group == "gaussian") return why_unused(gaussian, group, setting.substr(dot + 1));
+  if (group == "binary") return why_unused(binary, group, setting.substr(dot + 1));
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mcdbn/learning/cd_settings.hpp"
+#include "mcdbn/learning/mrbm_settings.hpp"
 #include "mcdbn/machines/crbm.hpp"
 
 namespace mcdbn::cli {
@@ -24,9 +25,10 @@ struct MachineParts {
 /// @param setting its name with dots
 std::string why_unused(const MachineParts& machine, const std::string& setting);
 
-/// Likewise, why it has no effect beside the others of `gaussian` and `binary`.
+/// Likewise, why it has no effect beside the others of its group. A switch that is off has none to
+/// lose.
 std::string why_unused(const CdSettings& gaussian, const CdSettings& binary,
-                       const std::string& setting);
+                       const MrbmSettings& mrbm, const std::string& setting);
 
 /// The settings of a machine's record that it was fitted with, by their names with dots: those of
 /// other kinds of machines and units are left out.

@@ -38,19 +38,22 @@ MatrixF free_samples(Device& device, const Cdbn& stack, const SampleOptions& opt
   return sample(stack, start, options.chains).to_host();
 }
 
-/// The given sequences with what was NaN in them drawn, `count` times over.
+/// The given sequences with what was NaN in them drawn, `count` times over, in the data's units.
 MatrixF given_samples(Device& device, const Cdbn& stack, const SavedMachine& saved,
                       const SampleOptions& options) {
   const CrbmShape shape = stack.layers.front().shape();
-  std::vector<MatrixF> given = options.given.read();
+  const std::vector<MatrixF> given = options.given.read();
   for (std::size_t i = 0; i < given.size(); ++i)
     check_unit_values(given[i], shape.kind, options.given.files[i].string(), true);
-  given = scaled(saved, std::move(given), shape.visible, options.given);
   std::vector<MatrixF> copies;
   for (std::size_t i = 0; i < options.count; ++i)
     copies.insert(copies.end(), given.begin(), given.end());
-  return stacked(
-      sample_given(stack, Sequences::from_host(device, copies), options.chains).to_host(), 0);
+  const MatrixF known = stacked(copies, 0);
+  const Sequences start =
+      Sequences::from_host(device, scaled(saved, std::move(copies), shape.visible, options.given));
+  const MatrixF drawn =
+      unscaled(saved, stacked(sample_given(stack, start, options.chains).to_host(), 0));
+  return known.array().isNaN().select(drawn, known);  // scaling and back rounds what is given
 }
 
 /// The wanted modality of an MRBM's chains, in the units of its data: free chains, or those of each
@@ -75,9 +78,8 @@ MatrixF mrbm_samples(Device& device, const SavedMachine& saved, const SampleOpti
 /// Samples of an RBM, a CRBM or a stack of them.
 MatrixF stack_samples(Device& device, const SavedMachine& saved, const SampleOptions& options) {
   const Cdbn stack = stack_of(saved, options.model);
-  return unscaled(saved, options.given.files.empty()
-                             ? free_samples(device, stack, options)
-                             : given_samples(device, stack, saved, options));
+  return options.given.files.empty() ? unscaled(saved, free_samples(device, stack, options))
+                                     : given_samples(device, stack, saved, options);
 }
 
 void run_sample(const CommandContext& context, const SampleOptions& options) {

@@ -57,7 +57,7 @@ void resumable(RunFolder& run, const Train& train) {
     throw Interrupted(advice(error.what()));
   } catch (const DeviceError& error) {
     if (run.discard_if_untrained()) throw;
-    throw DeviceError(advice(error.what()));
+    throw DeviceError(advice(error.what()), error.kind());
   } catch (...) {
     run.discard_if_untrained();
     throw;

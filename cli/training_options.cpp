@@ -32,8 +32,22 @@ std::string group_of(const std::string& setting) {
   return dot == std::string::npos ? "Settings" : "Settings of " + setting.substr(0, dot);
 }
 
+/// The flag as it stands on the command line.
+std::string as_given(const GivenSetting& flag) {
+  if (!flag.value.is_boolean()) return fmt::format("{} {}", flag.who, flag.value.dump());
+  return flag.value.get<bool>() ? flag.who : "--no-" + flag.who.substr(2);
+}
+
 bool fine_tunes(const TrainingConfig& config) {
   return config.fine_tuning.steps > 0;
+}
+
+/// The networks' layers, from below, and the MRBM.
+MachineParts parts_of(const TrainingConfig& config) {
+  const bool has_history = config.order > 0;
+  MachineParts parts{.layers = {{VisibleKind::gaussian, has_history}}, .has_mrbm = true};
+  parts.layers.resize(config.layers, {VisibleKind::binary, has_history});
+  return parts;
 }
 
 /// Why a training with these settings does not depend on one of them; empty if it does.
@@ -52,7 +66,12 @@ std::string why_ignored(const TrainingConfig& config, const std::string& setting
     return "is of the greedy stages, which are left out";
   if (is_of("binary.") && config.layers == 1)
     return "is of the layers above the lowest, and there is one layer";
-  return why_unused(config.gaussian, config.binary, setting);
+  if (is_of("regeneration.") && fine_tunes(config))
+    return "is of networks that are not fine-tuned: fine-tuning finds out itself how to draw";
+  // By these steps the greedy stages' network infers, too.
+  if (setting == "mrbm.mean-field-steps" && !fine_tunes(config)) return {};
+  const std::string why = why_unused(parts_of(config), setting);
+  return why.empty() ? why_unused(config.gaussian, config.binary, config.mrbm, setting) : why;
 }
 
 }  // namespace
@@ -134,13 +153,13 @@ TrainingConfig TrainingOptions::resolve(const std::vector<GivenSetting>& last,
       config.fine_tuning.from_greedy = false;
       config.fine_tuning.rate = FineTuningSettings::kRateFromModel;
     }
-    config.joint_map = joint_map_;
     assign_settings(config, start);
     assign_settings(config, file_);
     assign_settings(config, flags_);
     apply_stages(config);
     apply_tracks(config);
-    apply_skeleton(config);
+    if (!skeleton_.empty()) assign_settings(config, {{"skeleton", skeleton_, "--skeleton"}});
+    if (!joint_map_.empty()) config.joint_map = joint_map_;
     assign_settings(config, last);
     return config;
   };
@@ -152,6 +171,7 @@ TrainingConfig TrainingOptions::resolve(const std::vector<GivenSetting>& last,
 }
 
 void TrainingOptions::check_used(const std::vector<TrainingConfig>& trained) const {
+  check_stages();
   const auto refuse_unused = [&](const std::string& setting, const std::string& flag) {
     std::string why;
     for (const TrainingConfig& config : trained)
@@ -164,6 +184,22 @@ void TrainingOptions::check_used(const std::vector<TrainingConfig>& trained) con
         "--preset general fine-tunes: leave out what turns that off (--stages greedy, "
         "--fine-tuning-steps 0), or choose another preset");
   for (const GivenSetting& given : flags_) refuse_unused(given.name, given.who);
+}
+
+void TrainingOptions::check_stages() const {
+  TrainingConfig flagged;
+  assign_settings(flagged, flags_);
+  TrainingConfig staged = flagged;
+  apply_stages(staged);
+  for (const GivenSetting& given : flags_) {
+    const bool contradicts =
+        (given.name == "fine-tuning.steps" && fine_tunes(flagged) != fine_tunes(staged)) ||
+        (given.name == "fine-tuning.from-greedy" &&
+         flagged.fine_tuning.from_greedy != staged.fine_tuning.from_greedy);
+    if (contradicts)
+      throw ConfigError(fmt::format("--stages {} and {} contradict each other; leave one out",
+                                    stages_, as_given(given)));
+  }
 }
 
 void TrainingOptions::apply_stages(TrainingConfig& config) const {
@@ -180,11 +216,6 @@ void TrainingOptions::apply_tracks(TrainingConfig& config) const {
   if (std::ranges::count(flags_, "augment.detector", &GivenSetting::name) > 0) return;
   if (tracks_ == "exact") share = 0;
   if (tracks_ == "detector" && share == 0) share = TrainingConfig::kShareOfDetectorViews;
-}
-
-void TrainingOptions::apply_skeleton(TrainingConfig& config) const {
-  if (skeleton_ == "own") config.skeleton = SkeletonUse::own;
-  if (skeleton_ == "canonical") config.skeleton = SkeletonUse::humanoid;
 }
 
 }  // namespace mcdbn::cli

@@ -21,15 +21,15 @@ class TrainingOptions {
   TrainingConfig resolve(const std::vector<GivenSetting>& last = {},
                          const std::vector<GivenSetting>& start = {}) const;
   /// @param trained the settings of each training that there will be
-  /// @throws ConfigError naming a flag that affects none of them, or a preset that fine-tunes where
-  ///         nothing is fine-tuned
+  /// @throws ConfigError naming a flag that affects none of them, one that contradicts --stages, or
+  ///         a preset that fine-tunes where nothing is fine-tuned
   void check_used(const std::vector<TrainingConfig>& trained) const;
 
  private:
   void add_setting(CLI::App& command, const Setting& setting, const nlohmann::json& usual);
+  void check_stages() const;
   void apply_stages(TrainingConfig& config) const;
   void apply_tracks(TrainingConfig& config) const;
-  void apply_skeleton(TrainingConfig& config) const;
 
   std::string preset_ = "default", stages_, tracks_, skeleton_;
   std::vector<GivenSetting> file_, flags_;

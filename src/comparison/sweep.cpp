@@ -105,6 +105,13 @@ std::string folder_name_of(const std::string& name) {
   return fmt::format("{}-{:016x}", name.substr(0, kKept_bytes), fnv1a(name));
 }
 
+/// Whether the next configuration would fail, too.
+bool ends_sweep(const std::exception& error) {
+  if (dynamic_cast<const Interrupted*>(&error)) return true;
+  const auto* device = dynamic_cast<const DeviceError*>(&error);
+  return device && device->kind() == DeviceError::Kind::no_device;
+}
+
 void require_folder(const fs::path& folder) {
   const OutputsAtOnce to_stay;
   make_folder(folder);
@@ -177,11 +184,8 @@ ordered_json Sweep::run(const SweepConfiguration& configuration, const Watch& wa
     if (const ordered_json* done = log_.scored(record)) return *done;
     config.validate();
     score(config, watch, record);
-  } catch (const Interrupted&) {
-    throw;
-  } catch (const DeviceError&) {
-    throw;
   } catch (const std::exception& error) {
+    if (ends_sweep(error)) throw;
     if (!record.contains("settings")) record["settings"] = record["configuration"];
     record["status"] = "failed";
     record["error"] = error.what();

@@ -56,7 +56,7 @@ class Sweep {
         Notices notices = {}, const CheckpointSettings& checkpoints = {});
 
   /// @return the line, also of a configuration that failed, or was scored before
-  /// @throws Interrupted, DeviceError: the next one would fail too
+  /// @throws Interrupted, DeviceError of a device that is lost: the next one would fail, too
   nlohmann::ordered_json run(const SweepConfiguration& configuration, const Watch& watch = {});
 
  private:

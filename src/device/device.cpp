@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <functional>
 
 #include "base/interruption.hpp"
 #include "device/opencl_errors.hpp"
@@ -32,12 +33,19 @@ std::string lower(std::string text) {
   return text;
 }
 
-bool matches(const std::string& wanted, int index, const std::string& name) {
-  if (wanted.empty()) return true;
-  const bool is_index = std::all_of(wanted.begin(), wanted.end(),
-                                    [](unsigned char c) { return std::isdigit(c) != 0; });
-  if (is_index) return wanted == std::to_string(index);
-  return lower(name).find(lower(wanted)) != std::string::npos;
+/// Keeps the devices whose index is wanted or, where no index is, a part of whose name.
+void keep_wanted(std::vector<DeviceInfo>& devices, const std::string& wanted,
+                 int DeviceInfo::*index, std::string DeviceInfo::*name) {
+  const auto has_index = [&](const DeviceInfo& info) {
+    return std::to_string(info.*index) == wanted;
+  };
+  const auto has_name = [&](const DeviceInfo& info) {
+    return lower(info.*name).find(lower(wanted)) != std::string::npos;
+  };
+  if (std::ranges::any_of(devices, has_index))
+    std::erase_if(devices, std::not_fn(has_index));
+  else
+    std::erase_if(devices, std::not_fn(has_name));
 }
 
 std::vector<cl::Platform> platforms() {
@@ -121,12 +129,14 @@ DeviceSelection DeviceSelection::from_environment() {
 }
 
 std::vector<DeviceInfo> matching_devices(const DeviceSelection& selection) {
-  std::vector<DeviceInfo> matching = list_devices();
-  std::erase_if(matching, [&](const DeviceInfo& info) {
-    return !matches(selection.platform, info.platform_index, info.platform_name) ||
-           !matches(selection.device, info.device_index, info.name);
-  });
-  return matching;
+  return matching_devices(list_devices(), selection);
+}
+
+std::vector<DeviceInfo> matching_devices(std::vector<DeviceInfo> devices,
+                                         const DeviceSelection& selection) {
+  keep_wanted(devices, selection.platform, &DeviceInfo::platform_index, &DeviceInfo::platform_name);
+  keep_wanted(devices, selection.device, &DeviceInfo::device_index, &DeviceInfo::name);
+  return devices;
 }
 
 Device Device::open(const DeviceSelection& selection) {

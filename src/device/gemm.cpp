@@ -135,7 +135,8 @@ void gemm_clblast(const Rows& a, const Rows& b, const Rows& c, float alpha, floa
       static_cast<std::size_t>(c.stride()), &queue, device.keeps_launch_times() ? &event : nullptr);
   if (status != clblast::StatusCode::kSuccess)
     throw DeviceError(fmt::format("{}: CLBlast's product: {}", device.info().name,
-                                  opencl_failure(static_cast<cl_int>(status))));
+                                  opencl_failure(static_cast<cl_int>(status))),
+                      kind_of_failure(static_cast<cl_int>(status)));
   if (event != nullptr) device.keep_launch("clblast_gemm", cl::Event(event));
   device.count_launch();
 }

@@ -28,8 +28,8 @@ std::array<std::size_t, 2> local_size_for(const std::array<std::size_t, 2>& glob
 void keep_pace(Device& device);
 
 /// Enqueues a kernel whose arguments are set. The first launch with work-groups of a size is waited
-/// for, and its time counts as compiling (ProgramCache::compiling_s). @throws cl::Error,
-/// DeviceError
+/// for, and what it takes beyond the kernel's run counts as compiling (ProgramCache::compiling_s).
+/// @throws cl::Error, DeviceError, Interrupted
 void enqueue(Device& device, const cl::Kernel& kernel, const LaunchSize& size);
 
 /// Error of a launch, with the kernel's name.

@@ -15,19 +15,30 @@ bool is_lack_of_memory(cl_int code) {
          code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE;
 }
 
+/// Why there is no room for so many bytes: the largest buffer that the device takes, or its memory.
+std::string no_room(const DeviceInfo& device, std::size_t bytes) {
+  constexpr double kMegabyte = 1e6;
+  constexpr const char* kLess = "smaller layers and mini-batches need less";
+  const double wanted = static_cast<double>(bytes) / kMegabyte,
+               has = static_cast<double>(device.global_memory_bytes) / kMegabyte;
+  if (bytes > device.largest_buffer_bytes)
+    return fmt::format(
+        "{}: no room for {:.3g} MB in one buffer, it takes {:.0f} MB at most, of {:.0f} MB that it "
+        "has; {}",
+        device.name, wanted, static_cast<double>(device.largest_buffer_bytes) / kMegabyte, has,
+        kLess);
+  return fmt::format("{}: no room for {:.3g} MB more, of {:.0f} MB that it has; {}", device.name,
+                     wanted, has, kLess);
+}
+
 /// @throws DeviceError with the size wanted where the device has no room for it
 cl::Buffer allocate(const Device& device, std::size_t bytes) {
-  constexpr double kMegabyte = 1e6;
   try {
     return {device.context(), CL_MEM_READ_WRITE, bytes};
   } catch (const cl::Error& error) {
     if (!is_lack_of_memory(error.err()))
       throw device_error(device.info().name, "allocating a matrix", error);
-    throw DeviceError(fmt::format(
-        "{}: no room for {:.3g} MB more, of {:.0f} MB that it has; smaller layers and mini-batches "
-        "need less",
-        device.info().name, static_cast<double>(bytes) / kMegabyte,
-        static_cast<double>(device.info().global_memory_bytes) / kMegabyte));
+    throw DeviceError(no_room(device.info(), bytes), DeviceError::Kind::refused);
   }
 }
 
@@ -41,7 +52,8 @@ Matrix::Matrix(Device& device, std::size_t rows, std::size_t columns)
     : device_(&device), rows_(rows), columns_(columns) {
   // Kernels index with 32-bit integers.
   if (element_count() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-    throw DeviceError(fmt::format("a matrix of {} x {} exceeds 2^31 elements", rows, columns));
+    throw DeviceError(fmt::format("a matrix of {} x {} exceeds 2^31 elements", rows, columns),
+                      DeviceError::Kind::refused);
   if (empty()) return;
   buffer_ = allocate(device, element_count() * sizeof(float));
   set_zero();

@@ -11,6 +11,8 @@ namespace mcdbn {
 /// What a code of OpenCL's means to who runs the program, with its name: "the device is lost …
 /// (CL_DEVICE_NOT_AVAILABLE)".
 std::string opencl_failure(cl_int code);
+/// A code that is not known is one of the work that was refused.
+DeviceError::Kind kind_of_failure(cl_int code);
 
 /// @param what "kernel gibbs_chain", "opening the device"
 DeviceError device_error(const std::string& device, const std::string& what,

@@ -200,7 +200,7 @@ cl::Program ProgramCache::built_from_source(const std::string& source, const std
     program = cl::Program(context_, source);
     log = log_of_failed_build(program, options);
   }
-  if (log) throw DeviceError(build_failure(*log, options));
+  if (log) throw DeviceError(build_failure(*log, options), DeviceError::Kind::refused);
   return program;
 }
 

@@ -43,7 +43,8 @@ class ProgramCache {
   /// Whether the kernel was not launched before with work-groups of this size; from now on it was.
   /// Some drivers compile a kernel only then, PoCL most of it and on threads of its own.
   bool is_first_launch(const cl::Kernel& kernel, const std::array<std::size_t, 2>& group);
-  /// Seconds that compiling has taken so far: programs that were built, and first launches.
+  /// Seconds that compiling has taken so far: programs that were built, and first launches without
+  /// the kernels' own runs.
   double compiling_s() const { return compiling_s_; }
   void count_compiling(double seconds);
   /// @param notice is called once, when compiling has taken a second from here on

@@ -12,6 +12,7 @@
 #include "device/median_time.hpp"
 #include "device/peak.hpp"
 #include "device/tuning_fields.hpp"
+#include "mcdbn/base/errors.hpp"
 #include "mcdbn/device/matrix.hpp"
 
 namespace mcdbn {
@@ -85,6 +86,34 @@ double product_s(Device& device, std::size_t size, GemmBackend backend, double s
   return median_time_s(device, run, seconds);
 }
 
+/// clblast_threshold() where the device takes CLBlast's groups.
+/// @throws DeviceError where a product fails
+std::int64_t measured_threshold(Device& device, double seconds, const TuningNotice& notice) {
+  // From above the products of a mini-batch of 100 windows to above those of one of 1024.
+  constexpr std::array<std::size_t, 3> kSizes{256, 512, 1024};
+  for (const std::size_t size : kSizes) {
+    const double own_s = product_s(device, size, GemmBackend::own, seconds);
+    const double clblast_s = product_s(device, size, GemmBackend::clblast, seconds);
+    if (notice)
+      notice(
+          fmt::format("product of size {}: CLBlast takes {:.2f} of ours", size, clblast_s / own_s));
+    if (clblast_s >= kWorthwhile * own_s) continue;
+    // Larger products than that go to CLBlast, too, where it may take another kernel.
+    bool right = true;
+    for (std::size_t checked = size; right && checked <= kSizes.back(); checked *= 2) {
+      const auto side = static_cast<Eigen::Index>(checked);
+      right = clblast_is_right(device, side, side, side) &&
+              clblast_is_right(device, side + 1, 33, side);
+    }
+    if (right) return static_cast<std::int64_t>(size * size * size);
+    if (notice)
+      notice(fmt::format("CLBlast's products from size {} on are wrong on {}; it stays unused",
+                         size, device.info().name));
+    return 0;
+  }
+  return 0;
+}
+
 }  // namespace
 
 Tuning tuning_for_units(Device& device, const TuningNotice& notice) {
@@ -112,29 +141,16 @@ Tuning fastest_tuning(const DeviceInfo& info, const Tuning& usual, const TunedWo
 }
 
 std::int64_t clblast_threshold(Device& device, double seconds, const TuningNotice& notice) {
-  // From above the products of a mini-batch of 100 windows to above those of one of 1024.
-  constexpr std::array<std::size_t, 3> kSizes{256, 512, 1024};
-  for (const std::size_t size : kSizes) {
-    const double own_s = product_s(device, size, GemmBackend::own, seconds);
-    const double clblast_s = product_s(device, size, GemmBackend::clblast, seconds);
-    if (notice)
-      notice(
-          fmt::format("product of size {}: CLBlast takes {:.2f} of ours", size, clblast_s / own_s));
-    if (clblast_s >= kWorthwhile * own_s) continue;
-    // Larger products than that go to CLBlast, too, where it may take another kernel.
-    bool right = true;
-    for (std::size_t checked = size; right && checked <= kSizes.back(); checked *= 2) {
-      const auto side = static_cast<Eigen::Index>(checked);
-      right = clblast_is_right(device, side, side, side) &&
-              clblast_is_right(device, side + 1, 33, side);
-    }
-    if (right) return static_cast<std::int64_t>(size * size * size);
-    if (notice)
-      notice(fmt::format("CLBlast's products from size {} on are wrong on {}; it stays unused",
-                         size, device.info().name));
+  Tuning with_clblast = device.tuning();
+  with_clblast.clblast_from = 1;
+  if (limited(with_clblast, device.info()).clblast_from == 0) return 0;  // its groups are too large
+  try {
+    return measured_threshold(device, seconds, notice);
+  } catch (const DeviceError& error) {
+    if (error.kind() == DeviceError::Kind::no_device) throw;
+    if (notice) notice(fmt::format("{}; CLBlast stays unused", error.what()));
     return 0;
   }
-  return 0;
 }
 
 bool tune(Device& device, const Tuning& usual, const TunedWork& work, double seconds,

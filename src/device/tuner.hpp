@@ -27,7 +27,7 @@ Tuning fastest_tuning(const DeviceInfo& info, const Tuning& usual, const TunedWo
                       const TuningNotice& notice = {});
 
 /// The fewest multiply-adds from which CLBlast's product takes less time than ours and is right; 0
-/// if it never does.
+/// if it never does, or the device refuses CLBlast's work.
 /// @param seconds for each measurement
 std::int64_t clblast_threshold(Device& device, double seconds, const TuningNotice& notice = {});
 

@@ -120,12 +120,13 @@ StageRun::StageRun(Device& device, Checkpoints* checkpoints, const std::string& 
 }
 
 void StageRun::after_step(std::size_t done) {
+  if (!checkpoints_) return check_interruption();
   if (!deferred_) {
     device_.finish();
     deferred_.emplace();
   }
   const bool stop = interruption_requested();
-  if (checkpoints_ && (stop || checkpoints_->due())) checkpoints_->try_to_write(done);
+  if (stop || checkpoints_->due()) checkpoints_->try_to_write(done);
   if (stop) throw Interrupted("interrupted");
 }
 

@@ -60,8 +60,8 @@ class Checkpoints {
   Clock::time_point last_ = Clock::now();
 };
 
-/// One stage of a training as it goes through its mini-batches: it stops between two of them, and
-/// writes checkpoints, if there are any.
+/// One stage of a training as it goes through its mini-batches. With checkpoints it stops between
+/// two of them and writes one; without it stops at once, as nothing is kept.
 class StageRun {
  public:
   /// Begins or restores a stage, as Checkpoints::begin(). @param checkpoints none: nothing is kept
@@ -71,13 +71,15 @@ class StageRun {
   bool is_over() const { return !done_; }
   /// Number of mini-batches that were done when it was begun or restored.
   std::size_t done() const { return done_.value_or(0); }
-  /// After each mini-batch that is enqueued. @throws Interrupted once a checkpoint is written
+  /// After each mini-batch that is enqueued.
+  /// @throws Interrupted once a checkpoint is written, if there are any
   void after_step(std::size_t done);
   void end();
 
  private:
   Device& device_;
-  /// From the first mini-batch on; before, while kernels are built, nothing is lost.
+  /// With checkpoints, from the first mini-batch on; before, while kernels are built, nothing is
+  /// lost.
   std::optional<InterruptionDeferred> deferred_;
   Checkpoints* checkpoints_;
   std::optional<std::size_t> done_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "mcdbn/device/device.hpp"
@@ -15,16 +16,22 @@ struct MemoryNeed {
   double frames = 0;      ///< the data and their codes, which the greedy stages learn from
 
   double total() const { return parameters + windows + frames; }
+  double largest() const { return std::max({parameters, windows, frames}); }
 };
 
+/// Of the whole training.
 /// @param dimensions of each modality's frames  @param frames of all clips or views together
 MemoryNeed memory_need(std::span<const std::size_t> dimensions, double frames,
                        const LearningSettings& settings);
 
-/// Compares it with the whole memory of the device, before anything is asked for.
-/// @throws ConfigError that names both and what to lower
-void check_memory(const MemoryNeed& need, const DeviceInfo& device,
-                  const LearningSettings& settings);
+/// Of the largest single buffer for each purpose, with the same parameters.
+MemoryNeed largest_buffers(std::span<const std::size_t> dimensions, double frames,
+                           const LearningSettings& settings);
+
+/// Compares both with what the device has, before anything is asked for.
+/// @throws ConfigError with the sizes and what to lower
+void check_memory(std::span<const std::size_t> dimensions, double frames,
+                  const LearningSettings& settings, const DeviceInfo& device);
 
 /// The greedy stages need a window of frames: the history of every layer and the look-ahead.
 /// @param longest frames of the longest clip

@@ -1,5 +1,6 @@
 #include "mcdbn/machines/crbm.hpp"
 
+#include "base/interruption.hpp"
 #include "device/gemm.hpp"
 #include "device/pointwise.hpp"
 #include "mcdbn/base/errors.hpp"
@@ -13,11 +14,13 @@ MatrixF normal_matrix(Eigen::Index rows, Eigen::Index columns, double deviation,
                       WeightPhase phase) {
   key.phase = static_cast<std::uint16_t>(key.phase + phase);
   MatrixF values(rows, columns);
-  for (Eigen::Index r = 0; r < rows; ++r)
+  for (Eigen::Index r = 0; r < rows; ++r) {
+    check_interruption();
     for (Eigen::Index c = 0; c < columns; ++c)
       values(r, c) =
           static_cast<float>(deviation * random_normal(key, static_cast<std::uint32_t>(r),
                                                        static_cast<std::uint32_t>(c)));
+  }
   return values;
 }
 

@@ -9,6 +9,7 @@
 #include "base/toml_keys.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/motion_model/settings_record.hpp"
+#include "motion_model/text_settings.hpp"
 
 namespace mcdbn {
 namespace {
@@ -23,6 +24,12 @@ std::string named(const std::string& key) {
   return printable(key.substr(0, kLongest));
 }
 
+/// A setting's value, or a text.
+nlohmann::json value_of(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  return scalar_of(node);
+}
+
 void add_table(std::vector<GivenSetting>& given, const std::filesystem::path& file,
                const toml::table& table, const std::string& prefix) {
   for (const auto& [key, node] : table) {
@@ -31,7 +38,7 @@ void add_table(std::vector<GivenSetting>& given, const std::filesystem::path& fi
       add_table(given, file, *inner, name + ".");
     else
       given.push_back(
-          {name, scalar_of(node), fmt::format("{}: {}", location_of(file, node), named(name))});
+          {name, value_of(node), fmt::format("{}: {}", location_of(file, node), named(name))});
   }
 }
 
@@ -71,19 +78,22 @@ std::vector<GivenSetting> read_settings_file(const std::filesystem::path& file) 
 
 std::string settings_toml(const TrainingConfig& config) {
   toml::table table;
-  visit_settings(config, [&](const Setting& setting, const auto& value) {
-    using Value = std::decay_t<decltype(value)>;
-    toml::table* target = &table;
-    std::string key = setting.name;
-    if (const auto dot = key.find('.'); dot != std::string::npos) {
-      target = table.insert(key.substr(0, dot), toml::table{}).first->second.as_table();
-      key = key.substr(dot + 1);
-    }
-    if constexpr (std::is_same_v<Value, std::size_t>)
-      target->insert(key, static_cast<std::int64_t>(value));
+  const auto put = [&](const std::string& name, const auto& value) {
+    const auto dot = name.find('.');
+    if (dot == std::string::npos)
+      table.insert(name, value);
     else
-      target->insert(key, value);
+      table.insert(name.substr(0, dot), toml::table{})
+          .first->second.as_table()
+          ->insert(name.substr(dot + 1), value);
+  };
+  visit_settings(config, [&](const Setting& setting, const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::size_t>)
+      put(setting.name, static_cast<std::int64_t>(value));
+    else
+      put(setting.name, value);
   });
+  for (const auto& [name, text] : text_settings(config)) put(name, text);
   std::ostringstream text;
   text << table << '\n';
   return text.str();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/setting_values.hpp"
+#include "motion_model/text_settings.hpp"
 
 namespace mcdbn {
 namespace {
@@ -23,7 +24,7 @@ std::string name_today(const std::string& given) {
 
 void assign(TrainingConfig& config, GivenSetting given, RangeCheck check) {
   given.name = name_today(given.name);
-  assign_setting(config, given, check);
+  if (!assign_text_setting(config, given)) assign_setting(config, given, check);
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ void check_before(const DeviceInfo& device, const TrainingSet& data, const ClipS
       : learns_from_fresh_views(clips, config)
           ? frames_of_pieces(config) * static_cast<double>(fresh_views_at_once(clips, config))
           : frames_of_views(frames, config);
-  check_memory(memory_need(dimensions, kept, config), device, config);
+  check_memory(dimensions, kept, config, device);
 }
 
 }  // namespace

@@ -32,7 +32,10 @@ std::string AllSettingsRun::quoted_clips() {
 }
 
 AllSettingsRun::AllSettingsRun() {
-  const CliResult result = train(quoted_clips(), run(), all_flags());
+  const ScratchFolder folder;
+  const fs::path file = folder.write("apart.toml", toml_of_those_apart());
+  const CliResult result =
+      train(quoted_clips(), run(), fmt::format("--config '{}'{}", file.string(), all_flags()));
   CAPTURE(result.standard_error);
   REQUIRE(result.exit_code == 0);
   recorded_ = recorded_settings(run());

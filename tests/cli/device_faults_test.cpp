@@ -59,3 +59,23 @@ TEST_CASE("no room on the device, kernels that are not built: exit code 4, nothi
   check_device_error(fails("clCreateContext,0,-2"), "opening the device: the device is lost");
   CHECK(!fs::exists(run));
 }
+
+TEST_CASE("a sweep goes on where the device has no room, and ends where it is lost") {
+  if (!have_device()) return;
+  const TinyPipeline& pipeline = TinyPipeline::instance();
+  const ScratchFolder folder;
+  const fs::path log = folder / "run/sweep.jsonl";
+  const fs::path file =
+      folder.write("sweep.toml", fmt::format("test = ['{}']\n[grid]\nseed = [1, 2]\n",
+                                             (pipeline.motion() / "walk_s02_01.bvh").string()));
+  const auto sweep = [&](const std::string& fault) {
+    return train(pipeline.training_clips(), folder / "run",
+                 fmt::format("{} --quiet --sweep '{}'", kTiny, file.string()), failing(fault));
+  };
+  check_device_error(sweep("clEnqueueNDRangeKernel,3,-2,lost"), "the device is lost");
+  CHECK(!fs::exists(log));
+  const CliResult refused = sweep("clCreateBuffer,3,-4");
+  CAPTURE(refused.standard_error);
+  CHECK(refused.exit_code == 1);
+  CHECK(count_lines(mcdbn::read_text_file(log)) == 2);
+}

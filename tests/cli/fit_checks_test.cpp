@@ -114,13 +114,39 @@ TEST_CASE("fit: flags of settings that the machine has not are refused, settings
           "--gaussian-deviation-rate is of Gaussian units without history");
   refused("rbm x.npy --binary-fast-rate 0.1",
           "--binary-fast-rate is of persistent chains, and --binary-persistent is off");
+  refused("rbm x.npy --binary-cosine",
+          "--binary-cosine is of rates that fall, and --binary-final-rate is 1");
+  refused("rbm x.npy --binary-sparsity-target 0.02",
+          "--binary-sparsity-target is of the pull to that target, and --binary-sparsity-strength "
+          "is 0");
+  const std::string mrbm = "mrbm --modality a=x.npy --modality b=y.npy ";
+  const std::string no_chains =
+      " is of Gibbs chains, and --mrbm-joint-likelihood and --mrbm-perceptron-loss are off";
+  refused(mrbm + "--mrbm-gibbs-steps 20", "--mrbm-gibbs-steps" + no_chains);
+  refused(mrbm + "--mrbm-sample-visible", "--mrbm-sample-visible" + no_chains);
+  for (const char* rule : {"", "--mrbm-perceptron-loss "})
+    refused(mrbm + rule + "--mrbm-persistent",
+            "--mrbm-persistent is of the joint likelihood's chains, and --mrbm-joint-likelihood "
+            "is off");
+  for (const std::string rule : {"--mrbm-joint-likelihood", "--mrbm-perceptron-loss"})
+    refused(mrbm + rule + " --mrbm-mean-field-steps 50",
+            fmt::format("--mrbm-mean-field-steps is of multi-prediction, and {} is on", rule));
+  refused(mrbm + "--mrbm-joint-likelihood --mrbm-perceptron-loss",
+          "--mrbm-perceptron-loss is another rule than --mrbm-joint-likelihood, which is on");
   CHECK(!fs::exists(file));
   if (!have_device()) return;
-  const fs::path settings = folder.write(
-      "fit.toml",
-      "[binary]\nepochs = 2\nfast-rate = 0.1\n[gaussian]\nrate = 0.1\n[mrbm]\nepochs = 2\n");
+  const fs::path settings =
+      folder.write("fit.toml",
+                   "[binary]\nepochs = 2\nfast-rate = 0.1\ncosine = true\nsparsity-target = 0.02\n"
+                   "[gaussian]\nrate = 0.1\n[mrbm]\nepochs = 2\n");
   output_of(fmt::format("fit {} --machine rbm --hidden 3 --quiet --config {} -o {}",
                         FittedMachines::instance().bits(), settings.string(), file));
+  // A switch that is off, and what the others give an effect.
+  output_of(
+      fmt::format("fit --machine mrbm --modality a={0} --modality b={0} --hidden 3 --quiet "
+                  "--mrbm-epochs 1 --mrbm-joint-likelihood --no-mrbm-perceptron-loss "
+                  "--mrbm-persistent --mrbm-gibbs-steps 2 -o {1}",
+                  FittedMachines::instance().bits(), file));
 }
 
 }  // namespace fit_checks_test

@@ -51,8 +51,11 @@ std::vector<ChangedSetting> changed_settings() {
   return changed;
 }
 
-/// A machine that has the setting; nothing for what binary units have not.
+/// A machine that has the setting, with the rule that it is of; nothing for what binary units have
+/// not.
 std::string machine_with(const std::string& setting) {
+  if (setting == "mrbm.mean-field-steps") return "mrbm by multi-prediction";
+  if (setting == "mrbm.perceptron-loss") return "mrbm by CD-PercLoss";
   if (setting.starts_with("mrbm.")) return "mrbm";
   if (setting == "gaussian.deviation-rate") return "gaussian-rbm";
   return setting == "binary.deviation-rate" ? "" : "cdbn";
@@ -61,11 +64,15 @@ std::string machine_with(const std::string& setting) {
 /// What the files record of machines that are fitted with the flags of all settings that they have.
 std::map<std::string, json> recorded_configs() {
   const FittedMachines& machines = FittedMachines::instance();
+  const std::string mrbm = fmt::format(
+      "--machine mrbm --modality a={0} --modality b={0} --hidden 5 --batch 20", machines.bits());
   std::map<std::string, std::string> options{
-      {"cdbn", machines.values()},
-      {"gaussian-rbm", machines.values() + " --hidden 5 --gaussian-epochs 2"},
-      {"mrbm",
-       fmt::format("--modality a={0} --modality b={0} --hidden 5 --batch 20", machines.bits())}};
+      {"cdbn", "--machine cdbn " + machines.values()},
+      {"gaussian-rbm",
+       "--machine gaussian-rbm --hidden 5 --gaussian-epochs 2 " + machines.values()},
+      {"mrbm", mrbm},
+      {"mrbm by multi-prediction", mrbm},
+      {"mrbm by CD-PercLoss", mrbm}};
   for (const ChangedSetting& one : changed_settings())
     if (const std::string machine = machine_with(one.name); !machine.empty())
       options.at(machine) += " " + one.flag;
@@ -73,7 +80,7 @@ std::map<std::string, json> recorded_configs() {
   const std::string file = (folder / "all.safetensors").string();
   std::map<std::string, json> configs;
   for (const auto& [machine, given] : options) {
-    output_of(fmt::format("fit --machine {} -o {} --quiet {}", machine, file, given));
+    output_of(fmt::format("fit -o {} --quiet {}", file, given));
     configs[machine] = mcdbn::describe_machine(file).at("config");
   }
   return configs;

@@ -153,25 +153,39 @@ std::string flag_of(const SettingRow& row) {
   return fmt::format("--{} {}", flag, row.value);
 }
 
+std::optional<std::string> apart(const std::string& setting) {
+  static const std::map<std::string, std::string> options = {
+      {"fine-tuning.from-greedy", ""},
+      {"gaussian.deviation-rate", "--order 0"},
+      {"binary.deviation-rate", ""},  // of Gaussian units alone
+      {"mrbm.mean-field-steps", "--stages both"},
+      {"mrbm.perceptron-loss", "--stages both"},
+      {"regeneration.gibbs-steps", "--stages greedy"},
+      {"regeneration.mrbm-gibbs-steps", "--stages greedy"},
+      {"regeneration.sampled", "--stages greedy"}};
+  const auto found = options.find(setting);
+  return found == options.end() ? std::nullopt : std::optional(found->second);
+}
+
 std::string all_flags() {
   std::string flags;
   for (const SettingRow& row : setting_rows())
-    if (std::string(row.name) != "fine-tuning.from-greedy") flags += " " + flag_of(row);
+    if (!apart(row.name)) flags += " " + flag_of(row);
   return flags;
 }
 
-TrainingConfig all_settings() {
-  TrainingConfig config;
-  for (const SettingRow& row : setting_rows())
-    if (std::string(row.name) != "fine-tuning.from-greedy") row.write(config, row.value);
-  return config;
+namespace {
+
+bool is_greedy_switch(const SettingRow& row) {
+  return std::string(row.name) == "fine-tuning.from-greedy";
 }
 
-std::string all_toml() {
+template <typename IsWanted>
+std::string toml_of(IsWanted&& is_wanted) {
   std::map<std::string, std::string> tables;  // the settings without a table come first: ""
   for (const SettingRow& row : setting_rows()) {
     const std::string name = row.name;
-    if (name == "fine-tuning.from-greedy") continue;
+    if (!is_wanted(row)) continue;
     const auto dot = name.find('.');
     const std::string table = dot == std::string::npos ? "" : name.substr(0, dot);
     const std::string key = dot == std::string::npos ? name : name.substr(dot + 1);
@@ -184,6 +198,23 @@ std::string all_toml() {
   return text;
 }
 
+}  // namespace
+
+std::string toml_of_those_apart() {
+  return toml_of([](const SettingRow& row) { return apart(row.name) && !is_greedy_switch(row); });
+}
+
+TrainingConfig all_settings() {
+  TrainingConfig config;
+  for (const SettingRow& row : setting_rows())
+    if (!is_greedy_switch(row)) row.write(config, row.value);
+  return config;
+}
+
+std::string all_toml() {
+  return toml_of([](const SettingRow& row) { return !is_greedy_switch(row); });
+}
+
 std::vector<std::pair<std::string, double>> settings_in(const std::string& toml) {
   std::vector<std::pair<std::string, double>> settings;
   std::string prefix;
@@ -193,6 +224,7 @@ std::vector<std::pair<std::string, double>> settings_in(const std::string& toml)
     const auto equals = line.find(" = ");
     if (equals == std::string::npos) continue;
     const std::string value = line.substr(equals + 3);
+    if (value.starts_with('"') || value.starts_with('\'')) continue;
     settings.emplace_back(prefix + line.substr(0, equals), value == "true"    ? 1.0
                                                            : value == "false" ? 0.0
                                                                               : std::stod(value));

@@ -8,16 +8,16 @@
 
 namespace mcdbn::test {
 
-// Here and inline: a test file's own constants may begin with these.
+// Each file has its own, initialized before its other constants, which may begin with these.
 
 /// Settings with which the greedy stages, of one layer, take no time.
-inline const std::string kTinyGreedy =
+const std::string kTinyGreedy =
     "--hidden 8 --mrbm-hidden 8 --phases 1 --gaussian-epochs 2 --mrbm-epochs 2";
 /// Settings with which fine-tuning takes no time.
-inline const std::string kTinyFineTuning =
+const std::string kTinyFineTuning =
     " --fine-tuning-steps 3 --fine-tuning-windows 4 --augment-views 1";
 /// Settings with which training takes no time.
-inline const std::string kTiny = kTinyGreedy + kTinyFineTuning;
+const std::string kTiny = kTinyGreedy + kTinyFineTuning;
 
 CliResult synthesize(const std::filesystem::path& folder);
 

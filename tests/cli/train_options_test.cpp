@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <array>
 #include <map>
 
 #include "all_settings_run.hpp"
@@ -30,53 +29,64 @@ bool is_on(std::size_t number, bool even) {
   return (number % 2 == 0) == even;
 }
 
-/// Off, it leaves out stages whose switches are then refused.
-bool leaves_stages_out(const SettingRow& row) {
-  return std::string(row.name) == "fine-tuning.from-greedy";
+/// The options that a switch stands beside; those of which they are the same stand together.
+std::string beside(const SettingRow& row) {
+  const std::string name = row.name;
+  if (name == "mrbm.persistent" || name == "mrbm.sample-visible") return "--mrbm-joint-likelihood";
+  return apart(name).value_or("--layers 2 --gaussian-final-rate 0.5 --binary-final-rate 0.5");
 }
 
-/// What is set where every switch is given, `--mirror` or `--no-mirror`, and a file sets the
-/// opposite; or where that one alone is given, which all the others leave out.
-std::map<std::string, double> switched(bool even, bool stages = false) {
+/// What is set where all switches that stand beside these options are given, `--mirror` or
+/// `--no-mirror`, and a file sets the opposite.
+std::map<std::string, double> switched(bool even, const std::string& options) {
   const ScratchFolder folder;
-  std::string opposite, flags = " --layers 2";
+  std::string opposite, flags;
   std::size_t number = 0;
   for (const SettingRow& row : setting_rows()) {
-    if (!row.is_switch || leaves_stages_out(row) != stages) continue;
+    if (!row.is_switch || beside(row) != options) continue;
     const bool on = is_on(number++, even);
     opposite += fmt::format("{} = {}\n", row.name, !on);
     flags += (on ? " --" : " --no-") + with_dashes(row.name);
   }
   const fs::path file = folder.write("opposite.toml", opposite);
-  return settings_of_options(fmt::format("--config '{}'{}", file.string(), flags));
+  return settings_of_options(fmt::format("--config '{}' {}{}", file.string(), options, flags));
 }
 
-/// Its flag stands in the run with all flags; its value in that run's record, not the default.
+/// Its flag stands in the run with all flags, or apart; its value in the record, not the default.
 void check_setting(const SettingRow& row) {
-  const auto& recorded = AllSettingsRun::instance().recorded();
+  const auto options = apart(row.name);
+  const auto recorded = options ? settings_of_options(flag_of(row) + " " + *options)
+                                : AllSettingsRun::instance().recorded();
   REQUIRE(recorded.count(row.name) == 1);
   CHECK(recorded.at(row.name) == row.value);
   CHECK(row.read(mcdbn::TrainingConfig{}) != row.value);
 }
 
+/// No layer above the lowest has Gaussian units.
+void check_binary_deviation(const SettingRow& row) {
+  const CliResult result = run_cli("train --print-settings --layers 2 " + flag_of(row));
+  CHECK(result.exit_code == 2);
+  CHECK(result.standard_error.find("is of Gaussian units without history") != std::string::npos);
+}
+
 std::vector<OptionRow> setting_option_rows() {
   std::vector<OptionRow> rows;
-  const std::array all_switched{switched(false), switched(true)},
-      stages_switched{switched(false, true), switched(true, true)};
-  std::size_t number = 0;
+  std::map<std::string, std::size_t> numbers;  // of the switches beside the same options
   for (const SettingRow& row : setting_rows()) {
+    const std::string name = row.name, options = beside(row);
     if (!row.is_switch) {
-      rows.push_back({"--" + with_dashes(row.name), [&row] { check_setting(row); }});
+      const bool is_refused = name == "binary.deviation-rate";
+      rows.push_back({"--" + with_dashes(name), [&row, is_refused] {
+                        is_refused ? check_binary_deviation(row) : check_setting(row);
+                      }});
       continue;
     }
-    const bool stages = leaves_stages_out(row);
+    const std::size_t number = numbers[options]++;
     for (const bool even : {false, true}) {
-      const bool on = is_on(stages ? 0 : number, even);
-      const double found = (stages ? stages_switched : all_switched)[even ? 1 : 0].at(row.name);
-      rows.push_back({(on ? "--" : "--no-") + with_dashes(row.name),
-                      [=] { CHECK(found == (on ? 1.0 : 0.0)); }});
+      const bool on = is_on(number, even);
+      rows.push_back({(on ? "--" : "--no-") + with_dashes(name),
+                      [=] { CHECK(switched(even, options).at(name) == (on ? 1.0 : 0.0)); }});
     }
-    if (!stages) ++number;
   }
   return rows;
 }

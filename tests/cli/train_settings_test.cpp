@@ -202,16 +202,21 @@ TEST_CASE("--preset and --stages set which stages there are and whose defaults h
                  {{"fine-tuning.from-greedy", 0}});
   check_settings(settings_of_options("--no-fine-tuning-from-greedy"), TrainingConfig{},
                  {{"fine-tuning.from-greedy", 0}});
+  const ScratchFolder folder;
+  const auto by_file = [&](const char* settings) {
+    const fs::path file = folder.write("s.toml", fmt::format("[fine-tuning]\n{}\n", settings));
+    return fmt::format(" --config '{}'", file.string());
+  };
   check_settings(
-      settings_of_options("--stages both --no-fine-tuning-from-greedy --fine-tuning-steps 7"),
+      settings_of_options("--stages both --fine-tuning-steps 7" + by_file("from-greedy = false")),
       TrainingConfig{}, {{"fine-tuning.steps", 7}});
-  // A stage that is asked for runs, however many steps the preset or the flags set.
+  // A stage that is asked for runs, however many steps the preset or a file sets.
   const double steps = static_cast<double>(TrainingConfig{}.fine_tuning.steps);
   check_settings(settings_of_options("--preset paper --stages both"), TrainingConfig::paper(),
                  {{"fine-tuning.steps", steps}});
-  check_settings(settings_of_options("--stages fine-tuning --fine-tuning-steps 0"),
+  check_settings(settings_of_options("--stages fine-tuning" + by_file("steps = 0")),
                  TrainingConfig{}, {{"fine-tuning.steps", steps}, {"fine-tuning.from-greedy", 0}});
-  check_settings(settings_of_options("--stages greedy --fine-tuning-steps 5 --layers 3"),
+  check_settings(settings_of_options("--stages greedy --layers 3" + by_file("steps = 5")),
                  TrainingConfig::greedy(), Wanted{{"layers", 3}});
 }
 

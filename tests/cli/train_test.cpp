@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/capture_bound.hpp"
 #include "base/text_file.hpp"
 #include "tiny_pipeline.hpp"
 
@@ -56,7 +57,7 @@ TEST_CASE("train --stages leaves stages out") {
   };
   const std::set<std::string> greedy{"pose.0", "pose.1", "track.0", "track.1", "mrbm"};
   const std::string two_layers = kTinyGreedy + " --binary-epochs 2";
-  CHECK(stages("--stages greedy --fine-tuning-steps 3", two_layers) == greedy);
+  CHECK(stages("--stages greedy", two_layers) == greedy);
   CHECK(stages("--fine-tuning-steps 0", two_layers) == greedy);
   CHECK(stages("--stages both", kTiny) ==
         std::set<std::string>{"pose.0", "track.0", "mrbm", "fine-tuning"});
@@ -131,17 +132,98 @@ TEST_CASE(
   check_refused("--preset generation --binary-rate 0.1", "--binary-rate", one_layer);
   check_refused("--gaussian-fast-rate 0.1", "--gaussian-fast-rate",
                 "is of persistent chains, and --gaussian-persistent is off");
+  check_refused("--gaussian-cosine", "--gaussian-cosine",
+                "is of rates that fall, and --gaussian-final-rate is 1");
+  check_refused("--order 0 --gaussian-history-noise 1", "--gaussian-history-noise",
+                "is of layers with history, and there is none");
+  check_refused("--gaussian-deviation-rate 0.5", "--gaussian-deviation-rate",
+                "is of Gaussian units without history, and there are none");
+  check_refused("--stages greedy --mrbm-persistent", "--mrbm-persistent",
+                "is of the joint likelihood's chains, and --mrbm-joint-likelihood is off");
+  check_refused("--mrbm-joint-likelihood --mrbm-mean-field-steps 4", "--mrbm-mean-field-steps",
+                "is of multi-prediction, and --mrbm-joint-likelihood is on");
+  for (const char* flag : {"--regeneration-sampled", "--regeneration-gibbs-steps 7",
+                           "--regeneration-mrbm-gibbs-steps 9"})
+    check_refused(flag, std::string(flag).substr(0, std::string(flag).find(' ')),
+                  "is of networks that are not fine-tuned: fine-tuning finds out itself how to "
+                  "draw");
 
   const ScratchFolder folder;
-  const fs::path file = folder.write(
-      "all.toml",
-      "[fine-tuning]\nwindows = 7\n[binary]\nrate = 0.1\n[gaussian]\nfast-rate = 0.1\n");
+  const fs::path file =
+      folder.write("all.toml",
+                   "[fine-tuning]\nwindows = 7\n[binary]\nrate = 0.1\n[gaussian]\nfast-rate = 0.1\n"
+                   "cosine = true\n[mrbm]\npersistent = true\n[regeneration]\nsampled = true\n");
   for (const char* options :
        {"--stages greedy --layers 1 --config", "--stages fine-tuning --config"})
     CHECK(printed(fmt::format("{} '{}'", options, file.string())).exit_code == 0);
-  for (const char* options : {"--layers 2 --binary-rate 0.1", "--stages greedy --binary-rate 0.1",
-                              "--gaussian-fast-rate 0.1 --gaussian-persistent"})
+  for (const char* options :
+       {"--layers 2 --binary-rate 0.1", "--stages greedy --binary-rate 0.1",
+        "--gaussian-fast-rate 0.1 --gaussian-persistent",
+        "--gaussian-cosine --gaussian-final-rate 0.5", "--preset generation --gaussian-cosine",
+        "--order 0 --gaussian-deviation-rate 0.5", "--preset paper --regeneration-gibbs-steps 7",
+        // The greedy stages' network infers by them, however it was learnt.
+        "--stages greedy --mrbm-joint-likelihood --mrbm-mean-field-steps 4"}) {
+    CAPTURE(options);
     CHECK(printed(options).exit_code == 0);
+  }
+}
+
+TEST_CASE("train: --stages and flags that contradict it are refused, a file's settings not") {
+  const auto printed = [](const std::string& options) {
+    return run_cli("train --print-settings " + options);
+  };
+  for (const auto& [stages, flag] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"greedy", "--fine-tuning-steps 100"},
+           {"greedy", "--joint-steps 100"},
+           {"fine-tuning", "--fine-tuning-steps 0"},
+           {"both", "--fine-tuning-steps 0"},
+           {"both", "--no-fine-tuning-from-greedy"},
+           {"fine-tuning", "--fine-tuning-from-greedy"}}) {
+    CAPTURE_BOUND(flag);
+    const CliResult result = printed(fmt::format("--stages {} {}", stages, flag));
+    CHECK(result.exit_code == 2);
+    CHECK(result.standard_error ==
+          fmt::format("mcdbn-cl: error: --stages {} and {} contradict each other; leave one out\n",
+                      stages, flag));
+  }
+  for (const char* options :
+       {"--stages greedy --fine-tuning-steps 0", "--stages both --fine-tuning-steps 7",
+        "--stages both --fine-tuning-from-greedy",
+        "--stages fine-tuning --no-fine-tuning-from-greedy --fine-tuning-steps 7"}) {
+    CAPTURE(options);
+    CHECK(printed(options).exit_code == 0);
+  }
+  const ScratchFolder folder;
+  const fs::path file =
+      folder.write("stages.toml", "[fine-tuning]\nsteps = 7\nfrom-greedy = false\n");
+  CHECK(printed(fmt::format("--stages greedy --config '{}'", file.string())).exit_code == 0);
+}
+
+TEST_CASE(
+    "train: the printed settings hold the skeleton and the joint map, as --config reads them") {
+  const ScratchFolder folder;
+  const std::string map = folder.write("map.toml", "head = \"Neck\"\n").string();
+  const auto printed = [](const std::string& options) {
+    const CliResult result = run_cli("train --print-settings " + options);
+    CAPTURE(result.standard_error);
+    CHECK(result.exit_code == 0);
+    return result.standard_output;
+  };
+  const auto again = [&](const std::string& text, const std::string& options = "") {
+    const fs::path file = folder.write("all.toml", text);
+    return printed(fmt::format("--config '{}' {}", file.string(), options));
+  };
+  const std::string plain = printed(""), canonical = printed("--skeleton canonical"),
+                    mapped = printed(fmt::format("--joint-map '{}'", map));
+  CHECK(canonical != plain);
+  CHECK(mapped != plain);
+  for (const std::string& text : {plain, canonical, mapped, printed("--preset general")})
+    CHECK(again(text) == text);
+  // Flags have the last word.
+  CHECK(again(canonical, "--skeleton own") == printed("--skeleton own"));
+  const std::string other = folder.write("other.toml", "left_knee = \"Knee\"\n").string();
+  CHECK(again(mapped, fmt::format("--joint-map '{}'", other)) ==
+        printed(fmt::format("--joint-map '{}'", other)));
 }
 
 TEST_CASE("the same seed trains the same model, from the recorded config too") {

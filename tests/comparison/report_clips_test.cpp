@@ -233,7 +233,7 @@ TEST_CASE("clips are put under actions by their folders, or all together; names 
       CHECK(by_folder[i].action == actions[i]);
       CHECK(together[i].action == "all clips");
       CHECK_FALSE(by_folder[i].trained_on);
-      CHECK(by_folder[i].known_person.empty());
+      CHECK(by_folder[i].known_person == "");
       CHECK(by_folder[i].name == names[i]);
       CHECK(together[i].name == names[i]);
     }

@@ -284,6 +284,25 @@ TEST_CASE("sweep: what failed is tried again, and its line replaced") {
   });
 }
 
+TEST_CASE(
+    "sweep: work that the device refuses is a failure of its own, a device that is lost ends it") {
+  const TrainingFiles files({{.subject = 1}, {.subject = 2}});
+  const ScratchFolder folder;
+  on_every_device([&](Device& device) {
+    std::filesystem::remove_all(folder / "run");
+    Sweep sweep(device, {files.files()[1]}, {files.files()[0]}, tiny, folder / "run");
+    const auto fails = [](const DeviceError& error) -> Sweep::Watch {
+      return [=](bool) -> EpochObserver { return [=](const EpochReport&) { throw error; }; };
+    };
+    const ordered_json refused =
+        sweep.run({}, fails(DeviceError("no room", DeviceError::Kind::refused)));
+    CHECK(refused.at("status") == "failed");
+    CHECK(refused.at("error") == "no room");
+    CHECK_THROWS_AS(sweep.run({given("order", 3)}, fails(DeviceError("lost"))), DeviceError);
+    CHECK(lines_of(folder / "run/sweep.jsonl") == std::vector<ordered_json>{refused});
+  });
+}
+
 TEST_CASE("sweep: an observer may stop it, and no line records a failed configuration") {
   const TrainingFiles files({{.subject = 1}, {.subject = 2}});
   const ScratchFolder folder;

@@ -63,8 +63,38 @@ TEST_CASE("small: what matches nothing is an error that lists every device") {
     CHECK(message.find(info.name) != std::string::npos);
     CHECK(message.find(info.platform_name) != std::string::npos);
   }
-  CHECK(message_of({"99", ""}).find("'99'") != std::string::npos);
-  CHECK(message_of({"", "99"}).find("'99'") != std::string::npos);
+  // No index, and longer than any number in a name.
+  const std::string number = "98765432123456789";
+  CHECK(message_of({number, ""}).find("'" + number + "'") != std::string::npos);
+  CHECK(message_of({"", number}).find("'" + number + "'") != std::string::npos);
+}
+
+TEST_CASE("a number is an index where there is one, else a part of a name") {
+  const auto made_up = [](int platform, const char* platform_name, int index, const char* name) {
+    DeviceInfo info;
+    info.platform_index = platform;
+    info.platform_name = platform_name;
+    info.device_index = index;
+    info.name = name;
+    return info;
+  };
+  const std::vector<DeviceInfo> all{made_up(0, "CUDA 12", 0, "GeForce RTX 4090"),
+                                    made_up(0, "CUDA 12", 1, "GeForce RTX 3070"),
+                                    made_up(1, "Portable", 0, "cpu-avx512")};
+  const auto names = [&](const DeviceSelection& selection) {
+    std::vector<std::string> found;
+    for (const DeviceInfo& info : matching_devices(all, selection)) found.push_back(info.name);
+    return found;
+  };
+  using Names = std::vector<std::string>;
+  CHECK(names({"", "4090"}) == Names{"GeForce RTX 4090"});
+  CHECK(names({"", "512"}) == Names{"cpu-avx512"});
+  CHECK(names({"12", "3070"}) == Names{"GeForce RTX 3070"});
+  CHECK(names({"", "1"}) == Names{"GeForce RTX 3070"});  // not avx512
+  CHECK(names({"1", ""}) == Names{"cpu-avx512"});        // not CUDA 12
+  CHECK(names({"0", "0"}) == Names{"GeForce RTX 4090"});
+  CHECK(names({"", ""}).size() == 3);
+  CHECK(names({"", "5090"}).empty());
 }
 
 TEST_CASE("small: with nothing selected a GPU is taken where there is one") {

@@ -1,7 +1,9 @@
 // Whatever call of OpenCL's fails, and whenever: a DeviceError in words, and nothing kept.
 #include <memory>
+#include <optional>
 
 #include "device/opencl_errors.hpp"
+#include "device/program.hpp"
 #include "device_faults/tiny_training.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/device/matrix.hpp"
@@ -19,6 +21,17 @@ std::string error_of(const Work& work) {
     return error.what();
   }
   return "";
+}
+
+/// What it leaves of the device.
+template <typename Work>
+std::optional<DeviceError::Kind> kind_of(const Work& work) {
+  try {
+    work();
+  } catch (const DeviceError& error) {
+    return error.kind();
+  }
+  return {};
 }
 
 bool contains(const std::string& text, const std::string& words) {
@@ -108,6 +121,47 @@ TEST_CASE("out of device memory: how much was wanted, or what needs less") {
   CAPTURE(late);
   CHECK(contains(late, device.info().name + ": clearing a matrix: out of memory"));
   CHECK(contains(late, "CL_MEM_OBJECT_ALLOCATION_FAILURE"));
+}
+
+TEST_CASE("a buffer larger than the device takes: the largest is named, not its whole memory") {
+  const HealthyDriver driver;
+  layer::limit({.buffer_bytes = 1'000'000});
+  Device device = Device::open();
+  CHECK(device.info().largest_buffer_bytes == 1'000'000);
+  CHECK_NOTHROW(Matrix(device, 10, 16'000));
+  const std::string refused = error_of([&] { Matrix(device, 1000, 1000); });
+  CAPTURE(refused);
+  CHECK(contains(refused, device.info().name +
+                              ": no room for 4.03 MB in one buffer, it takes 1 MB at most, of "));
+  CHECK(contains(refused, "smaller layers and mini-batches"));
+}
+
+TEST_CASE("an error tells work that was refused from a device that is lost") {
+  const HealthyDriver driver;
+  using enum DeviceError::Kind;
+  Device device = Device::open();
+  const auto kind_after = [&](const char* call, int code, const auto& work) {
+    layer::heal();
+    layer::fail(call, 0, code);
+    return kind_of(work);
+  };
+  const auto make = [&] { Matrix(device, 1000, 1000); };
+  const auto build = [] {
+    Device::open().programs().kernel("pointwise.cl", "transpose", {{"VEC", 4}});
+  };
+  // When it is asked for, and when it is first used.
+  for (const char* call : {"clCreateBuffer", "clEnqueueFillBuffer"}) {
+    CHECK(kind_after(call, CL_MEM_OBJECT_ALLOCATION_FAILURE, make) == refused);
+    CHECK(kind_after(call, CL_OUT_OF_RESOURCES, make) == refused);
+    CHECK(kind_after(call, CL_DEVICE_NOT_AVAILABLE, make) == no_device);
+  }
+  CHECK(kind_after("clBuildProgram", CL_BUILD_PROGRAM_FAILURE, build) == refused);
+  CHECK(kind_after("clBuildProgram", CL_DEVICE_NOT_AVAILABLE, build) == no_device);
+  CHECK(kind_of([&] { Matrix(device, 1U << 20U, 1U << 12U); }) == refused);
+  CHECK(kind_of([] { Device::open({"", "no such device"}); }) == no_device);
+  CHECK(kind_of_failure(CL_INVALID_COMMAND_QUEUE) == no_device);
+  CHECK(kind_of_failure(CL_INVALID_WORK_GROUP_SIZE) == refused);
+  CHECK(kind_of_failure(-4711) == refused);
 }
 
 TEST_CASE("a code is given in words with its name, an unknown one by its number") {

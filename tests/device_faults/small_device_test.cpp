@@ -1,8 +1,11 @@
 // Devices that take less than this one: smaller plans, the same results.
 #include <doctest/doctest.h>
 
+#include "base/scoped_variable.hpp"
+#include "base/scratch_folder.hpp"
 #include "device/launch.hpp"
 #include "device/row_tile.hpp"
+#include "device/tuner.hpp"
 #include "device_faults/tiny_training.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/device/matrix.hpp"
@@ -83,6 +86,36 @@ TEST_CASE("a whole training on a small device: the same model but for the order 
     const float difference = (got[i] - want[i]).cwiseAbs().maxCoeff();
     CHECK(difference <= kSteps * 0x1p-24F * want[i].cwiseAbs().maxCoeff());
   }
+}
+
+TEST_CASE("a device that does not take CLBlast's groups is tuned without CLBlast") {
+  const HealthyDriver driver;
+  layer::limit({.group = 32});
+  Device device = Device::open();  // PoCL finds its own cache at the first call
+  const ScratchFolder folder;
+  const ScopedVariable cache("XDG_CACHE_HOME", (folder / "cache").string());
+  const Tuning usual = device.tuning();
+  const TunedTime time_s = [](const Tuning&) { return 1.0; };
+  CHECK(tune(device, usual, {time_s, time_s}, 0.0));
+  const auto stored = load_tuning(device.info());
+  REQUIRE(stored);
+  CHECK(stored->clblast_from == 0);
+}
+
+TEST_CASE("CLBlast stays unused where the device refuses its work") {
+  const HealthyDriver driver;
+  Device device = Device::open();
+  if (device.info().is_gpu) return;  // which might refuse our own groups, too
+  layer::limit({.group = 32});
+  std::vector<std::string> heard;
+  const auto notice = [&](const std::string& text) { heard.push_back(text); };
+  CHECK(clblast_threshold(device, 0.0, notice) == 0);
+  REQUIRE(heard.size() == 1);
+  CAPTURE(heard.front());
+  CHECK(heard.front().find("CLBlast's product: the device takes no work-groups") !=
+        std::string::npos);
+  layer::fail("clEnqueueNDRangeKernel", 0, CL_DEVICE_NOT_AVAILABLE);
+  CHECK_THROWS_AS(clblast_threshold(device, 0.0, notice), DeviceError);
 }
 
 TEST_CASE("the layer refuses what a small device would") {

@@ -337,6 +337,41 @@ TEST_CASE("asked to stop, a training writes a checkpoint between two mini-batche
   });
 }
 
+TEST_CASE("a request to stop waits for the end of a mini-batch only for a checkpoint") {
+  const auto nothing = [](TrainingState&) {};
+  on_every_device([&](Device& device) {
+    const NoRequestLeft after;
+    const ScratchFolder folder;
+    Checkpoints::Options options;
+    options.folder = folder / "";
+    options.every = std::chrono::hours(1);
+    Checkpoints checkpoints(options);
+    {
+      StageRun kept(device, &checkpoints, "stage", nothing, nothing);
+      kept.after_step(1);
+      request_interruption();
+      CHECK_NOTHROW(check_interruption());
+      CHECK_THROWS_AS(kept.after_step(2), Interrupted);
+      CHECK(Checkpoints::exist_in(folder / ""));
+      clear_interruption();
+    }
+    StageRun unkept(device, nullptr, "stage", nothing, nothing);
+    CHECK_NOTHROW(unkept.after_step(1));
+    request_interruption();
+    CHECK_THROWS_AS(check_interruption(), Interrupted);
+    CHECK_THROWS_AS(unkept.after_step(2), Interrupted);
+    clear_interruption();
+  });
+}
+
+TEST_CASE("asked to stop, first weights are not drawn to the end") {
+  const NoRequestLeft after;
+  const CrbmShape shape{3, 4, 1, VisibleKind::gaussian};
+  CHECK_NOTHROW(CrbmParameters::random(shape, 0.1, {}));
+  request_interruption();
+  CHECK_THROWS_AS(CrbmParameters::random(shape, 0.1, {}), Interrupted);
+}
+
 TEST_CASE("a checkpoint that cannot be written is a warning, and the training goes on") {
   const MatrixSource source = small_source();
   on_every_device([&](Device& device) {

@@ -2,6 +2,7 @@
 
 #include "learning/epoch_clock.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -70,6 +71,23 @@ TEST_CASE("the first epoch's speed is without the kernels that it compiles") {
     REQUIRE(reports.size() == 2);
     // All the work until then, but for what was compiled, holds that of the epoch.
     CHECK(reports.front().windows_per_s >= kRows / worked_s);
+  });
+}
+
+TEST_CASE("the speed of an epoch with a single mini-batch is without compiling alone") {
+  constexpr std::size_t kRows = 2000;
+  on_every_device([](Device& open) {
+    Device device(open.info());  // which has compiled nothing
+    MachineSettings settings;
+    settings.batch = kRows;
+    settings.binary.gibbs_steps = 30;
+    settings.binary.epochs = 4;
+    const MatrixF bits = (random_matrix(kRows, 64, 1).array() > 0).cast<float>();
+    std::vector<double> speeds;
+    fit_stack(device, Sequences::from_host(device, {bits}), VisibleKind::binary, {{64, 0}},
+              settings, [&](const EpochReport& report) { speeds.push_back(report.windows_per_s); });
+    REQUIRE(speeds.size() == 4);
+    CHECK(speeds[0] < 4 * std::max({speeds[1], speeds[2], speeds[3]}));
   });
 }
 

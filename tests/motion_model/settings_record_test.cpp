@@ -71,6 +71,25 @@ TEST_CASE("settings record: the TOML of all settings is read back") {
   CHECK(values_of(read) == values_of(config));
 }
 
+TEST_CASE("settings record: the TOML holds the skeleton and the joint map, and is read back") {
+  const ScratchFolder folder;
+  const auto read = [&](const TrainingConfig& config) {
+    TrainingConfig result;
+    assign_settings(result, read_settings_file(folder.write("all.toml", settings_toml(config))));
+    return result;
+  };
+  CHECK(read({}).skeleton == SkeletonUse::shared);
+  CHECK(read({}).joint_map.empty());
+  TrainingConfig config;
+  for (const SkeletonUse use : {SkeletonUse::own, SkeletonUse::humanoid}) {
+    config.skeleton = use;
+    CHECK(read(config).skeleton == use);
+  }
+  config.joint_map = {{JointRole::head, "Neck"}, {JointRole::left_knee, "Knie \"links\" é.1"}};
+  CHECK(read(config).joint_map == config.joint_map);
+  CHECK(values_of(read(config)) == values_of(config));
+}
+
 TEST_CASE("settings record: a file's faults are named by file, line and setting") {
   const ScratchFolder folder;
   const auto error_in = [&](const char* text) {
@@ -84,9 +103,18 @@ TEST_CASE("settings record: a file's faults are named by file, line and setting"
         "2: gaussian.rate must be above 0 and at most 100, not 0");
   CHECK(error_in("hidden = -3\n") == "1: hidden must be at least 1 and at most 100000, not -3");
   CHECK(error_in("hidden = 2.5\n") == "1: hidden must be a whole number, not 2.5");
-  CHECK(error_in("hidden = 'ten'\n") == "1: hidden must be a whole number, not null");
+  CHECK(error_in("hidden = 'ten'\n") == "1: hidden must be a whole number, not \"ten\"");
   CHECK(error_in("fps = true\n") == "1: fps must be a number, not true");
   CHECK(error_in("[augment]\nmirror = 1\n") == "2: augment.mirror must be true or false, not 1");
+  CHECK(error_in("skeleton = 'other'\n") ==
+        "1: skeleton must be \"own\" or \"canonical\", not \"other\"");
+  CHECK(error_in("skeleton = 1\n") == "1: skeleton must be \"own\" or \"canonical\", not 1");
+  CHECK(error_in("joint-map = 'Neck'\n") == "1: joint-map is no setting");
+  CHECK(error_in("[joint-map]\nheat = 'Neck'\n") == "2: joint-map.heat is no role of a joint");
+  CHECK(error_in("[joint-map]\nhead = 3\n") ==
+        "2: joint-map.head must be the name of a joint, not 3");
+  CHECK(error_in("[joint-map]\nhead = ''\n") ==
+        "2: joint-map.head must be the name of a joint, not \"\"");
   CHECK(error_in("[joint]\n\nrate = -1\n") ==
         "3: joint.rate must be above 0 and at most 100, not -1");
   CHECK_THROWS_AS(read_settings_file(folder.write("no.toml", "order = = 3\n")), ConfigError);

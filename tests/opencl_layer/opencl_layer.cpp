@@ -191,6 +191,7 @@ cl_int CL_API_CALL device_info(cl_device_id device, cl_device_info what, std::si
   const Limits& limits = state().limits;
   if (what == CL_DEVICE_MAX_WORK_GROUP_SIZE) lower(value, size, limits.group);
   if (what == CL_DEVICE_LOCAL_MEM_SIZE) lower(value, size, cl_ulong{limits.local_bytes});
+  if (what == CL_DEVICE_MAX_MEM_ALLOC_SIZE) lower(value, size, cl_ulong{limits.buffer_bytes});
   if (what == CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT || what == CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT)
     lower(value, size, cl_uint{limits.vector_width});
   return code;
@@ -242,6 +243,10 @@ cl_mem CL_API_CALL create_buffer(cl_context context, cl_mem_flags flags, std::si
     State& all = state();
     const std::scoped_lock lock(all.mutex);
     all.largest_buffer_bytes = std::max(all.largest_buffer_bytes, bytes);
+    if (bytes > all.limits.buffer_bytes) {
+      if (code) *code = CL_INVALID_BUFFER_SIZE;
+      return nullptr;
+    }
   }
   return between<&cl_icd_dispatch::clCreateBuffer, kBuffer>(context, flags, bytes, values, code);
 }

@@ -33,6 +33,7 @@ struct Limits {
   std::size_t group = SIZE_MAX;            ///< work-items
   std::uint64_t local_bytes = UINT64_MAX;  ///< of a group
   unsigned vector_width = UINT32_MAX;      ///< floats, preferred and native
+  std::uint64_t buffer_bytes = UINT64_MAX;
 };
 void limit(const Limits& limits);
 

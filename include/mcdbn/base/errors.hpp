@@ -31,7 +31,16 @@ class ShapeError : public Error {
 /// No OpenCL device, or the device refused work.
 class DeviceError : public Error {
  public:
-  using Error::Error;
+  enum class Kind {
+    no_device,  ///< there is none, or it is lost: whatever comes next fails, too
+    refused,    ///< it does not do this work, for lack of memory, say; it may do other
+  };
+  explicit DeviceError(const std::string& what, Kind kind = Kind::no_device)
+      : Error(what), kind_(kind) {}
+  Kind kind() const { return kind_; }
+
+ private:
+  Kind kind_;
 };
 
 /// A setting that is unknown, contradictory or out of range.

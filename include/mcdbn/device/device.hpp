@@ -39,7 +39,8 @@ std::vector<DeviceInfo> list_devices();
 /// The list as text, one device a line; where there is none, what to install.
 std::string describe_devices(const std::vector<DeviceInfo>& devices);
 
-/// The device that the user asked for: an index or part of a name (case-insensitive); empty: any.
+/// The device that the user asked for: an index or part of a name (case-insensitive); empty: any. A
+/// number that is no index is part of a name.
 struct DeviceSelection {
   std::string platform;
   std::string device;
@@ -49,6 +50,9 @@ struct DeviceSelection {
 
 /// The devices of list_devices() that match, in its order.
 std::vector<DeviceInfo> matching_devices(const DeviceSelection& selection);
+/// Those of these devices that match, in their order.
+std::vector<DeviceInfo> matching_devices(std::vector<DeviceInfo> devices,
+                                         const DeviceSelection& selection);
 
 /// When a kernel ran, in nanoseconds of the device's own clock.
 struct LaunchTime {

@@ -10,7 +10,8 @@
 
 namespace mcdbn {
 
-/// Sets them in their order.
+/// Sets them in their order; beside the settings also `skeleton`, "own" or "canonical", and
+/// `joint-map.ROLE`, the name of a joint.
 /// @throws ConfigError for a setting that does not exist, a value of another kind or out of range
 void assign_settings(TrainingConfig& config, const std::vector<GivenSetting>& given);
 
@@ -18,7 +19,8 @@ void assign_settings(TrainingConfig& config, const std::vector<GivenSetting>& gi
 /// @throws ConfigError `file:line: what` if it is missing or no TOML; its values are not checked
 std::vector<GivenSetting> read_settings_file(const std::filesystem::path& file);
 
-/// All settings as a TOML file that read_settings_file reads.
+/// All settings, the skeleton where it is chosen and the joint map, as a TOML file that
+/// read_settings_file reads.
 std::string settings_toml(const TrainingConfig& config);
 
 /// All settings by name, nested at the dots: the record in a model file.
