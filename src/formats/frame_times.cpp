@@ -128,6 +128,7 @@ std::vector<long long> numbers_of_frames(const JsonPlace& list, SeenPeople& peop
     if (!key) key = time_key(entry);
   }
   std::vector<double> times;
+  times.reserve(entries.size());
   for (const JsonPlace& entry : entries)
     times.push_back(key && time_key(entry) == key ? entry[*key].number() : kNan);
   std::vector<long long> numbers;

@@ -44,7 +44,7 @@ std::vector<std::size_t> at_most_four(std::vector<std::size_t> shape) {
 /// The shape with all four dimensions: [people, frames, joints, numbers a joint].
 std::vector<std::size_t> full_shape(const std::vector<std::size_t>& given,
                                     const std::string& file) {
-  const std::vector<std::size_t> shape = at_most_four(given);
+  std::vector<std::size_t> shape = at_most_four(given);
   if (shape.size() == 2) {
     for (const std::size_t numbers : {std::size_t{3}, std::size_t{2}, std::size_t{4}})
       if (shape[1] % numbers == 0 && is_known_count(shape[1] / numbers))

@@ -22,7 +22,7 @@ constexpr const char *kOwn = "own", *kCanonical = "canonical";
 SkeletonUse skeleton_use_of(const GivenSetting& given) {
   if (given.value == kOwn) return SkeletonUse::own;
   if (given.value == kCanonical) return SkeletonUse::humanoid;
-  reject(given, "\"own\" or \"canonical\"");
+  reject(given, R"("own" or "canonical")");
 }
 
 }  // namespace
@@ -44,7 +44,8 @@ bool assign_text_setting(TrainingConfig& config, const GivenSetting& given) {
   if (!given.name.starts_with(kJointMap)) return false;
   const auto role = joint_role_of(given.name.substr(kJointMap.size()));
   if (!role) throw ConfigError(fmt::format("{} is no role of a joint", printable_line(given.who)));
-  if (!given.value.is_string() || given.value == "") reject(given, "the name of a joint");
+  if (!given.value.is_string() || given.value.get<std::string>().empty())
+    reject(given, "the name of a joint");
   config.joint_map[*role] = given.value.get<std::string>();
   return true;
 }
