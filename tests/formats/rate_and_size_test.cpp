@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "base/scratch_folder.hpp"
+#include "formats/json_bodies.hpp"
 #include "mcdbn/base/errors.hpp"
 #include "mcdbn/formats/track_file.hpp"
 
@@ -30,29 +30,13 @@ double y_of(int joint) {
   return 100 + 40 * joint;
 }
 
-/// x, y, confidence of OpenPose's 18 joints.
-json openpose_frame(int frame, bool shares) {
-  json numbers = json::array();
+/// In pixels, or as shares of the image.
+Places places(int frame, bool shares = false) {
+  Places joints;
   for (int joint = 0; joint < kJoints; ++joint)
-    for (const double value : {x_of(frame, joint) / (shares ? kWidth_px : 1),
-                               y_of(joint) / (shares ? kHeight_px : 1), 0.5})
-      numbers.push_back(value);
-  json people = json::array();
-  people.push_back(json{{"pose_keypoints_2d", numbers}});
-  return {{"people", people}};
-}
-
-json landmarks(int frame) {
-  json list = json::array();
-  for (int joint = 0; joint < kJoints; ++joint)
-    list.push_back({{"x", x_of(frame, joint)}, {"y", y_of(joint)}, {"score", 0.5}});
-  return list;
-}
-
-json instance(int frame) {
-  json points = json::array();
-  for (int joint = 0; joint < kJoints; ++joint) points.push_back({x_of(frame, joint), y_of(joint)});
-  return {{"keypoints", points}, {"keypoint_scores", std::vector<double>(kJoints, 0.5)}};
+    joints.push_back(
+        {x_of(frame, joint) / (shares ? kWidth_px : 1), y_of(joint) / (shares ? kHeight_px : 1)});
+  return joints;
 }
 
 /// A list of frames with these facts in each.
@@ -67,13 +51,7 @@ json frames_of(const Content& content, const json& facts = json::object()) {
 }
 
 json with_landmarks(int frame) {
-  return {{"landmarks", landmarks(frame)}};
-}
-
-bool any_notice(const TrackReading& reading, const std::string& words) {
-  return std::ranges::any_of(reading.notices, [&](const std::string& notice) {
-    return notice.find(words) != std::string::npos;
-  });
+  return {{"landmarks", landmarks_at(places(frame))}};
 }
 
 void check_size(const TrackReading& reading) {
@@ -92,7 +70,7 @@ TEST_CASE("rate and size: the canvas of OpenPose's frames, in pixels and in shar
   const json canvas{{"canvas_width", kWidth_px}, {"canvas_height", kHeight_px}};
   for (const bool shares : {false, true}) {
     CAPTURE(shares);
-    const auto frame_of = [&](int frame) { return openpose_frame(frame, shares); };
+    const auto frame_of = [&](int frame) { return openpose_frame_at(places(frame, shares)); };
     const json frames = frames_of(frame_of, canvas);
     check_size(read_tracks(folder.write("film.json", frames.dump())));
     std::filesystem::create_directory(folder / "files");
@@ -116,7 +94,7 @@ TEST_CASE("rate and size: beside the frames, in an object there, and in each fra
   }
   for (json film : {facts, json{{"info", facts}}}) {
     film["instance_info"] = frames_of([](int frame) {
-      return json{{"frame_id", frame}, {"instances", json::array({instance(frame)})}};
+      return json{{"frame_id", frame}, {"instances", json::array({instance_at(places(frame))})}};
     });
     films.push_back(film);
   }
@@ -153,7 +131,7 @@ TEST_CASE("rate and size: what changes from frame to frame is a box or the detec
   const ScratchFolder folder;
   json frames = json::array();
   for (int frame = 0; frame < kFrames; ++frame)
-    frames.push_back({{"landmarks", landmarks(frame)},
+    frames.push_back({{"landmarks", landmarks_at(places(frame))},
                       {"fps", 20 + frame},
                       {"width", 200 + frame},
                       {"height", 500}});

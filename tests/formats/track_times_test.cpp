@@ -3,12 +3,12 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "base/scratch_folder.hpp"
+#include "formats/json_bodies.hpp"
 #include "mcdbn/formats/track_file.hpp"
 
 using namespace mcdbn;
@@ -34,26 +34,10 @@ double y_of(int joint) {
   return 100 + 20 * joint;
 }
 
-json landmarks(int frame) {
-  json list = json::array();
-  for (int joint = 0; joint < kJoints; ++joint)
-    list.push_back({{"x", x_of(frame, joint)}, {"y", y_of(joint)}, {"score", 0.5}});
-  return list;
-}
-
-json instance(int frame) {
-  json points = json::array();
-  for (int joint = 0; joint < kJoints; ++joint) points.push_back({x_of(frame, joint), y_of(joint)});
-  return {{"keypoints", points}, {"keypoint_scores", std::vector<double>(kJoints, 0.5)}};
-}
-
-json openpose_frame(int frame) {
-  json numbers = json::array();
-  for (int joint = 0; joint < kJoints; ++joint)
-    for (const double value : {x_of(frame, joint), y_of(joint), 0.5}) numbers.push_back(value);
-  json people = json::array();
-  people.push_back(json{{"pose_keypoints_2d", numbers}});
-  return {{"people", people}};
+Places places(int frame) {
+  Places joints;
+  for (int joint = 0; joint < kJoints; ++joint) joints.push_back({x_of(frame, joint), y_of(joint)});
+  return joints;
 }
 
 std::string columns_header() {
@@ -92,26 +76,20 @@ std::string rows_film(const Time& time) {
   return text;
 }
 
-/// @param content of a frame, an object
+/// @param content of a frame, an object, by its places
 template <typename Content>
 std::string json_film(const Time& time, const Content& content) {
   json frames = json::array();
   for (int frame = 0; frame < kFrames; ++frame) {
     if (is_left_out(frame)) continue;
-    frames.push_back(content(frame));
+    frames.push_back(content(places(frame)));
     frames.back()[time.name] = time.of(frame);
   }
   return frames.dump();
 }
 
-json landmarks_frame(int frame) {
-  return {{"landmarks", landmarks(frame)}};
-}
-
-bool any_notice(const TrackReading& reading, const std::string& words) {
-  return std::ranges::any_of(reading.notices, [&](const std::string& notice) {
-    return notice.find(words) != std::string::npos;
-  });
+json landmarks_frame(const Places& places) {
+  return {{"landmarks", landmarks_at(places)}};
 }
 
 /// Every frame is in its place, those that were left out too.
@@ -145,7 +123,7 @@ TEST_CASE("track times: they give the rate and the frames that are left out") {
     CAPTURE(time.units_per_s);
     check_film(read_tracks(folder.write("columns.csv", columns_film(time))));
     check_film(read_tracks(folder.write("rows.csv", rows_film(time))));
-    for (const auto& content : {landmarks_frame, instance, openpose_frame})
+    for (const auto& content : {landmarks_frame, instance_at, openpose_frame_at})
       check_film(read_tracks(folder.write("film.json", json_film(time, content))));
   }
 }
@@ -154,7 +132,8 @@ TEST_CASE("track times: seconds that are the keys of frames") {
   const ScratchFolder folder;
   json film = json::object();
   for (int frame = 0; frame < kFrames; ++frame)
-    if (!is_left_out(frame)) film[fmt::format("{:.3f}", frame / kRate_hz)] = landmarks(frame);
+    if (!is_left_out(frame))
+      film[fmt::format("{:.3f}", frame / kRate_hz)] = landmarks_at(places(frame));
   check_film(read_tracks(folder.write("film.json", film.dump())));
 }
 
@@ -195,7 +174,8 @@ TEST_CASE("track times: beside numbers of frames they give the rate alone") {
   // Every fifth frame of 25 a second: they are taken one after the other, five a second.
   for (int i = 0; i < 6; ++i) {
     table += fmt::format("{},{}", 5 * i, 0.2 * i) + columns_row(i);
-    frames.push_back({{"frame", 5 * i}, {"timestamp", 0.2 * i}, {"landmarks", landmarks(i)}});
+    frames.push_back(
+        {{"frame", 5 * i}, {"timestamp", 0.2 * i}, {"landmarks", landmarks_at(places(i))}});
   }
   for (const std::string& text : {table, frames.dump()}) {
     const TrackReading reading = read_tracks(folder.write("film", text));
@@ -223,7 +203,7 @@ TEST_CASE("track times: those that do not rise are reported, and frames are as t
   for (const double time_s : {0.0, 0.04, 0.04, 0.08}) {
     const int frame = static_cast<int>(frames.size());
     table += fmt::format("{}", time_s) + columns_row(frame);
-    frames.push_back({{"timestamp", time_s}, {"landmarks", landmarks(frame)}});
+    frames.push_back({{"timestamp", time_s}, {"landmarks", landmarks_at(places(frame))}});
   }
   for (const std::string& text : {table, frames.dump()}) {
     const TrackReading reading = read_tracks(folder.write("film", text));
@@ -238,8 +218,8 @@ TEST_CASE("track times: another rate than that of the file, and one that no film
   const ScratchFolder folder;
   json frames = json::array(), slow = json::array();
   for (int frame = 0; frame < 5; ++frame) {
-    frames.push_back({{"time_s", frame / kRate_hz}, {"landmarks", landmarks(frame)}});
-    slow.push_back({{"time_s", 100 * frame}, {"landmarks", landmarks(frame)}});
+    frames.push_back({{"time_s", frame / kRate_hz}, {"landmarks", landmarks_at(places(frame))}});
+    slow.push_back({{"time_s", 100 * frame}, {"landmarks", landmarks_at(places(frame))}});
   }
   const json film{{"fps", 50}, {"frames", frames}};
   const TrackReading other = read_tracks(folder.write("film.json", film.dump()));
@@ -255,7 +235,7 @@ TEST_CASE("track times: a list's OpenPose frames are those that it numbers") {
   json frames = json::array();
   for (int frame = 0; frame < kFrames; ++frame) {
     if (is_left_out(frame)) continue;
-    frames.push_back(openpose_frame(frame));
+    frames.push_back(openpose_frame_at(places(frame)));
     frames.back()["frame"] = frame;
   }
   check_places(read_tracks(folder.write("film.json", frames.dump())));

@@ -44,21 +44,29 @@ std::string on_device_of_1_gb(const LearningSettings& settings, double frames) {
   return on_device_of(1.024e9, 0.256e9, settings, frames);
 }
 
-}  // namespace
-
-TEST_CASE("memory of a training: every number once, counted by hand") {
+LearningSettings small_settings() {
   LearningSettings settings = LearningSettings::greedy();
   settings.hidden = 8;
   settings.mrbm_hidden = 7;
   settings.order = 3;
   settings.layers = 1;
+  return settings;
+}
+
+/// Parameters of small_settings()' machines.
+constexpr double kTrack = 43 * 8 + 3 * 43 * 43 + 3 * 43 * 8 + 43 + 8,
+                 kPose = 130 * 8 + 3 * 130 * 130 + 3 * 130 * 8 + 130 + 8,
+                 kMrbm = 2 * (8 * 7 + 8) + 7;
+
+}  // namespace
+
+TEST_CASE("memory of a training: every number once, counted by hand") {
+  LearningSettings settings = small_settings();
   settings.batch = 10;
-  const double track = 43 * 8 + 3 * 43 * 43 + 3 * 43 * 8 + 43 + 8,
-               pose = 130 * 8 + 3 * 130 * 130 + 3 * 130 * 8 + 130 + 8, mrbm = 2 * (8 * 7 + 8) + 7;
   const MemoryNeed need = memory_need(kDimensions, 500, settings);
-  CHECK(need.parameters == 4 * 2 * (track + pose + mrbm));  // each value and its step
-  CHECK(need.windows == 4 * 10 * (130 + 2 * 8));            // of the larger modality
-  CHECK(need.frames == 4 * 500 * (43 + 130 + 2 * 8));       // the data and their codes
+  CHECK(need.parameters == 4 * 2 * (kTrack + kPose + kMrbm));  // each value and its step
+  CHECK(need.windows == 4 * 10 * (130 + 2 * 8));               // of the larger modality
+  CHECK(need.frames == 4 * 500 * (43 + 130 + 2 * 8));          // the data and their codes
   CHECK(need.total() == need.parameters + need.windows + need.frames);
 
   settings.fine_tuning = {.steps = 1,
@@ -68,7 +76,7 @@ TEST_CASE("memory of a training: every number once, counted by hand") {
                           .settle_frames = 2,
                           .mean_field_steps = 4};
   const MemoryNeed tuned = memory_need(kDimensions, 500, settings);
-  CHECK(tuned.parameters == 4 * 5 * (track + pose + mrbm));
+  CHECK(tuned.parameters == 4 * 5 * (kTrack + kPose + kMrbm));
   CHECK(tuned.frames == 0);  // only windows of them are on the device
   CHECK(tuned.windows == 4 * (6 * (2 + 5 + 3) * (43 + 130 + 2 * 2 * 8) + 6 * 7 * 2 * 4 * (8 + 7)));
   settings.fine_tuning.from_greedy = true;
@@ -97,20 +105,14 @@ TEST_CASE("memory of a training: what is more than the device has is refused, an
 }
 
 TEST_CASE("memory of a training: the largest buffer for each purpose, counted by hand") {
-  LearningSettings settings = LearningSettings::greedy();
-  settings.hidden = 8;
-  settings.mrbm_hidden = 7;
-  settings.order = 3;
-  settings.layers = 1;
+  LearningSettings settings = small_settings();
   settings.gaussian.adam = false;
-  const double track = 43 * 8 + 3 * 43 * 43 + 3 * 43 * 8 + 43 + 8,
-               pose = 130 * 8 + 3 * 130 * 130 + 3 * 130 * 8 + 130 + 8, mrbm = 2 * (8 * 7 + 8) + 7;
   const auto largest = [&] { return largest_buffers(kDimensions, 500, settings); };
-  CHECK(largest().parameters == 4 * pose);  // a machine after another
+  CHECK(largest().parameters == 4 * kPose);  // a machine after another
   CHECK(largest().windows == 0);
   CHECK(largest().frames == 4 * 500 * 130);
   settings.gaussian.adam = true;
-  CHECK(largest().parameters == 4 * 2 * pose);
+  CHECK(largest().parameters == 4 * 2 * kPose);
   settings.gaussian.adam = false;
   settings.mrbm.adam = true;
   settings.mrbm_hidden = 10'000;
@@ -126,7 +128,7 @@ TEST_CASE("memory of a training: the largest buffer for each purpose, counted by
                           .window_frames = 5,
                           .settle_frames = 2,
                           .mean_field_steps = 4};
-  CHECK(largest().parameters == 4 * 2 * (track + pose + mrbm));
+  CHECK(largest().parameters == 4 * 2 * (kTrack + kPose + kMrbm));
   CHECK(largest().windows == 4 * 6 * (2 + 5 + 3) * 130);
   CHECK(largest().frames == 0);
   settings.fine_tuning.mean_field_steps = 100;
