@@ -239,24 +239,18 @@ std::vector<SeenPerson> people_of_image(const JsonPlace& content) {
 }
 
 SeenPeople read(const TrackSource& source) {
-  if (source.is_folder()) {
-    SeenPeople people = people_of_folder(source, people_of_image);
-    people.has_depths_only = any_depths(people);
-    const auto first = source.first_json_if_any();
-    if (first) take_rate_and_size(*first, people);
-    name_joints_by_count(people, source.name(),
-                         first ? names_in(*first) : std::vector<std::string>{});
-    return people;
-  }
   SeenPeople people;
-  const JsonPlace content = source.json();
-  if (source.is_json_lines())
-    add_frames(people, content);
+  if (source.is_folder())
+    people = people_of_folder(source, people_of_image);
+  else if (source.is_json_lines())
+    add_frames(people, source.json());
   else
-    add_content(people, content);
+    add_content(people, source.json());
   people.has_depths_only = any_depths(people);
-  take_rate_and_size(content, people);
-  name_joints_by_count(people, source.name(), names_in(content));
+  const auto first = source.first_json_if_any();
+  if (first) take_rate_and_size(*first, people);
+  name_joints_by_count(people, source.name(),
+                       first ? names_in(*first) : std::vector<std::string>{});
   return people;
 }
 

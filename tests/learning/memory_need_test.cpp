@@ -53,6 +53,15 @@ LearningSettings small_settings() {
   return settings;
 }
 
+FineTuningSettings small_fine_tuning() {
+  return {.steps = 1,
+          .from_greedy = false,
+          .windows = 6,
+          .window_frames = 5,
+          .settle_frames = 2,
+          .mean_field_steps = 4};
+}
+
 /// Parameters of small_settings()' machines.
 constexpr double kTrack = 43 * 8 + 3 * 43 * 43 + 3 * 43 * 8 + 43 + 8,
                  kPose = 130 * 8 + 3 * 130 * 130 + 3 * 130 * 8 + 130 + 8,
@@ -69,12 +78,7 @@ TEST_CASE("memory of a training: every number once, counted by hand") {
   CHECK(need.frames == 4 * 500 * (43 + 130 + 2 * 8));          // the data and their codes
   CHECK(need.total() == need.parameters + need.windows + need.frames);
 
-  settings.fine_tuning = {.steps = 1,
-                          .from_greedy = false,
-                          .windows = 6,
-                          .window_frames = 5,
-                          .settle_frames = 2,
-                          .mean_field_steps = 4};
+  settings.fine_tuning = small_fine_tuning();
   const MemoryNeed tuned = memory_need(kDimensions, 500, settings);
   CHECK(tuned.parameters == 4 * 5 * (kTrack + kPose + kMrbm));
   CHECK(tuned.frames == 0);  // only windows of them are on the device
@@ -122,12 +126,7 @@ TEST_CASE("memory of a training: the largest buffer for each purpose, counted by
   CHECK(largest().frames == 4 * 500 * 200);
   settings.hidden = 8;
 
-  settings.fine_tuning = {.steps = 1,
-                          .from_greedy = false,
-                          .windows = 6,
-                          .window_frames = 5,
-                          .settle_frames = 2,
-                          .mean_field_steps = 4};
+  settings.fine_tuning = small_fine_tuning();
   CHECK(largest().parameters == 4 * 2 * (kTrack + kPose + kMrbm));
   CHECK(largest().windows == 4 * 6 * (2 + 5 + 3) * 130);
   CHECK(largest().frames == 0);
